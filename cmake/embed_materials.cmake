@@ -1,0 +1,49 @@
+# Writes OUTPUT, a C++ file that holds the text of each of FILES: see src/embedded_materials.hpp.
+#   cmake -DOUTPUT=embedded_materials.cpp "-DFILES=a.json;b.json" -P embed_materials.cmake
+
+# Compilers limit a single literal to 65536 bytes; adjacent literals are joined by the compiler.
+set(chunk_size 60000)
+
+set(entries "")
+foreach(file IN LISTS FILES)
+  cmake_path(GET file STEM LAST_ONLY name)
+  file(READ "${file}" text)
+  if(text MATCHES "\\)json\"")
+    message(FATAL_ERROR "${file}: the characters )json\" would end the raw string literal")
+  endif()
+  set(literals "")
+  string(LENGTH "${text}" left)
+  while(left GREATER chunk_size)
+    string(SUBSTRING "${text}" 0 ${chunk_size} chunk)
+    string(FIND "${chunk}" "," cut REVERSE)   # at a comma, never inside a character of several bytes
+    if(cut LESS 1)
+      message(FATAL_ERROR "${file}: no comma within ${chunk_size} bytes")
+    endif()
+    string(SUBSTRING "${text}" 0 ${cut} chunk)
+    string(SUBSTRING "${text}" ${cut} -1 text)
+    string(APPEND literals "R\"json(${chunk})json\"\n")
+    string(LENGTH "${text}" left)
+  endwhile()
+  string(APPEND literals "R\"json(${text})json\"sv")
+  string(APPEND entries "    {\"${name}\"sv,\n${literals}},\n")
+endforeach()
+
+if(entries STREQUAL "")
+  set(body "  return {};\n")
+else()
+  set(body "  static constexpr EmbeddedMaterial all[] = {\n${entries}  };\n  return all;\n")
+endif()
+
+file(WRITE "${OUTPUT}" "// Written by cmake/embed_materials.cmake from materials/*.json.
+#include \"embedded_materials.hpp\"
+
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"   // the joined literals, under -Wpedantic
+
+namespace mmbrdf {
+
+std::span<const EmbeddedMaterial> embedded_materials() {
+  using namespace std::string_view_literals;
+${body}}
+
+}  // namespace mmbrdf
+")

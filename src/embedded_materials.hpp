@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The text of the files materials/*.json, compiled into the library by cmake/embed_materials.cmake.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace mmbrdf {
+
+struct EmbeddedMaterial {
+  std::string_view name;  ///< file name without .json
+  std::string_view json;  ///< the file's text
+};
+
+/// All of them, ordered by name; they live as long as the program.
+std::span<const EmbeddedMaterial> embedded_materials();
+
+}  // namespace mmbrdf
