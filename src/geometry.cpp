@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+/// Angles from the (s, p) axes of each beam to (⊥, ∥).
+///
+/// With d = φr − φi, and s, p of each beam, ⊥ = k_in × k_out has the components
+///
+///     ⊥·s_in  = −sin(θi − θr) − 2 cos θi sin θr sin²(d/2)         ⊥·p_in  = −sin θr sin d
+///     ⊥·s_out =  sin(θi − θr) − 2 sin θi cos θr sin²(d/2)         ⊥·p_out = −sin θi sin d
+///
+/// which is the cross product multiplied out, but keeps its digits where the beams are nearly parallel: there the
+/// product of two rounded vectors has lost them.
+FrameAngles angles_from_sp_to_plane(const Geometry& g) {
+  const double sin_i = std::sin(g.incident.theta), cos_i = std::cos(g.incident.theta);
+  const double sin_r = std::sin(g.reflected.theta), cos_r = std::cos(g.reflected.theta);
+  const double d = g.reflected.phi - g.incident.phi;
+  const double sin_difference = std::sin(g.incident.theta - g.reflected.theta);
+  const double sin_d = std::sin(d), half = std::sin(d / 2), versine = 2 * half * half;
+
+  const double s_in = -sin_difference - cos_i * sin_r * versine, p_in = -sin_r * sin_d;
+  const double s_out = sin_difference - sin_i * cos_r * versine, p_out = -sin_i * sin_d;
+  if (std::hypot(s_in, p_in) < parallel_limit)  // ⊥ is s_in = (sin φi, −cos φi, 0)
+    return {.scattered = std::atan2(cos_r * sin_d, -std::cos(d)), .incident = 0};
+  return {.scattered = std::atan2(p_out, s_out), .incident = std::atan2(p_in, s_in)};
+}
+
+/// R(scattered) M R(incident)ᵀ without the multiplications by 0 and 1.
+Mueller rotated(const Mueller& m, double scattered, double incident) {
+  const double c_out = std::cos(2 * scattered), s_out = std::sin(2 * scattered);
+  const double c_in = std::cos(2 * incident), s_in = std::sin(2 * incident);
+  Mueller rows = m;
+  for (int j = 0; j < 4; ++j) {
+    rows(1, j) = c_out * m(1, j) + s_out * m(2, j);
+    rows(2, j) = c_out * m(2, j) - s_out * m(1, j);
+  }
+  Mueller result = rows;
+  for (int i = 0; i < 4; ++i) {
+    result(i, 1) = c_in * rows(i, 1) + s_in * rows(i, 2);
+    result(i, 2) = c_in * rows(i, 2) - s_in * rows(i, 1);
+  }
+  return result;
+}
+
+void require_theta(double theta, const char* what, const char* name) {
+  if (theta >= 0 && theta <= radians(90)) return;
+  throw std::invalid_argument(std::string(what) + ": " + name + " = " + shortest(in_degrees(theta)) +
+                              " degrees, must be in 0…90");
+}
+
+void require_phi(double phi, const char* what, const char* name) {
+  if (std::isfinite(phi)) return;
+  throw std::invalid_argument(std::string(what) + ": " + name + " = " + shortest(phi) + ", must be finite");
+}
+
+}  // namespace
+
+Vector3 unit_vector(const Direction& direction) {
+  const double sin_theta = std::sin(direction.theta);
+  return {sin_theta * std::cos(direction.phi), sin_theta * std::sin(direction.phi), std::cos(direction.theta)};
+}
+
+Direction direction(const Vector3& vector) {
+  const auto [x, y, z] = vector;
+  if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || z < 0 || (x == 0 && y == 0 && z == 0))
+    throw std::invalid_argument("direction: vector = (" + shortest(x) + ", " + shortest(y) + ", " + shortest(z) +
+                                "), must be finite, not 0, with z ≥ 0");
+  if (x == 0 && y == 0) return {0, 0};
+  const double longest = std::max({std::abs(x), std::abs(y), z});  // no overflow for any length
+  const double phi = std::atan2(y, x);                             // −π where y is −0 or lost beside x
+  return {std::atan2(std::hypot(x / longest, y / longest), z / longest),
+          phi == -std::numbers::pi ? std::numbers::pi : phi};
+}
+
+Direction unfolded(const Direction& direction) {
+  if (direction.theta < 0) return {-direction.theta, direction.phi + std::numbers::pi};
+  return direction;
+}
+
+void require_valid(const Geometry& geometry, const char* what) {
+  require_theta(geometry.incident.theta, what, "theta_i");
+  require_theta(geometry.reflected.theta, what, "theta_r");
+  require_phi(geometry.incident.phi, what, "phi_i");
+  require_phi(geometry.reflected.phi, what, "phi_r");
+}
+
+Geometry exchanged(const Geometry& geometry) { return {geometry.reflected, geometry.incident}; }
+
+FrameAngles angles_to_xy(const Geometry& geometry, Frame frame) {
+  const FrameAngles from_sp{.scattered = -geometry.reflected.phi, .incident = geometry.incident.phi};
+  switch (frame) {
+    case Frame::xy:
+      return {0, 0};
+    case Frame::sp:
+      return from_sp;
+    case Frame::scattering_plane: {
+      const FrameAngles plane = angles_from_sp_to_plane(geometry);
+      return {from_sp.scattered - plane.scattered, from_sp.incident - plane.incident};
+    }
+  }
+  throw std::invalid_argument("Frame: no frame has the number " + std::to_string(static_cast<int>(frame)));
+}
+
+Mueller change_frame(const Mueller& m, const Geometry& geometry, Frame from, Frame to) {
+  require_valid(geometry, "change_frame");
+  if (from == to) return m;
+  const FrameAngles a = angles_to_xy(geometry, from), b = angles_to_xy(geometry, to);
+  return rotated(m, a.scattered - b.scattered, a.incident - b.incident);
+}
+
+Mueller turned(const Mueller& m_xy, double angle) { return rotated(m_xy, -angle, angle); }
+
+}  // namespace mmbrdf

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/mueller.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Signs = std::array<double, 4>;
+
+/// D M D with D = diag(signs).
+Mueller with_signs(const Mueller& m, const Signs& signs) {
+  Mueller result;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      result(i, j) = signs[static_cast<std::size_t>(i)] * signs[static_cast<std::size_t>(j)] * m(i, j);
+  return result;
+}
+
+/// D of a convention, relative to this project's.
+Signs signs(StokesConvention convention) {
+  switch (convention) {
+    case StokesConvention::germer2017:
+      return {1, 1, 1, 1};
+    case StokesConvention::s_first_right:
+      return {1, 1, 1, -1};
+    case StokesConvention::p_first_left:
+      return {1, -1, -1, 1};
+    case StokesConvention::p_first_right:
+      return {1, -1, -1, -1};
+    case StokesConvention::p_first_left_handed_axes_left:
+      return {1, -1, 1, 1};
+    case StokesConvention::p_first_left_handed_axes_right:
+      return {1, -1, 1, -1};
+  }
+  throw std::invalid_argument("StokesConvention: no convention has the number " +
+                              std::to_string(static_cast<int>(convention)));
+}
+
+Signs signs(StokesConvention from, StokesConvention to) {
+  Signs product = signs(from);
+  const Signs second = signs(to);
+  for (std::size_t i = 0; i < 4; ++i) product[i] *= second[i];
+  return product;
+}
+
+}  // namespace
+
+Mueller identity() { return diagonal(1, 1, 1, 1); }
+
+Mueller diagonal(double m11, double m22, double m33, double m44) {
+  return {{m11, 0, 0, 0, 0, m22, 0, 0, 0, 0, m33, 0, 0, 0, 0, m44}};
+}
+
+Mueller operator*(const Mueller& a, const Mueller& b) {
+  Mueller product;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      product(i, j) = a(i, 0) * b(0, j) + a(i, 1) * b(1, j) + a(i, 2) * b(2, j) + a(i, 3) * b(3, j);
+  return product;
+}
+
+Stokes operator*(const Mueller& m, const Stokes& s) {
+  Stokes product;
+  for (int i = 0; i < 4; ++i)
+    product[static_cast<std::size_t>(i)] = m(i, 0) * s[0] + m(i, 1) * s[1] + m(i, 2) * s[2] + m(i, 3) * s[3];
+  return product;
+}
+
+Mueller operator*(double factor, const Mueller& m) {
+  Mueller product = m;
+  for (double& element : product.elements) element *= factor;
+  return product;
+}
+
+Mueller operator+(const Mueller& a, const Mueller& b) {
+  Mueller sum = a;
+  for (std::size_t i = 0; i < 16; ++i) sum.elements[i] += b.elements[i];
+  return sum;
+}
+
+Mueller operator-(const Mueller& a, const Mueller& b) {
+  Mueller difference = a;
+  for (std::size_t i = 0; i < 16; ++i) difference.elements[i] -= b.elements[i];
+  return difference;
+}
+
+Mueller transpose(const Mueller& m) {
+  Mueller result;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) result(i, j) = m(j, i);
+  return result;
+}
+
+Mueller normalized(const Mueller& m) {
+  const double m11 = m(0, 0);
+  if (m11 == 0 || !std::isfinite(m11))
+    throw std::invalid_argument("normalized: M11 = " + shortest(m11) + ", must be finite and not 0");
+  Mueller result = m;
+  for (double& element : result.elements) element /= m11;
+  return result;
+}
+
+Mueller rotator(double angle) { return rotator(std::cos(2 * angle), std::sin(2 * angle)); }
+
+Mueller rotator(double cos_2a, double sin_2a) {
+  return {{1, 0, 0, 0, 0, cos_2a, sin_2a, 0, 0, -sin_2a, cos_2a, 0, 0, 0, 0, 1}};
+}
+
+Mueller exchanged(const Mueller& m) { return with_signs(transpose(m), {1, 1, -1, 1}); }
+
+Mueller mirrored(const Mueller& m) { return with_signs(m, {1, 1, -1, -1}); }
+
+Mueller convert(const Mueller& m, StokesConvention from, StokesConvention to) { return with_signs(m, signs(from, to)); }
+
+Stokes convert(const Stokes& s, StokesConvention from, StokesConvention to) {
+  const Signs d = signs(from, to);
+  return {d[0] * s[0], d[1] * s[1], d[2] * s[2], d[3] * s[3]};
+}
+
+}  // namespace mmbrdf

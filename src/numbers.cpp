@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "numbers.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "mmbrdf/geometry.hpp"
+
+namespace mmbrdf {
+namespace {
+
+/// What from_chars is to read: it takes no leading + and no blanks.
+std::string_view bare(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  return text;
+}
+
+/// Among numbers near `approximate`, one with few digits that `hits`.
+template <class Predicate>
+double roundest(double approximate, Predicate hits) {
+  for (const int digits : {15, 16}) {
+    std::array<char, 32> text;
+    const auto end = std::to_chars(text.begin(), text.end(), approximate, std::chars_format::general, digits).ptr;
+    double rounded = approximate;
+    std::from_chars(text.begin(), end, rounded);
+    if (hits(rounded)) return rounded;
+  }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double near : {approximate, std::nextafter(approximate, -infinity), std::nextafter(approximate, infinity)})
+    if (hits(near)) return near;
+  return approximate;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 40;
+  constexpr std::string_view hexadecimal = "0123456789abcdef";
+  std::string result = "'";
+  for (const char c : text.substr(0, longest)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte < 0x7f)
+      result += c;
+    else
+      (result += "\\x") += {hexadecimal[byte / 16], hexadecimal[byte % 16]};
+  }
+  return result + (text.size() > longest ? "...'" : "'");
+}
+
+double parse_number(std::string_view text) {
+  const std::string_view digits = bare(text);
+  double value = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (problem == std::errc::invalid_argument || end != digits.data() + digits.size())
+    throw std::invalid_argument(in_quotes(text) + " is not a number");
+  if (problem == std::errc::result_out_of_range)
+    throw std::invalid_argument(in_quotes(text) + " is beyond the range of double precision");
+  if (!std::isfinite(value)) throw std::invalid_argument(in_quotes(text) + " is not a finite number");
+  return value;
+}
+
+int parse_index(std::string_view text) {
+  constexpr int largest = 1000;
+  const std::string_view digits = bare(text);
+  int value = 0;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (problem == std::errc::invalid_argument || end != digits.data() + digits.size())
+    throw std::invalid_argument(in_quotes(text) + " is not an integer");
+  if (problem != std::errc() || value < -largest || value > largest)
+    throw std::invalid_argument(in_quotes(text) + " is out of range");
+  return value;
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text;
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value).ptr};
+}
+
+double in_degrees(double angle) {
+  return roundest(degrees(angle), [=](double value) { return radians(value) == angle; });
+}
+
+double in_nanometres(double wavelength) {
+  return roundest(wavelength * 1000, [=](double value) { return value / 1000 == wavelength; });
+}
+
+}  // namespace mmbrdf

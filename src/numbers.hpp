@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers as text in files: independent of the locale, and read back to the same bits.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace mmbrdf {
+
+/// Without surrounding blanks and tabs.
+std::string_view trimmed(std::string_view text);
+
+/// In quotes, short enough for a message of one line, with \xNN for bytes that are not printable ASCII.
+std::string in_quotes(std::string_view text);
+
+/// The whole text, but for surrounding blanks and a leading +, as a finite number.
+/// Throws std::invalid_argument with the text for anything else.
+double parse_number(std::string_view text);
+
+/// The same for an integer in [−1000, 1000]: no index of a mode comes near.
+int parse_index(std::string_view text);
+
+/// The fewest digits that parse_number() reads back as the same number.
+std::string shortest(double value);
+
+/// Degrees with the fewest digits for which radians() gives `angle` again; where no number of degrees does, the
+/// nearest.
+double in_degrees(double angle);
+
+/// Nanometres with the fewest digits for which division by 1000 gives `wavelength` again; where none does, the nearest.
+double in_nanometres(double wavelength);
+
+}  // namespace mmbrdf
