@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Basis functions of a reciprocal Mueller-matrix BRDF. A model is linear in its coefficients over a list of modes.
+///
+/// A mode feeds one or several matrix elements. What it gives to element ij is a sum of products of real Zernike
+/// functions, K_n^k(incident) K_m^l(reflected), in the xy frame: its terms. All families are lists of such terms, so
+/// one evaluation serves them all. f11 is in sr⁻¹; the other elements are normalised, m_ij = f_ij / f11.
+///
+///   n, k   radial and azimuthal order of the first factor, which Eq. 15 gives to the incident side
+///   m, l   the same of the second factor
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mmbrdf/zernike.hpp"
+
+namespace mmbrdf {
+
+/// Which modes a basis has.
+enum class Family {
+  isotropic,    ///< spin-weighted modes, k + l = 2 (σ_out + σ_in): exactly rotation-covariant, mirror-symmetric and
+                ///< reciprocal. 142 modes at orders 7, 4. Theory 2.5.
+  germer2017,   ///< the index sets of the published coefficient files, 330 modes at orders 7, 4 (Eqs. 8, 14–16). They
+                ///< hold at phi_i = 0 only, so models are evaluated there and turned (theory 0.3).
+  anisotropic,  ///< every index: the complete reciprocal expansion, Eqs. 1, 2 and 14–16. 2376 modes at orders 7, 4.
+};
+
+/// The function a mode belongs to. Pairs m_ij name element ij and, by reciprocity, ji. g, h, u and v are the functions of
+/// the isotropic family that several elements share:
+///   g: m12 = Re g(i,r)   m13 = −Im g(i,r)   m21 = Re g(r,i)   m31 = Im g(r,i)
+///   h: m42 = Re h(i,r)   m43 = −Im h(i,r)   m24 = Re h(r,i)   m34 = Im h(r,i)
+///   u, v: m22 = Re(u+v)  m33 = Re(u−v)      m32 = Im(u+v)     m23 = Im(v−u)
+enum class Function { m11, m12, m13, m14, m22, m23, m24, m33, m34, m44, g, h, u, v };
+
+struct Mode {
+  Function function;
+  int n, m, k, l;
+  friend bool operator==(const Mode&, const Mode&) = default;
+};
+
+/// weight × K_n^k(incident) × K_m^l(reflected), added to element (row, column), counted from 0. The positions are those
+/// of zernike_index.
+struct Term {
+  int row, column;
+  int incident, reflected;
+  double weight;
+  friend bool operator==(const Term&, const Term&) = default;
+};
+
+/// What a mode is made of; no two terms have the same element and positions.
+/// Throws std::invalid_argument if the mode is not valid in the family (see require_valid).
+std::vector<Term> terms(const Mode& mode, Family family);
+
+/// ∫∫ Y² dΩi dΩr of the part Y that a mode gives to an element (row, column from 0), lambert mapping; 0 if it feeds that
+/// element nothing. germer2017 and anisotropic modes have 1 for each element; isotropic ones carry no A_nm factor
+/// and have 2, 4, 8 or 16. The modes of a block are orthogonal, all its elements taken together; in one element alone
+/// all are but the isotropic v of opposite k.
+double squared_norm(const Mode& mode, Family family, int row, int column);
+
+/// Modes that are fitted together, because they feed the same elements or elements related by reciprocity.
+struct Block {
+  std::string name;                             ///< "11", "12,21", "22,23,32,33", …: the elements fed
+  std::vector<std::pair<int, int>> elements;    ///< row and column from 0
+  std::vector<Mode> modes;
+};
+
+/// Radial orders: n, m ≤ f11 for the element 11, ≤ other for all others.
+struct Orders {
+  int f11 = 7;
+  int other = 4;
+  friend bool operator==(const Orders&, const Orders&) = default;
+};
+
+/// Every mode of a family up to the given orders, block by block, in the canonical order:
+///   blocks   germer2017, anisotropic: 11 12 13 14 22 23 24 33 34 44;   isotropic: 11, g, 14, u and v, h, 44
+///   modes    by function, n, m, |k|, |l|, and k > 0 before k < 0
+/// Throws std::invalid_argument unless 0 ≤ order ≤ max_order.
+std::vector<Block> blocks(Family family, const Orders& orders);
+
+/// The blocks that hold exactly these modes, in canonical order, for model files whose index set is their own.
+/// Throws std::invalid_argument, naming the mode, for one that is not valid or given twice.
+std::vector<Block> blocks(Family family, const std::vector<Mode>& modes);
+
+/// Largest radial orders among the modes.
+Orders orders(const std::vector<Block>& blocks);
+
+int mode_count(const std::vector<Block>& blocks);
+
+/// Throws std::invalid_argument, naming mode and rule, unless |k| ≤ n ≤ max_order, |l| ≤ m ≤ max_order, n − k and m − l
+/// even, and the family's rules hold:
+///   m11, m22, m33, m44 of germer2017 and anisotropic   (n, k) not before (m, l): n > m, or n = m and (|k|, k) ≥ (|l|, l);
+///   germer2017    n − m even                           m11: k = l ≥ 0
+///   isotropic     m11, m44: k + l = 0, n ≥ m, k ≥ 0    m14: k + l = 0, k > 0   g, h: k + l = 2
+///                 u: k + l = 4, n > m or n = m and k ≥ l           v: k + l = 0, n ≥ m
+void require_valid(const Mode& mode, Family family);
+
+/// "22 (n, m, k, l) = (4, 2, 4, 2)" for messages.
+std::string to_string(const Mode& mode);
+
+/// The names used in files and by the program: isotropic, germer2017, anisotropic; 11, 12, …, g, h, u, v; lambert, projected.
+std::string to_string(Family family);
+std::string to_string(Function function);
+std::string to_string(DiscMapping mapping);
+Family family_from(const std::string& name);             ///< throws std::invalid_argument for another name
+Function function_from(const std::string& name);         ///< the same
+DiscMapping disc_mapping_from(const std::string& name);  ///< the same
+
+}  // namespace mmbrdf
