@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A Mueller-matrix BRDF model: coefficients over a list of modes. A model is prepared, then evaluated.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/modes.hpp"
+
+namespace mmbrdf {
+
+/// Directional-hemispherical reflectance by wavelength, linear between the nodes, constant beyond them. It multiplies
+/// f11 of models that were fitted to several wavelengths. Empty: factor 1.
+struct ReflectanceTable {
+  std::vector<double> wavelengths;  ///< micrometres, rising
+  std::vector<double> values;
+  double at(double wavelength) const;
+};
+
+/// Throws std::invalid_argument unless sizes agree, wavelengths rise and are positive, and values are positive.
+void require_valid(const ReflectanceTable& table);
+
+/// Where the data were that a model was fitted to.
+struct Validity {
+  std::vector<double> wavelengths;  ///< micrometres, rising; empty: unknown
+  double theta_i_max = radians(90);
+  double theta_r_max = radians(90);
+};
+
+/// Reasons for which a result lies outside the fitted range; a bit each.
+enum Outside : unsigned { inside = 0, outside_theta_i = 1, outside_theta_r = 2, outside_wavelength = 4 };
+
+/// "ok", or the reasons joined by "+": "theta_i+wavelength".
+std::string to_string(Outside outside);
+
+/// Modes that were fitted together, with their coefficients and what is known about them.
+struct FittedBlock {
+  Block block;
+  std::vector<double> coefficients;  ///< powers × modes: all modes for λ⁰ first, then all for λ¹, …
+  std::vector<double> covariance;    ///< of these coefficients, square and row-major; empty: unknown
+  int rank = 0;                      ///< of the fit; 0: unknown
+  double condition = 0;              ///< of the fit; 0: unknown
+};
+
+/// f11 = R(λ) Σ_p λ^p Σ a_p Y,   f_ij = f11 Σ_p λ^p Σ a_p Y, λ in micrometres (Eqs. 17–20). Plain data; fit() and load_model()
+/// make valid ones, prepare() checks.
+struct Model {
+  std::string name;
+  Family family = Family::isotropic;
+  DiscMapping mapping = DiscMapping::lambert;
+  int powers = 0;  ///< highest power of the wavelength
+  std::vector<FittedBlock> blocks;
+  ReflectanceTable reflectance;
+  Validity validity;
+  std::map<std::string, std::string> provenance;  ///< free text: data, command, software, attribution, …
+};
+
+/// Throws std::invalid_argument if blocks, coefficient counts or the reflectance table do not fit together.
+void require_valid(const Model& model);
+
+int coefficient_count(const Model& model);
+Orders orders(const Model& model);
+
+/// Which of the fitted ranges the question leaves. Angles and wavelengths at the edge are inside (to 1e-9).
+Outside outside(const Validity& validity, double wavelength, const Geometry& geometry);
+
+/// How azimuths enter.
+enum class Rotation {
+  covariant,   ///< as an isotropic sample demands. germer2017 is evaluated at phi_i = 0 and turned: M(phi_i, phi_r) =
+               ///< R(−phi_i) M(0, phi_r − phi_i) R(−phi_i). The other families are evaluated as they are.
+  as_printed,  ///< the published sum at the azimuths given. For comparison with other programs only: for germer2017 the answer
+               ///< then depends on how the sample is turned, since the files lack the sine partners of their modes,
+               ///< and it misses the measured random directions by half as much again (0.0175 against 0.0113).
+};
+
+class PreparedIncidence;
+
+/// A model at one wavelength: what does not depend on the geometry is done. Holds its own copy of all it needs.
+/// Evaluation allocates nothing, locks nothing and may run in many threads at once.
+class PreparedModel {
+ public:
+  /// The Mueller BRDF in sr⁻¹ at one geometry, in the frame asked for.
+  /// Throws std::invalid_argument if a polar angle is not in [0, π/2] or an angle is not finite.
+  Mueller evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
+
+  /// The same for directions given as unit vectors (z ≥ 0, length 1 to 1e-6); along the normal, phi = 0.
+  Mueller evaluate(const Vector3& incident, const Vector3& reflected, Frame frame = Frame::xy) const;
+
+  /// One matrix for each geometry. Throws std::invalid_argument if the sizes differ, before anything is written, or for
+  /// the first invalid geometry.
+  void evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
+
+  /// The unpolarized BRDF alone, sr⁻¹.
+  double f11(const Geometry& geometry) const;
+
+  Outside outside(const Geometry& geometry) const;
+
+  /// The same model at another wavelength (micrometres, positive).
+  PreparedModel at(double wavelength) const;
+
+  /// Contracted once more, for many reflected directions at one incident direction.
+  PreparedIncidence at(const Direction& incident) const;
+
+  double wavelength() const { return wavelength_; }
+
+ private:
+  friend PreparedModel prepare(const Model&, double, Rotation);
+  friend class PreparedIncidence;
+  struct Pattern;  // products of Zernike functions, the same for all wavelengths
+  PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength);
+  Mueller sum(const DiscPoint& incident, const DiscPoint& reflected, std::size_t elements) const;
+
+  std::shared_ptr<const Pattern> pattern_;
+  std::vector<double> weights_;  // of each product at this wavelength
+  double reflectance_ = 1;
+  double wavelength_ = 0;
+};
+
+/// A model at one wavelength and one incident direction: what is left is one dot product for each element.
+class PreparedIncidence {
+ public:
+  /// As PreparedModel::evaluate, for the incident direction this was made for. Agrees with it to evaluation_error × f11.
+  Mueller evaluate(const Direction& reflected, Frame frame = Frame::xy) const;
+  void evaluate(std::span<const Direction> reflected, Frame frame, std::span<Mueller> out) const;
+  const Direction& incident() const { return incident_; }
+
+ private:
+  friend class PreparedModel;
+  PreparedIncidence(const PreparedModel& model, const Direction& incident);
+
+  std::shared_ptr<const PreparedModel::Pattern> pattern_;
+  std::array<std::vector<double>, 16> weights_;  // for each element, of each K(reflected)
+  double reflectance_;
+  Direction incident_;
+};
+
+/// Folds powers of the wavelength (micrometres, positive), norms and the reflectance into flat arrays.
+/// Throws std::invalid_argument for an invalid model or wavelength.
+PreparedModel prepare(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
+
+/// Models that need no wavelength: with highest power 0, and no reflectance table or one with a single node. Returns their
+/// wavelength, or 1 if that is unknown. Throws std::invalid_argument, with the fitted wavelengths, for others.
+double only_wavelength(const Model& model);
+
+/// Bound on |error| / |f11| of an evaluated element for fitted models up to orders 7, 4, away from zeros of f11.
+inline constexpr double evaluation_error = 1e-13;
+
+/// An isotropic model in the modes of germer2017: the published coefficient layout. Exact, since that family is evaluated at
+/// phi_i = 0 and turned. The covariance is not carried over. Returns germer2017 models unchanged.
+/// Throws std::invalid_argument for an anisotropic model.
+Model in_published_form(const Model& model);
+
+}  // namespace mmbrdf

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+namespace mmbrdf {
+
+/// All that does not depend on the wavelength. Products of Zernike functions are listed element by element; the weight of
+/// a product is a polynomial of the wavelength.
+struct PreparedModel::Pattern {
+  struct Product {
+    int incident, reflected;
+  };
+  DiscPoint point(const Direction& direction, double turn) const {
+    return disc_point(Direction{direction.theta, direction.phi - turn}, mapping);
+  }
+
+  int order = 0;                           // largest radial order
+  bool turns = false;                      // evaluate at phi_i = 0 and turn the result
+  DiscMapping mapping = DiscMapping::lambert;
+  std::array<std::size_t, 17> begin{};     // products of element e: begin[e] … begin[e + 1]
+  std::vector<Product> products;
+  std::vector<std::vector<double>> powers;  // for each power of the wavelength, a weight for each product
+  ReflectanceTable reflectance;
+  Validity validity;
+};
+
+namespace {
+
+using Table = std::array<double, zernike_count(max_order)>;
+
+constexpr double edge = 1e-9;  // radians and micrometres: angles that went through degrees are still inside
+constexpr int max_power = 9;
+
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+void require_wavelength(double wavelength) {
+  if (!(wavelength > 0) || !std::isfinite(wavelength))
+    throw std::invalid_argument("wavelength " + std::to_string(wavelength * 1000) + " nm is not positive");
+}
+
+/// f11 and the normalised elements → sr⁻¹.
+Mueller scaled(Mueller m, double reflectance) {
+  m.elements[0] *= reflectance;
+  for (std::size_t e = 1; e < 16; ++e) m.elements[e] *= m.elements[0];
+  return m;
+}
+
+/// A product of Zernike functions of one element, as the key of its weight.
+struct ProductKey {
+  int element, incident, reflected;
+  auto operator<=>(const ProductKey&) const = default;
+};
+
+std::map<ProductKey, std::vector<double>> collected_products(const Model& model) {
+  std::map<ProductKey, std::vector<double>> result;
+  const std::size_t powers = size(model.powers) + 1;
+  for (const FittedBlock& fitted : model.blocks) {
+    const std::size_t count = fitted.block.modes.size();
+    for (std::size_t q = 0; q < count; ++q)
+      for (const Term& term : terms(fitted.block.modes[q], model.family)) {
+        auto& weights = result[{4 * term.row + term.column, term.incident, term.reflected}];
+        weights.resize(powers);
+        for (std::size_t p = 0; p < powers; ++p) weights[p] += term.weight * fitted.coefficients[p * count + q];
+      }
+  }
+  return result;
+}
+
+}  // namespace
+
+double ReflectanceTable::at(double wavelength) const {
+  if (values.empty()) return 1;
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  if (above == wavelengths.begin()) return values.front();
+  if (above == wavelengths.end()) return values.back();
+  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
+  const double t = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  return t == 0 ? values[i - 1] : (1 - t) * values[i - 1] + t * values[i];
+}
+
+void require_valid(const ReflectanceTable& table) {
+  if (table.wavelengths.size() != table.values.size())
+    throw std::invalid_argument("reflectance table: " + std::to_string(table.wavelengths.size()) + " wavelengths, " +
+                                std::to_string(table.values.size()) + " values");
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    require_wavelength(table.wavelengths[i]);
+    if (i > 0 && table.wavelengths[i] <= table.wavelengths[i - 1])
+      throw std::invalid_argument("reflectance table: wavelength " + std::to_string(table.wavelengths[i] * 1000) +
+                                  " nm does not rise");
+    if (!(table.values[i] > 0) || !std::isfinite(table.values[i]))
+      throw std::invalid_argument("reflectance table: value " + std::to_string(table.values[i]) + " is not positive");
+  }
+}
+
+std::string to_string(Outside outside) {
+  std::string result;
+  const auto append = [&](Outside reason, const char* name) {
+    if (outside & reason) result += (result.empty() ? "" : "+") + std::string(name);
+  };
+  append(outside_theta_i, "theta_i");
+  append(outside_theta_r, "theta_r");
+  append(outside_wavelength, "wavelength");
+  return result.empty() ? "ok" : result;
+}
+
+void require_valid(const Model& model) {
+  if (model.powers < 0 || model.powers > max_power)
+    throw std::invalid_argument("highest power of the wavelength " + std::to_string(model.powers) + " is not in 0..." +
+                                std::to_string(max_power));
+  std::vector<Mode> modes;
+  for (const FittedBlock& fitted : model.blocks) modes.insert(modes.end(), fitted.block.modes.begin(), fitted.block.modes.end());
+  const std::vector<Block> expected = blocks(model.family, modes);
+  if (expected.empty() || expected.front().name != "11") throw std::invalid_argument("model has no modes of element 11");
+  if (expected.size() != model.blocks.size()) throw std::invalid_argument("model: modes are not in the blocks of the family");
+  for (std::size_t b = 0; b < expected.size(); ++b) {
+    const FittedBlock& fitted = model.blocks[b];
+    const std::string where = "block " + fitted.block.name + ": ";
+    if (fitted.block.modes != expected[b].modes || fitted.block.elements != expected[b].elements)
+      throw std::invalid_argument(where + "modes are not in canonical order");
+    const std::size_t count = fitted.block.modes.size() * (size(model.powers) + 1);
+    if (fitted.coefficients.size() != count)
+      throw std::invalid_argument(where + std::to_string(fitted.coefficients.size()) + " coefficients, expected " +
+                                  std::to_string(count));
+    if (!fitted.covariance.empty() && fitted.covariance.size() != count * count)
+      throw std::invalid_argument(where + "covariance of " + std::to_string(fitted.covariance.size()) + " numbers, expected " +
+                                  std::to_string(count * count));
+    const auto finite = [](double x) { return std::isfinite(x); };
+    if (!std::all_of(fitted.coefficients.begin(), fitted.coefficients.end(), finite) ||
+        !std::all_of(fitted.covariance.begin(), fitted.covariance.end(), finite))
+      throw std::invalid_argument(where + "a number is not finite");
+  }
+  require_valid(model.reflectance);
+}
+
+int coefficient_count(const Model& model) {
+  std::size_t count = 0;
+  for (const FittedBlock& fitted : model.blocks) count += fitted.coefficients.size();
+  return static_cast<int>(count);
+}
+
+Orders orders(const Model& model) {
+  std::vector<Block> list;
+  for (const FittedBlock& fitted : model.blocks) list.push_back(fitted.block);
+  return orders(list);
+}
+
+Outside outside(const Validity& validity, double wavelength, const Geometry& geometry) {
+  unsigned result = inside;
+  if (geometry.incident.theta > validity.theta_i_max + edge) result |= outside_theta_i;
+  if (geometry.reflected.theta > validity.theta_r_max + edge) result |= outside_theta_r;
+  if (!validity.wavelengths.empty() &&
+      (wavelength < validity.wavelengths.front() - edge || wavelength > validity.wavelengths.back() + edge))
+    result |= outside_wavelength;
+  return static_cast<Outside>(result);
+}
+
+double only_wavelength(const Model& model) {
+  const std::size_t known = model.validity.wavelengths.size();
+  if (model.powers == 0 && known <= 1 && model.reflectance.values.size() <= 1)
+    return known == 1 ? model.validity.wavelengths.front() : 1.0;
+  std::string list;
+  for (const double wavelength : model.validity.wavelengths)
+    list += (list.empty() ? ", fitted at " : ", ") + std::to_string(std::lround(wavelength * 1000));
+  throw std::invalid_argument("the model depends on the wavelength" + list + (list.empty() ? "" : " nm") + ": give one");
+}
+
+// ---- evaluation -------------------------------------------------------------------------------------------------------
+
+PreparedModel prepare(const Model& model, double wavelength, Rotation rotation) {
+  require_valid(model);
+  require_wavelength(wavelength);
+  auto pattern = std::make_shared<PreparedModel::Pattern>();
+  const Orders highest = orders(model);
+  pattern->order = std::max(highest.f11, highest.other);
+  pattern->turns = model.family == Family::germer2017 && rotation == Rotation::covariant;
+  pattern->mapping = model.mapping;
+  pattern->reflectance = model.reflectance;
+  pattern->validity = model.validity;
+  pattern->powers.resize(size(model.powers) + 1);
+  for (const auto& [key, weights] : collected_products(model)) {
+    ++pattern->begin[size(key.element) + 1];
+    pattern->products.push_back({key.incident, key.reflected});
+    for (std::size_t p = 0; p < weights.size(); ++p) pattern->powers[p].push_back(weights[p]);
+  }
+  for (std::size_t e = 0; e < 16; ++e) pattern->begin[e + 1] += pattern->begin[e];
+  return PreparedModel(std::move(pattern), wavelength);
+}
+
+PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength)
+    : pattern_(std::move(pattern)), weights_(pattern_->powers[0]), reflectance_(pattern_->reflectance.at(wavelength)),
+      wavelength_(wavelength) {
+  double power = 1;
+  for (std::size_t p = 1; p < pattern_->powers.size(); ++p) {
+    power *= wavelength;
+    for (std::size_t t = 0; t < weights_.size(); ++t) weights_[t] += power * pattern_->powers[p][t];
+  }
+}
+
+PreparedModel PreparedModel::at(double wavelength) const {
+  require_wavelength(wavelength);
+  return PreparedModel(pattern_, wavelength);
+}
+
+PreparedIncidence PreparedModel::at(const Direction& incident) const { return PreparedIncidence(*this, incident); }
+
+Outside PreparedModel::outside(const Geometry& geometry) const {
+  return mmbrdf::outside(pattern_->validity, wavelength_, geometry);
+}
+
+/// The weighted sums of products for the first `elements` elements, in the xy frame and sr⁻¹.
+Mueller PreparedModel::sum(const DiscPoint& incident, const DiscPoint& reflected, std::size_t elements) const {
+  Table k_i, k_r;
+  zernike_table(pattern_->order, incident, k_i.data());
+  zernike_table(pattern_->order, reflected, k_r.data());
+  Mueller result;
+  for (std::size_t e = 0; e < elements; ++e) {
+    double sum = 0;
+    for (std::size_t t = pattern_->begin[e]; t < pattern_->begin[e + 1]; ++t) {
+      const auto [i, r] = pattern_->products[t];
+      sum += weights_[t] * (k_i[size(i)] * k_r[size(r)]);
+    }
+    result.elements[e] = sum;
+  }
+  return scaled(result, reflectance_);
+}
+
+Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
+  require_valid(geometry, "evaluate");
+  const double turn = pattern_->turns ? geometry.incident.phi : 0;
+  Mueller m = sum(pattern_->point(geometry.incident, turn), pattern_->point(geometry.reflected, turn), 16);
+  if (pattern_->turns) m = turned(m, turn);
+  return frame == Frame::xy ? m : change_frame(m, geometry, Frame::xy, frame);
+}
+
+Mueller PreparedModel::evaluate(const Vector3& incident, const Vector3& reflected, Frame frame) const {
+  for (const Vector3* v : {&incident, &reflected}) {
+    const double length = std::hypot((*v)[0], (*v)[1], (*v)[2]);
+    if (!(std::abs(length - 1) < 1e-6) || (*v)[2] < 0)
+      throw std::invalid_argument("evaluate: (" + std::to_string((*v)[0]) + ", " + std::to_string((*v)[1]) + ", " +
+                                  std::to_string((*v)[2]) + ") is not a unit vector with z >= 0");
+  }
+  if (pattern_->turns || frame != Frame::xy) return evaluate({direction(incident), direction(reflected)}, frame);
+  return sum(disc_point(incident, pattern_->mapping), disc_point(reflected, pattern_->mapping), 16);
+}
+
+void PreparedModel::evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const {
+  if (geometries.size() != out.size())
+    throw std::invalid_argument("evaluate: " + std::to_string(geometries.size()) + " geometries, room for " +
+                                std::to_string(out.size()));
+  for (std::size_t q = 0; q < out.size(); ++q) out[q] = evaluate(geometries[q], frame);
+}
+
+double PreparedModel::f11(const Geometry& geometry) const {
+  require_valid(geometry, "f11");
+  return sum(pattern_->point(geometry.incident, 0), pattern_->point(geometry.reflected, 0), 1)(0, 0);
+}
+
+PreparedIncidence::PreparedIncidence(const PreparedModel& model, const Direction& incident)
+    : pattern_(model.pattern_), reflectance_(model.reflectance_), incident_(incident) {
+  require_valid(Geometry{incident, {}}, "at");
+  Table k_i;
+  zernike_table(pattern_->order, pattern_->point(incident, pattern_->turns ? incident.phi : 0), k_i.data());
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t t = pattern_->begin[e]; t < pattern_->begin[e + 1]; ++t) {
+      const auto [i, r] = pattern_->products[t];
+      if (weights_[e].size() <= size(r)) weights_[e].resize(size(r) + 1);
+      weights_[e][size(r)] += model.weights_[t] * k_i[size(i)];
+    }
+}
+
+Mueller PreparedIncidence::evaluate(const Direction& reflected, Frame frame) const {
+  const Geometry geometry{incident_, reflected};
+  require_valid(geometry, "evaluate");
+  const double turn = pattern_->turns ? incident_.phi : 0;
+  Table k_r;
+  zernike_table(pattern_->order, pattern_->point(reflected, turn), k_r.data());
+  Mueller m;
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t r = 0; r < weights_[e].size(); ++r) m.elements[e] += weights_[e][r] * k_r[r];
+  m = scaled(m, reflectance_);
+  if (pattern_->turns) m = turned(m, turn);
+  return frame == Frame::xy ? m : change_frame(m, geometry, Frame::xy, frame);
+}
+
+void PreparedIncidence::evaluate(std::span<const Direction> reflected, Frame frame, std::span<Mueller> out) const {
+  if (reflected.size() != out.size())
+    throw std::invalid_argument("evaluate: " + std::to_string(reflected.size()) + " directions, room for " +
+                                std::to_string(out.size()));
+  for (std::size_t q = 0; q < out.size(); ++q) out[q] = evaluate(reflected[q], frame);
+}
+
+// ---- published form ---------------------------------------------------------------------------------------------------
+
+namespace {
+
+struct ZernikeIndex {
+  int n, k;
+};
+
+/// The inverse of zernike_index.
+ZernikeIndex from_index(int index) {
+  int n = 0;
+  while (zernike_count(n) <= index) ++n;
+  return {n, 2 * index - n * (n + 2)};
+}
+
+/// The published mode that a product belongs to at phi_i = 0, and the coefficient that gives it weight 1 there. Of an element
+/// below the diagonal the product is that of Eq. 16; a mode with k, l ≥ 0 is taken from above the diagonal only.
+std::optional<std::pair<Mode, double>> published_mode(const Term& term) {
+  auto [n, k] = from_index(term.incident);
+  auto [m, l] = from_index(term.reflected);
+  if (k < 0) return {};  // sin k phi_i is zero
+  int row = term.row, column = term.column;
+  double factor = 1;
+  if (row > column) {
+    if (l >= 0) return {};
+    std::swap(row, column);
+    std::swap(n, m);
+    std::swap(k, l);
+    factor = (row == 2) != (column == 2) ? -1 : 1;  // Eq. 13
+  } else if (row == column) {
+    const auto first = std::tuple(n, k), second = std::tuple(m, l);
+    if (first < second) return {};  // its twin is there too
+    const bool twice_cosine = row == 0 && k > 0;  // I_nm^k of Eq. 9 is (H^kk + H^−k−k) / √2
+    factor = (first == second ? 1 : std::numbers::sqrt2) * (twice_cosine ? std::numbers::sqrt2 : 1);
+  }
+  const Function function = function_from(std::to_string(row + 1) + std::to_string(column + 1));
+  return {{Mode{function, n, m, k, l}, factor}};
+}
+
+}  // namespace
+
+Model in_published_form(const Model& model) {
+  require_valid(model);
+  if (model.family == Family::germer2017) return model;
+  if (model.family != Family::isotropic)
+    throw std::invalid_argument("a model of the " + to_string(model.family) + " family has no published form");
+  std::vector<std::pair<Mode, std::vector<double>>> found;
+  for (const auto& [key, weights] : collected_products(model)) {
+    const auto mode = published_mode({key.element / 4, key.element % 4, key.incident, key.reflected, 1});
+    if (!mode) continue;
+    found.push_back({mode->first, weights});
+    for (double& weight : found.back().second) weight *= mode->second;
+  }
+  Model result = model;
+  result.family = Family::germer2017;
+  result.blocks.clear();
+  std::vector<Mode> modes;
+  for (const auto& [mode, weights] : found) modes.push_back(mode);
+  for (Block& block : blocks(Family::germer2017, modes)) {
+    FittedBlock fitted{std::move(block), {}, {}, 0, 0};
+    for (std::size_t p = 0; p <= size(model.powers); ++p)
+      for (const Mode& mode : fitted.block.modes)
+        fitted.coefficients.push_back(
+            std::find_if(found.begin(), found.end(), [&](const auto& f) { return f.first == mode; })->second[p]);
+    result.blocks.push_back(std::move(fitted));
+  }
+  return result;
+}
+
+}  // namespace mmbrdf
