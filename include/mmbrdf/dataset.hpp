@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Measured or simulated samples of a Mueller-matrix BRDF.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/mueller.hpp"
+
+namespace mmbrdf {
+
+/// One measured matrix, in the xy frame.
+struct Sample {
+  double wavelength = 0;  ///< micrometres
+  Geometry geometry;
+  double f11 = 0;      ///< unpolarized BRDF in sr⁻¹
+  Mueller normalized;  ///< f_ij / f11; element 11 is 1
+};
+
+/// The distinct wavelengths, rising. Values are distinct if they differ by more than wavelength_resolution.
+/// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive and finite.
+std::vector<double> wavelengths(std::span<const Sample> samples);
+inline constexpr double wavelength_resolution = 1e-7;  ///< micrometres; files give at most 0.1 pm
+
+/// Only the samples at these wavelengths, in the order they had. Throws std::invalid_argument, with the wavelengths
+/// there are, if one of them has no sample, and as wavelengths() does.
+std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<const double> wavelengths);
+
+/// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive, an invalid
+/// geometry or a number that is not finite.
+void require_valid(std::span<const Sample> samples);
+
+/// The grid of the published measurement (theory 1.4): theta_i = 0, 15, …, 75 degrees at azimuth π; reflected
+/// directions with direction cosines 0.1 (i, j), i² + j² < 100; none closer than 5 degrees to retro-reflection. 1824
+/// geometries, sorted by theta_i, then i, then j, as in the published file.
+std::vector<Geometry> germer2017_grid();
+
+/// Pairs of directions, each uniform in projected direction cosines with θ ≤ theta_max (radians), as in the published
+/// random set. The same seed gives the same pairs. Throws std::invalid_argument for a negative count, or theta_max not
+/// in (0, π/2].
+std::vector<Geometry> random_geometries(int count, unsigned long seed, double theta_max = radians(75));
+
+}  // namespace mmbrdf

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/dataset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include "numbers.hpp"
+#include "random.hpp"
+
+namespace mmbrdf {
+namespace {
+
+bool same_wavelength(double a, double b) { return std::abs(a - b) <= wavelength_resolution; }
+
+void require_wavelength(const Sample& sample, std::size_t index) {
+  if (sample.wavelength > 0 && std::isfinite(sample.wavelength)) return;
+  throw std::invalid_argument("sample " + std::to_string(index + 1) + ": wavelength = " + shortest(sample.wavelength) +
+                              " micrometres, must be positive");
+}
+
+void require_samples_at(std::span<const double> present, double wavelength) {
+  const auto found = [&](double other) { return same_wavelength(wavelength, other); };
+  if (std::any_of(present.begin(), present.end(), found)) return;
+  std::string list;
+  for (double other : present) list += (list.empty() ? "" : ", ") + shortest(other);
+  throw std::invalid_argument("wavelength = " + shortest(wavelength) + " micrometres: " +
+                              (list.empty() ? "there are no samples" : "no sample; there are samples at " + list));
+}
+
+/// The direction with cosines x and y.
+Direction from_cosines(double x, double y) { return direction({x, y, std::sqrt(1 - x * x - y * y)}); }
+
+double distance(const Direction& a, const Direction& b) {
+  const Vector3 u = unit_vector(a), v = unit_vector(b);
+  return std::hypot(u[0] - v[0], u[1] - v[1], u[2] - v[2]);
+}
+
+Direction random_direction(std::mt19937_64& engine, double theta_max) {
+  const double sine = std::sin(theta_max) * std::sqrt(uniform(engine));
+  const double phi = std::numbers::pi * (2 * uniform(engine) - 1);
+  return {std::min(std::asin(sine), theta_max), phi};
+}
+
+}  // namespace
+
+std::vector<double> wavelengths(std::span<const Sample> samples) {
+  std::vector<double> sorted;
+  sorted.reserve(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    require_wavelength(samples[i], i);
+    sorted.push_back(samples[i].wavelength);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> distinct;
+  for (double wavelength : sorted)
+    if (distinct.empty() || !same_wavelength(wavelength, distinct.back())) distinct.push_back(wavelength);
+  return distinct;
+}
+
+std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<const double> wanted) {
+  const std::vector<double> present = wavelengths(samples);
+  for (double wavelength : wanted) require_samples_at(present, wavelength);
+  std::vector<Sample> kept;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(kept), [&](const Sample& sample) {
+    return std::any_of(wanted.begin(), wanted.end(),
+                       [&](double wavelength) { return same_wavelength(wavelength, sample.wavelength); });
+  });
+  return kept;
+}
+
+void require_valid(std::span<const Sample> samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& sample = samples[i];
+    const std::string name = "sample " + std::to_string(i + 1);
+    require_wavelength(sample, i);
+    require_valid(sample.geometry, name.c_str());
+    if (!std::isfinite(sample.f11))
+      throw std::invalid_argument(name + ": f11 = " + shortest(sample.f11) + ", must be finite");
+    for (std::size_t e = 0; e < 16; ++e)
+      if (!std::isfinite(sample.normalized.elements[e]))
+        throw std::invalid_argument(name + ": m" + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1) + " = " +
+                                    shortest(sample.normalized.elements[e]) + ", must be finite");
+  }
+}
+
+std::vector<Geometry> germer2017_grid() {
+  const double receiver = 2 * std::sin(radians(5) / 2);  // it blocks the beam nearer than this chord
+  std::vector<Geometry> grid;
+  for (int theta_i = 0; theta_i <= 75; theta_i += 15) {
+    const Direction incident{radians(theta_i), std::numbers::pi};
+    for (int i = -9; i <= 9; ++i)
+      for (int j = -9; j <= 9; ++j) {
+        if (i * i + j * j >= 100) continue;
+        const Direction reflected = from_cosines(0.1 * i, 0.1 * j);
+        if (distance(incident, reflected) >= receiver) grid.push_back({incident, reflected});
+      }
+  }
+  return grid;
+}
+
+std::vector<Geometry> random_geometries(int count, unsigned long seed, double theta_max) {
+  if (count < 0)
+    throw std::invalid_argument("random_geometries: count = " + std::to_string(count) + ", must not be negative");
+  if (!(theta_max > 0 && theta_max <= radians(90)))
+    throw std::invalid_argument("random_geometries: theta_max = " + shortest(in_degrees(theta_max)) +
+                                " degrees, must be in (0, 90]");
+  std::mt19937_64 engine(seed);
+  std::vector<Geometry> geometries(static_cast<std::size_t>(count));
+  for (Geometry& geometry : geometries) {
+    geometry.incident = random_direction(engine, theta_max);
+    geometry.reflected = random_direction(engine, theta_max);
+  }
+  return geometries;
+}
+
+}  // namespace mmbrdf

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/dataset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "published.hpp"
+
+using namespace mmbrdf;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+Sample sample_at(double wavelength, double f11 = 0.3) { return {wavelength, {{0.1, 0}, {0.2, 1}}, f11, identity()}; }
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+/// Angle between the directions to the source and to the detector, in degrees.
+double degrees_from_retro(const Geometry& g) {
+  const Vector3 a = unit_vector(g.incident), b = unit_vector(g.reflected);
+  return degrees(2 * std::asin(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) / 2));
+}
+
+}  // namespace
+
+TEST(Wavelengths, AreDistinctAndRise) {
+  const std::vector<Sample> samples{sample_at(0.633), sample_at(0.351), sample_at(0.633), sample_at(0.532)};
+  EXPECT_EQ(wavelengths(samples), (std::vector<double>{0.351, 0.532, 0.633}));
+  EXPECT_TRUE(wavelengths({}).empty());
+}
+
+TEST(Wavelengths, ThatDifferByLessThanTheResolutionAreOne) {
+  const double step = wavelength_resolution;
+  const std::vector<Sample> samples{sample_at(0.532 + 0.5 * step), sample_at(0.532), sample_at(0.532 + 1.5 * step)};
+  EXPECT_EQ(wavelengths(samples), (std::vector<double>{0.532, 0.532 + 1.5 * step}));
+}
+
+TEST(Wavelengths, ThatAreNoneAreRefusedWithTheNumberOfTheSample) {
+  const auto refusal = [](double wavelength) {
+    return message_of([&] { wavelengths(std::vector<Sample>{sample_at(0.5), sample_at(wavelength)}); });
+  };
+  EXPECT_EQ(refusal(0), "sample 2: wavelength = 0 micrometres, must be positive");
+  EXPECT_EQ(refusal(nan_value), "sample 2: wavelength = nan micrometres, must be positive");
+}
+
+TEST(Samples, AtSomeWavelengthsKeepTheirOrder) {
+  const std::vector<Sample> samples{sample_at(0.633, 1), sample_at(0.351, 2), sample_at(0.633, 3), sample_at(0.532, 4)};
+  std::vector<double> kept;
+  for (const Sample& sample : at_wavelengths(samples, std::vector<double>{0.351, 0.633})) kept.push_back(sample.f11);
+  EXPECT_EQ(kept, (std::vector<double>{1, 2, 3}));
+}
+
+TEST(Samples, AtAllTheirWavelengthsAreAllSamples) {
+  std::vector<Sample> samples;
+  for (int i = 0; i < 40; ++i) samples.push_back(sample_at(0.5 + 0.3 * i * wavelength_resolution));
+  EXPECT_EQ(at_wavelengths(samples, wavelengths(samples)).size(), samples.size());
+}
+
+TEST(Samples, AtAWavelengthThatIsNotThereAreRefusedWithThoseThereAre) {
+  const std::vector<Sample> samples{sample_at(0.633), sample_at(0.351)};
+  EXPECT_EQ(message_of([&] {
+              at_wavelengths(samples, std::vector<double>{0.351, 0.532});
+            }),
+            "wavelength = 0.532 micrometres: no sample; there are samples at 0.351, 0.633");
+  EXPECT_EQ(message_of([] { at_wavelengths({}, std::vector<double>{0.532}); }),
+            "wavelength = 0.532 micrometres: there are no samples");
+}
+
+TEST(Samples, ThatAreValidPass) {
+  EXPECT_NO_THROW(require_valid(std::vector<Sample>{sample_at(0.532), sample_at(0.532, -0.1)}));
+}
+
+TEST(Samples, ThatAreInvalidAreRefusedWithTheirNumber) {
+  const auto refusal = [](const std::function<void(Sample&)>& spoil) {
+    std::vector<Sample> samples{sample_at(0.5), sample_at(0.5), sample_at(0.5)};
+    spoil(samples[2]);
+    return message_of([&] { require_valid(samples); });
+  };
+  EXPECT_EQ(refusal([](Sample& s) { s.wavelength = -0.5; }),
+            "sample 3: wavelength = -0.5 micrometres, must be positive");
+  EXPECT_EQ(refusal([](Sample& s) { s.geometry.reflected.theta = radians(91); }),
+            "sample 3: theta_r = 91 degrees, must be in 0…90");
+  EXPECT_EQ(refusal([](Sample& s) { s.f11 = nan_value; }), "sample 3: f11 = nan, must be finite");
+  EXPECT_EQ(refusal([](Sample& s) { s.normalized(1, 3) = nan_value; }), "sample 3: m24 = nan, must be finite");
+}
+
+TEST(Germer2017Grid, Has1824GeometriesAtSixIncidentAngles) {
+  std::array<int, 6> counts{};
+  for (const Geometry& g : germer2017_grid())
+    ++counts[static_cast<std::size_t>(std::lround(degrees(g.incident.theta) / 15))];
+  EXPECT_EQ(counts, (std::array<int, 6>{304, 303, 304, 304, 304, 305}));  // counted in the published file
+}
+
+TEST(Germer2017Grid, LiesOnSteps0Point1OfTheDirectionCosinesWithTheSourceAtAzimuth180) {
+  for (const Geometry& g : germer2017_grid()) {
+    const Vector3 v = unit_vector(g.reflected);
+    EXPECT_EQ(g.incident.phi, pi);
+    EXPECT_NEAR(10 * v[0], std::round(10 * v[0]), 1e-14);  // ten times a few roundings of numbers up to 1
+    EXPECT_NEAR(10 * v[1], std::round(10 * v[1]), 1e-14);
+    EXPECT_LE(degrees(g.reflected.theta), 81.87);  // i² + j² = 98
+    EXPECT_GE(degrees_from_retro(g), 5);
+  }
+}
+
+TEST(Germer2017Grid, IsThatOfThePublishedFileRowByRow) {
+  const std::string file = published("PTFE.data.csv");
+  if (file.empty()) GTEST_SKIP() << absent("PTFE.data.csv");
+  const std::vector<std::vector<double>> rows = read_numbers(file);
+  const std::vector<Geometry> grid = germer2017_grid();
+  ASSERT_EQ(rows.size(), 4 * grid.size());  // four wavelengths
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Geometry& g = grid[i % grid.size()];
+    const Direction incident = unfolded({radians(rows[i][1]), radians(rows[i][2])});
+    const Vector3 v = unit_vector(g.reflected), w = unit_vector({radians(rows[i][3]), radians(rows[i][4])});
+    EXPECT_NEAR(degrees(incident.theta), degrees(g.incident.theta), 0.0011);  // 0 is written as −0.001
+    EXPECT_EQ(incident.phi, g.incident.phi);
+    // Six digits of angles below 180°, and theta_r = 0 is written as 0.001°: 1.8e-5 in direction cosines.
+    EXPECT_LE(std::hypot(v[0] - w[0], v[1] - w[1], v[2] - w[2]), 1.8e-5) << "row " << i + 1;
+  }
+}
+
+TEST(RandomGeometries, AreTheSameForTheSameSeed) {
+  EXPECT_EQ(random_geometries(10, 1), random_geometries(10, 1));
+  EXPECT_NE(random_geometries(10, 1), random_geometries(10, 2));
+  const std::vector<Geometry> more = random_geometries(20, 1), fewer = random_geometries(10, 1);
+  EXPECT_TRUE(std::equal(fewer.begin(), fewer.end(), more.begin()));
+}
+
+TEST(RandomGeometries, AreTheSameOnEveryComputer) {
+  // From mt19937_64 written out in Python. Its bits are standardized; what is left is the rounding of sin and asin.
+  const Geometry g = random_geometries(1, 1).front();
+  EXPECT_NEAR(degrees(g.incident.theta), 20.69689327463781, 1e-12);
+  EXPECT_NEAR(degrees(g.incident.phi), -130.89346690816902, 1e-12);
+  EXPECT_NEAR(degrees(g.reflected.theta), 40.453961409935694, 1e-12);
+  EXPECT_NEAR(degrees(g.reflected.phi), -172.43127776997827, 1e-12);
+}
+
+TEST(RandomGeometries, FillTheDiscOfDirectionCosinesUniformly) {
+  const int count = 20000;
+  const double theta_max = radians(75), radius = std::sin(theta_max);
+  std::array<int, 16> cells{};  // four rings of equal area times four quadrants, for both beams together
+  for (const Geometry& g : random_geometries(count, 7))
+    for (const Direction& d : {g.incident, g.reflected}) {
+      ASSERT_LE(d.theta, theta_max);
+      ASSERT_LE(std::abs(d.phi), pi);
+      const double share = std::pow(std::sin(d.theta) / radius, 2);
+      const int ring = std::min(3, static_cast<int>(4 * share)),
+                quadrant = std::min(3, static_cast<int>((d.phi / pi + 1) * 2));
+      ++cells[static_cast<std::size_t>(4 * ring + quadrant)];
+    }
+  // 2500 expected in each cell, standard deviation 48. A right program fails at five of them once in 1e5 seeds.
+  for (int cell : cells) EXPECT_NEAR(cell, 2500, 5 * 48);
+}
+
+TEST(RandomGeometries, HaveNoRelationBetweenTheTwoBeams) {
+  const int count = 20000;
+  double sum = 0;
+  for (const Geometry& g : random_geometries(count, 7)) {
+    const Vector3 a = unit_vector(g.incident), b = unit_vector(g.reflected);
+    sum += a[0] * b[0] + a[1] * b[1];
+  }
+  // Var(a·b) = 2 (R²/4)² = 0.109 with R = sin 75°: five standard deviations of the mean.
+  EXPECT_NEAR(sum / count, 0, 5 * std::sqrt(0.109 / count));
+}
+
+TEST(RandomGeometries, RefuseANegativeCountAndAnglesOutsideTheHemisphere) {
+  EXPECT_TRUE(random_geometries(0, 1).empty());
+  EXPECT_EQ(message_of([] { random_geometries(-1, 1); }), "random_geometries: count = -1, must not be negative");
+  EXPECT_EQ(message_of([] { random_geometries(1, 1, radians(91)); }),
+            "random_geometries: theta_max = 91 degrees, must be in (0, 90]");
+  EXPECT_THROW(random_geometries(1, 1, 0), std::invalid_argument);
+  EXPECT_NO_THROW(random_geometries(1, 1, radians(90)));
+}
