@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// From samples to a model, by linear least squares.
+///
+/// f11 is fitted directly (divided by the reflectance where there is one), the other elements as m_ij = f_ij / f11.
+/// Elements that reciprocity or the basis ties together are fitted together, block by block. With y the samples of a
+/// block, X its modes at their geometries and W the weights, the coefficients minimise ‖W^½ (X a − y)‖, and
+///
+///     covariance(a) = s² (Xᵀ W X)⁺,     s² = ‖W^½ (X a − y)‖² / (rows − rank).
+///
+/// That holds for independent errors whose variances are as 1/W. Speckle noise grows towards grazing angles: use
+/// Weights::speckle for it. It does not hold where the model misses structure that the sample has; then s² contains the
+/// misfit, but correlated. Blocks are fitted apart from each other, so coefficients of different blocks are uncorrelated.
+///
+/// WARNING: the published index sets (germer2017) are not determined by data with one azimuth of the source. Their
+/// solution is the one of minimum norm, as in the published files, and combinations that the data say nothing about
+/// have variance 0 there, not infinity. Ask Solution::estimable() before trusting a prediction.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/least_squares.hpp"
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf {
+
+/// What is fitted: the modes, and how azimuths enter them (see Rotation).
+struct Basis {
+  Family family = Family::isotropic;
+  Orders orders;
+  DiscMapping mapping = DiscMapping::lambert;
+  Rotation rotation = Rotation::covariant;
+  friend bool operator==(const Basis&, const Basis&) = default;
+};
+
+enum class Weights {
+  none,     ///< every row counts the same
+  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1). f11
+            ///< is then fitted twice: the first, unweighted fit tells what σ is relative to.
+};
+
+struct FitOptions {
+  std::optional<int> powers;  ///< highest power of the wavelength; default 0 for one wavelength, 1 for several
+  std::optional<ReflectanceTable> reflectance;  ///< f11 is divided by it. Default for several wavelengths: each one's own
+                                                ///< normal-incidence DHR; for one wavelength: none.
+  bool minimum_norm = false;  ///< accept data that do not determine every mode. Always so for germer2017.
+  double rank_tolerance = LeastSquares::default_rank_tolerance;
+};
+
+/// How well one matrix element is fitted.
+struct ElementFit {
+  long rows = 0;
+  double rms = 0;          ///< √(Σ w r² / Σ w) of the residuals r; those of f11 are of f11 / reflectance
+  double chi_squared = 0;  ///< Σ w r²
+};
+
+struct FitResult {
+  Model model;
+  std::vector<Solution> solutions;      ///< one for each block of the model
+  std::array<ElementFit, 16> elements;  ///< in row-major order
+  std::vector<Mueller> residuals;       ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
+                                        ///< Only from fit(); a FitAccumulator keeps no samples.
+};
+
+/// Root mean square over the 15 normalised elements.
+double polarization_rms(const FitResult& result);
+
+/// Takes samples in any order and number, and solves whenever asked. Memory grows with the number of distinct
+/// wavelengths and with the orders, not with the number of samples.
+class FitAccumulator {
+ public:
+  /// Throws std::invalid_argument for orders that are out of range or need more than LeastSquares::max_unknowns.
+  explicit FitAccumulator(const Basis& basis);
+
+  /// Weights, one for each sample, are for m_ij; f11_weights for f11 / reflectance. Empty means 1.
+  /// Throws std::invalid_argument for an invalid sample, before anything is added.
+  void add(std::span<const Sample> samples, std::span<const double> weights = {}, std::span<const double> f11_weights = {});
+
+  /// As if all of other's samples had been added here. Throws std::invalid_argument for another basis.
+  void merge(const FitAccumulator& other);
+
+  long samples() const { return samples_; }
+
+  /// Throws std::invalid_argument if there are no samples, if the powers need more wavelengths than there are, if a
+  /// reflectance table does not reach a wavelength, or if the samples do not determine the model and minimum_norm
+  /// is off: the message says how many combinations of which modes are free.
+  FitResult solve(const FitOptions& options = {}) const;
+
+ private:
+  struct AtWavelength {
+    std::vector<LeastSquares> elements;  // 16, in row-major order, over the modes of the element's block
+    std::array<double, 16> weight{};     // Σ w
+  };
+
+  /// A term of a mode, with the mode's place in its block.
+  struct ColumnTerm {
+    std::size_t column, incident, reflected;
+    double weight;
+  };
+
+  AtWavelength& slot(double wavelength);
+  void add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
+                std::span<const double> weights, std::span<const double> f11_weights);
+  int chosen_powers(const FitOptions& options) const;
+  ReflectanceTable own_reflectance(const FitOptions& options) const;
+  void require_covered(const ReflectanceTable& table) const;
+  LeastSquares over_wavelengths(std::size_t element, int powers, const ReflectanceTable& reflectance) const;
+  ElementFit element_fit(std::size_t element, const LeastSquares& rows, std::span<const double> x) const;
+
+  Basis basis_;
+  std::vector<Block> blocks_;
+  std::array<int, 16> block_of_{};                  // −1: no block feeds the element
+  std::array<std::vector<ColumnTerm>, 16> terms_;  // of all modes that feed an element
+  std::map<double, AtWavelength> wavelengths_;
+  Validity validity_;
+  long samples_ = 0;
+};
+
+/// Fits samples held in memory. Throws as FitAccumulator does.
+FitResult fit(std::span<const Sample> samples, const Basis& basis = {}, const FitOptions& options = {},
+              Weights weights = Weights::none);
+
+/// Relative weights of the speckle law for m_ij: cos θr / cos θi. Throws std::invalid_argument, with the sample's number,
+/// where θi is 90 degrees.
+std::vector<double> speckle_weights(std::span<const Sample> samples);
+
+/// Measured − model for each sample, as in FitResult.
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation = Rotation::covariant);
+
+/// The isotropic model nearest to another one: least squares over the model's range of angles, in solid angle on both
+/// sides, for f11 and m_ij apart. f11 of a germer2017 model is carried over exactly if the orders suffice. The covariance
+/// is not carried over. Throws std::invalid_argument for an anisotropic model.
+Model projected_on_isotropic(const Model& model, const Orders& orders);
+
+}  // namespace mmbrdf

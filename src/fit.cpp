@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/radiometry.hpp"
+
+// For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit of a
+// block over all wavelengths, with any powers and any reflectance table, is put together from them: a coefficient that is
+// a polynomial of λ repeats the columns of each wavelength's triangle, multiplied by λ^p.
+
+namespace mmbrdf {
+namespace {
+
+using Table = std::array<double, zernike_count(max_order)>;
+
+constexpr std::size_t samples_at_once = 128;
+constexpr double involved = 1e-6;  // least part of a free combination for which a mode is named
+
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+std::string nanometres(double wavelength) {
+  std::string text = std::to_string(wavelength * 1000);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+bool turns(const Basis& basis) { return basis.family == Family::germer2017 && basis.rotation == Rotation::covariant; }
+
+/// The sample as an isotropic specimen would give it at phi_i = 0.
+Sample at_zero_azimuth(Sample sample) {
+  const double phi = sample.geometry.incident.phi;
+  sample.normalized = turned(sample.normalized, -phi);
+  sample.geometry.incident.phi = 0;
+  sample.geometry.reflected.phi -= phi;
+  return sample;
+}
+
+/// Names the combinations of coefficients that the data leave free.
+std::string undetermined(const Block& block, const Solution& solution) {
+  const std::size_t n = solution.x.size(), free = n - size(solution.rank);
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double part = 0;
+    for (std::size_t f = 0; f < free; ++f) part = std::max(part, std::abs(solution.null_space[f * n + i]));
+    if (part < involved) continue;
+    if (++count > 4) continue;
+    names += (names.empty() ? "" : ", ") + to_string(block.modes[i % block.modes.size()]);
+    if (n > block.modes.size()) names += " p = " + std::to_string(i / block.modes.size());
+  }
+  if (count > 4) names += " and " + std::to_string(count - 4) + " more";
+  return "the data do not determine the model: block " + block.name + " has " + std::to_string(n) + " coefficients, rank " +
+         std::to_string(solution.rank) + "; " + std::to_string(free) + " combinations are free, of the modes " + names +
+         " (choose lower orders, or the minimum-norm solution)";
+}
+
+void require_determined(const Block& block, const Solution& solution, Family family, const FitOptions& options) {
+  if (solution.rank < static_cast<int>(solution.x.size()) && !options.minimum_norm && family != Family::germer2017)
+    throw std::invalid_argument(undetermined(block, solution));
+}
+
+}  // namespace
+
+double polarization_rms(const FitResult& result) {
+  double squares = 0, rows = 0;
+  for (std::size_t e = 1; e < 16; ++e) {
+    const auto rows_e = static_cast<double>(result.elements[e].rows);
+    squares += rows_e * result.elements[e].rms * result.elements[e].rms;
+    rows += rows_e;
+  }
+  return rows > 0 ? std::sqrt(squares / rows) : 0;
+}
+
+FitAccumulator::FitAccumulator(const Basis& basis) : basis_(basis), blocks_(blocks(basis.family, basis.orders)) {
+  block_of_.fill(-1);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (blocks_[b].modes.size() > size(LeastSquares::max_unknowns))
+      throw std::invalid_argument("block " + blocks_[b].name + " of the " + to_string(basis.family) + " family has " +
+                                  std::to_string(blocks_[b].modes.size()) + " modes at these orders, more than " +
+                                  std::to_string(LeastSquares::max_unknowns));
+    for (const auto& [row, column] : blocks_[b].elements) block_of_[size(4 * row + column)] = static_cast<int>(b);
+    for (std::size_t q = 0; q < blocks_[b].modes.size(); ++q)
+      for (const Term& term : terms(blocks_[b].modes[q], basis.family))
+        terms_[size(4 * term.row + term.column)].push_back({q, size(term.incident), size(term.reflected), term.weight});
+  }
+  validity_.theta_i_max = validity_.theta_r_max = 0;
+}
+
+FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
+  const auto near = wavelengths_.lower_bound(wavelength - wavelength_resolution);
+  if (near != wavelengths_.end() && near->first <= wavelength + wavelength_resolution) return near->second;
+  AtWavelength& fresh = wavelengths_[wavelength];
+  for (const int block : block_of_)
+    fresh.elements.emplace_back(block < 0 ? 1 : static_cast<int>(blocks_[size(block)].modes.size()));
+  return fresh;
+}
+
+void FitAccumulator::add(std::span<const Sample> samples, std::span<const double> weights, std::span<const double> f11_weights) {
+  require_valid(samples);
+  for (const std::span<const double>& list : {weights, f11_weights}) {
+    if (!list.empty() && list.size() != samples.size())
+      throw std::invalid_argument("fit: " + std::to_string(list.size()) + " weights for " + std::to_string(samples.size()) + " samples");
+    for (std::size_t s = 0; s < list.size(); ++s)
+      if (!(list[s] >= 0) || !std::isfinite(list[s]))
+        throw std::invalid_argument("fit: weight " + std::to_string(list[s]) + " of sample " + std::to_string(s + 1));
+  }
+  std::map<AtWavelength*, std::vector<std::size_t>> groups;
+  for (std::size_t s = 0; s < samples.size(); ++s) groups[&slot(samples[s].wavelength)].push_back(s);
+  for (auto& [at, members] : groups)
+    for (std::size_t first = 0; first < members.size(); first += samples_at_once)
+      add_some(*at, samples, std::span(members).subspan(first, std::min(samples_at_once, members.size() - first)), weights,
+               f11_weights);
+  for (const Sample& sample : samples) {
+    validity_.theta_i_max = std::max(validity_.theta_i_max, sample.geometry.incident.theta);
+    validity_.theta_r_max = std::max(validity_.theta_r_max, sample.geometry.reflected.theta);
+  }
+  samples_ += static_cast<long>(samples.size());
+}
+
+void FitAccumulator::add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
+                              std::span<const double> weights, std::span<const double> f11_weights) {
+  std::vector<Sample> used;
+  std::vector<Table> k_i(members.size()), k_r(members.size());
+  const int order = std::max(basis_.orders.f11, basis_.orders.other);
+  for (std::size_t s = 0; s < members.size(); ++s) {
+    used.push_back(turns(basis_) ? at_zero_azimuth(samples[members[s]]) : samples[members[s]]);
+    zernike_table(order, disc_point(used[s].geometry.incident, basis_.mapping), k_i[s].data());
+    zernike_table(order, disc_point(used[s].geometry.reflected, basis_.mapping), k_r[s].data());
+  }
+  std::vector<double> rows, values, row_weights;
+  for (std::size_t e = 0; e < 16; ++e) {
+    if (block_of_[e] < 0) continue;
+    const std::size_t columns = size(at.elements[e].unknowns());
+    rows.assign(members.size() * columns, 0);
+    values.clear();
+    row_weights.clear();
+    const std::span<const double> list = e == 0 ? f11_weights : weights;
+    for (std::size_t s = 0; s < members.size(); ++s) {
+      for (const ColumnTerm& t : terms_[e]) rows[s * columns + t.column] += t.weight * k_i[s][t.incident] * k_r[s][t.reflected];
+      values.push_back(e == 0 ? used[s].f11 : used[s].normalized.elements[e]);
+      row_weights.push_back(list.empty() ? 1 : list[members[s]]);
+      at.weight[e] += row_weights.back();
+    }
+    at.elements[e].add(rows, values, list.empty() ? std::span<const double>{} : row_weights);
+  }
+}
+
+void FitAccumulator::merge(const FitAccumulator& other) {
+  if (!(basis_ == other.basis_)) throw std::invalid_argument("FitAccumulator: cannot merge fits of different bases");
+  for (const auto& [wavelength, theirs] : other.wavelengths_) {
+    AtWavelength& ours = slot(wavelength);
+    for (std::size_t e = 0; e < 16; ++e) {
+      ours.elements[e].merge(theirs.elements[e]);
+      ours.weight[e] += theirs.weight[e];
+    }
+  }
+  validity_.theta_i_max = std::max(validity_.theta_i_max, other.validity_.theta_i_max);
+  validity_.theta_r_max = std::max(validity_.theta_r_max, other.validity_.theta_r_max);
+  samples_ += other.samples_;
+}
+
+LeastSquares FitAccumulator::over_wavelengths(std::size_t element, int powers, const ReflectanceTable& reflectance) const {
+  const int modes = wavelengths_.begin()->second.elements[element].unknowns();
+  LeastSquares result(modes * (powers + 1));
+  for (const auto& [wavelength, at] : wavelengths_) {
+    std::vector<double> factors{1};
+    for (int p = 1; p <= powers; ++p) factors.push_back(factors.back() * wavelength);
+    result.merge(at.elements[element].repeated(factors, element == 0 ? 1 / reflectance.at(wavelength) : 1));
+  }
+  return result;
+}
+
+ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) const {
+  ReflectanceTable table;
+  if (wavelengths_.size() < 2) return table;
+  for (const auto& [wavelength, at] : wavelengths_) {
+    const Solution solution = at.elements[0].solve(options.rank_tolerance);
+    require_determined(blocks_[0], solution, basis_.family, options);
+    Model f11;
+    f11.family = basis_.family;
+    f11.mapping = basis_.mapping;
+    f11.blocks.push_back({blocks_[0], solution.x, {}, 0, 0});
+    const double dhr = directional_hemispherical_reflectance(f11, wavelength, {0, 0});
+    if (!(dhr > 0))
+      throw std::invalid_argument("fit: the normal-incidence reflectance at " + nanometres(wavelength) + " nm comes out as " +
+                                  std::to_string(dhr) + "; give a reflectance table");
+    table.wavelengths.push_back(wavelength);
+    table.values.push_back(dhr);
+  }
+  return table;
+}
+
+int FitAccumulator::chosen_powers(const FitOptions& options) const {
+  const int powers = options.powers.value_or(wavelengths_.size() > 1 ? 1 : 0);
+  if (powers < 0) throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is negative");
+  if (size(powers) >= wavelengths_.size())
+    throw std::invalid_argument("fit: powers of the wavelength up to " + std::to_string(powers) + " need " +
+                                std::to_string(powers + 1) + " wavelengths, the data have " + std::to_string(wavelengths_.size()));
+  return powers;
+}
+
+FitResult FitAccumulator::solve(const FitOptions& options) const {
+  if (samples_ == 0) throw std::invalid_argument("fit: no samples");
+  const int powers = chosen_powers(options);
+  FitResult result;
+  Model& model = result.model;
+  model.family = basis_.family;
+  model.mapping = basis_.mapping;
+  model.powers = powers;
+  model.validity = validity_;
+  for (const auto& [wavelength, at] : wavelengths_) model.validity.wavelengths.push_back(wavelength);
+  model.reflectance = options.reflectance ? *options.reflectance : own_reflectance(options);
+  require_valid(model.reflectance);
+  require_covered(model.reflectance);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    std::vector<std::pair<std::size_t, LeastSquares>> parts;
+    for (const auto& [row, column] : blocks_[b].elements)
+      parts.emplace_back(size(4 * row + column), over_wavelengths(size(4 * row + column), powers, model.reflectance));
+    LeastSquares whole = parts.front().second;
+    for (std::size_t i = 1; i < parts.size(); ++i) whole.merge(parts[i].second);
+    Solution solution = whole.solve(options.rank_tolerance);
+    require_determined(blocks_[b], solution, basis_.family, options);
+    for (const auto& [e, part] : parts) result.elements[e] = element_fit(e, part, solution.x);
+    FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition()};
+    if (solution.degrees_of_freedom() > 0) {
+      fitted.covariance = solution.inverse;
+      for (double& c : fitted.covariance) c *= solution.variance();
+    }
+    model.blocks.push_back(std::move(fitted));
+    result.solutions.push_back(std::move(solution));
+  }
+  return result;
+}
+
+void FitAccumulator::require_covered(const ReflectanceTable& table) const {
+  if (table.values.empty()) return;
+  for (const auto& [wavelength, at] : wavelengths_)
+    if (wavelength < table.wavelengths.front() - wavelength_resolution || wavelength > table.wavelengths.back() + wavelength_resolution)
+      throw std::invalid_argument("fit: the reflectance table does not reach " + nanometres(wavelength) + " nm");
+}
+
+ElementFit FitAccumulator::element_fit(std::size_t element, const LeastSquares& rows, std::span<const double> x) const {
+  ElementFit fit;
+  fit.rows = rows.rows();
+  const double norm = rows.residual_norm(x);
+  fit.chi_squared = norm * norm;
+  double weight = 0;
+  for (const auto& [wavelength, at] : wavelengths_) weight += at.weight[element];
+  fit.rms = weight > 0 ? norm / std::sqrt(weight) : 0;
+  return fit;
+}
+
+// ---- samples in memory ------------------------------------------------------------------------------------------------
+
+std::vector<double> speckle_weights(std::span<const Sample> samples) {
+  std::vector<double> weights;
+  for (const Sample& sample : samples) {
+    const double cos_i = std::cos(sample.geometry.incident.theta), cos_r = std::cos(sample.geometry.reflected.theta);
+    if (!(cos_i > 1e-12))
+      throw std::invalid_argument("speckle weights: sample " + std::to_string(weights.size() + 1) + " has theta_i = 90 degrees");
+    weights.push_back(std::max(0.0, cos_r / cos_i));
+  }
+  return weights;
+}
+
+namespace {
+
+/// A model prepared at the wavelengths that were asked for so far.
+class PreparedAt {
+ public:
+  PreparedAt(const Model& model, Rotation rotation) : model_(model), rotation_(rotation) {}
+  const PreparedModel& operator()(double wavelength) {
+    const auto at = prepared_.find(wavelength);
+    return at != prepared_.end() ? at->second : prepared_.emplace(wavelength, prepare(model_, wavelength, rotation_)).first->second;
+  }
+
+ private:
+  const Model& model_;
+  Rotation rotation_;
+  std::map<double, PreparedModel> prepared_;
+};
+
+/// Speckle weights of f11 / reflectance, whose noise is relative to the value that a first fit gives.
+std::vector<double> relative_weights(const Model& first, std::span<const Sample> samples, std::vector<double> weights) {
+  PreparedAt prepared(first, Rotation::covariant);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const double wavelength = samples[s].wavelength;
+    const double f11 = prepared(wavelength).f11(samples[s].geometry) / first.reflectance.at(wavelength);
+    if (!(f11 > 0))
+      throw std::invalid_argument("speckle weights: f11 of the unweighted fit is " + std::to_string(f11) + " at sample " +
+                                  std::to_string(s + 1));
+    weights[s] /= f11 * f11;
+  }
+  return weights;
+}
+
+}  // namespace
+
+FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
+  FitAccumulator accumulator(basis);
+  accumulator.add(samples);
+  FitResult result = accumulator.solve(options);
+  if (weights == Weights::speckle) {
+    const std::vector<double> relative = speckle_weights(samples);
+    FitAccumulator weighted(basis);
+    weighted.add(samples, relative, relative_weights(result.model, samples, relative));
+    result = weighted.solve(options);
+  }
+  result.residuals = residuals(result.model, samples, basis.rotation);
+  return result;
+}
+
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation) {
+  std::vector<Mueller> result;
+  result.reserve(samples.size());
+  PreparedAt prepared(model, rotation);
+  for (const Sample& sample : samples) {
+    const Mueller predicted = prepared(sample.wavelength).evaluate(sample.geometry);
+    Mueller difference = sample.normalized - normalized(predicted);
+    difference(0, 0) = sample.f11 - predicted(0, 0);
+    result.push_back(difference);
+  }
+  return result;
+}
+
+// ---- projection -------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Geometries at phi_i = 0 and weights that integrate over the range of a model in solid angle, dΩ = d(1 − cos θ) dφ.
+std::vector<std::pair<Geometry, double>> quadrature(const Validity& validity, int order) {
+  const double height_i = 1 - std::cos(validity.theta_i_max), height_r = 1 - std::cos(validity.theta_r_max);
+  const int azimuths = 4 * order + 8;
+  std::vector<std::pair<Geometry, double>> result;
+  for (const Node& i : gauss_legendre(order + 6))
+    for (const Node& r : gauss_legendre(order + 6))
+      for (int a = 0; a < azimuths; ++a)
+        result.push_back({{{std::acos(1 - i.x * height_i), 0}, {std::acos(1 - r.x * height_r), 2 * std::numbers::pi * a / azimuths}},
+                          i.weight * r.weight});
+  return result;
+}
+
+/// powers + 1 or more wavelengths, enough to determine polynomials of that degree.
+std::vector<double> wavelengths_for(const Model& model) {
+  std::vector<double> list = model.validity.wavelengths;
+  if (list.size() > size(model.powers)) return list;
+  list.clear();
+  for (int p = 0; p <= model.powers; ++p) list.push_back(0.5 + 0.5 * p);
+  return list;
+}
+
+}  // namespace
+
+Model projected_on_isotropic(const Model& model, const Orders& orders) {
+  require_valid(model);
+  if (model.family == Family::anisotropic) throw std::invalid_argument("a model of the anisotropic family is not isotropic");
+  Model bare = model;
+  bare.reflectance = {};
+  FitAccumulator accumulator({Family::isotropic, orders, model.mapping, Rotation::covariant});
+  const Orders both = mmbrdf::orders(model);
+  const auto nodes = quadrature(model.validity, std::max({orders.f11, orders.other, both.f11, both.other}));
+  for (const double wavelength : wavelengths_for(model)) {
+    const PreparedModel prepared = prepare(bare, wavelength);
+    std::vector<Sample> samples;
+    std::vector<double> weights;
+    for (const auto& [geometry, weight] : nodes) {
+      const Mueller m = prepared.evaluate(geometry);
+      samples.push_back({wavelength, geometry, m(0, 0), normalized(m)});
+      weights.push_back(weight);
+    }
+    accumulator.add(samples, weights, weights);
+  }
+  Model result = accumulator.solve({model.powers, ReflectanceTable{}, false}).model;
+  for (FittedBlock& fitted : result.blocks) {
+    fitted.covariance.clear();  // of the quadrature, not of the data
+    fitted.rank = 0;
+    fitted.condition = 0;
+  }
+  result.name = model.name;
+  result.reflectance = model.reflectance;
+  result.validity = model.validity;
+  result.provenance = model.provenance;
+  return result;
+}
+
+}  // namespace mmbrdf

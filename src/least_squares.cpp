@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/least_squares.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+// The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ| is
+// the norm of what the columns of A cannot reach. New rows B are folded in column by column: the reflection that maps
+// (T_jj, B_j) to (β, 0) is applied to the columns behind j.
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Vector = Eigen::Map<const VectorXd>;
+
+constexpr std::size_t rows_at_once = 128;      // keeps a block of rows in the cache
+constexpr double estimability_limit = 1e-8;  // theory 4.2
+
+Index index(std::size_t n) { return static_cast<Index>(n); }
+
+void require_finite(std::span<const double> numbers, const char* what) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!std::isfinite(numbers[i]))
+      throw std::invalid_argument("LeastSquares: " + std::string(what) + " number " + std::to_string(i + 1) + " is not finite");
+}
+
+}  // namespace
+
+double Solution::condition() const {
+  return rank == 0 ? 0 : singular_values.front() / singular_values[static_cast<std::size_t>(rank) - 1];
+}
+
+double Solution::variance() const {
+  return degrees_of_freedom() > 0 ? residual_norm * residual_norm / static_cast<double>(degrees_of_freedom()) : 0;
+}
+
+bool Solution::estimable(std::span<const double> g) const {
+  if (g.size() != x.size())
+    throw std::invalid_argument("estimable: " + std::to_string(g.size()) + " numbers for " + std::to_string(x.size()) + " unknowns");
+  const Vector direction(g.data(), index(g.size()));
+  const Eigen::Map<const MatrixXd> null(null_space.data(), index(g.size()), index(g.size()) - rank);
+  return (null.transpose() * direction).norm() <= estimability_limit * direction.norm();
+}
+
+LeastSquares::LeastSquares(int unknowns) : unknowns_(unknowns) {
+  if (unknowns < 1 || unknowns > max_unknowns)
+    throw std::invalid_argument("LeastSquares: unknowns = " + std::to_string(unknowns) + ", must be in 1..." +
+                                std::to_string(max_unknowns));
+  triangle_.assign(width() * width(), 0.0);
+}
+
+void LeastSquares::fold(std::vector<double>& columns, std::size_t count) {
+  Eigen::Map<MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
+  Eigen::Map<MatrixXd> block(columns.data(), index(count), index(width()));
+  VectorXd products, w;
+  for (Index j = 0; j <= unknowns_; ++j) {
+    const double norm = block.col(j).stableNorm();
+    if (norm == 0) continue;
+    const double pivot = triangle(j, j);
+    const double beta = -std::copysign(std::hypot(pivot, norm), pivot);
+    const double v = pivot - beta;  // the reflection is 1 − τ (1, w) (1, w)ᵀ, |w| ≤ 1
+    const double tau = -v / beta;
+    const Index rest = unknowns_ - j;
+    w = block.col(j) / v;
+    products.noalias() = block.rightCols(rest).transpose() * w;
+    products += triangle.row(j).tail(rest).transpose();
+    products *= tau;
+    triangle.row(j).tail(rest) -= products.transpose();
+    block.rightCols(rest).noalias() -= w * products.transpose();
+    triangle(j, j) = beta;
+  }
+}
+
+void LeastSquares::add(std::span<const double> rows, std::span<const double> values, std::span<const double> weights) {
+  const std::size_t n = width() - 1;
+  if (rows.size() != n * values.size())
+    throw std::invalid_argument("LeastSquares: " + std::to_string(rows.size()) + " numbers in " + std::to_string(values.size()) +
+                                " rows of " + std::to_string(n) + " unknowns");
+  if (!weights.empty() && weights.size() != values.size())
+    throw std::invalid_argument("LeastSquares: " + std::to_string(weights.size()) + " weights for " +
+                                std::to_string(values.size()) + " rows");
+  require_finite(rows, "row");
+  require_finite(values, "value");
+  require_finite(weights, "weight");
+  if (const auto low = std::find_if(weights.begin(), weights.end(), [](double w) { return w < 0; }); low != weights.end())
+    throw std::invalid_argument("LeastSquares: weight " + std::to_string(*low) + " is negative");
+
+  std::vector<double> columns;
+  for (std::size_t first = 0; first < values.size(); first += rows_at_once) {
+    const std::size_t count = std::min(rows_at_once, values.size() - first);
+    columns.resize(count * width());
+    for (std::size_t row = 0; row < count; ++row) {
+      const double factor = weights.empty() ? 1 : std::sqrt(weights[first + row]);
+      for (std::size_t j = 0; j < n; ++j) columns[j * count + row] = factor * rows[(first + row) * n + j];
+      columns[n * count + row] = factor * values[first + row];
+    }
+    fold(columns, count);
+  }
+  rows_ += static_cast<long>(values.size());
+}
+
+void LeastSquares::merge(const LeastSquares& other) {
+  if (other.unknowns_ != unknowns_)
+    throw std::invalid_argument("LeastSquares: cannot merge " + std::to_string(other.unknowns_) + " unknowns into " +
+                                std::to_string(unknowns_));
+  std::vector<double> rows = other.triangle_;
+  fold(rows, width());
+  rows_ += other.rows_;
+}
+
+LeastSquares LeastSquares::repeated(std::span<const double> factors, double value_factor) const {
+  require_finite(factors, "factor");
+  require_finite({&value_factor, 1}, "value factor");
+  if (factors.size() > static_cast<std::size_t>(max_unknowns)) throw std::invalid_argument("LeastSquares: too many factors");
+  LeastSquares result(unknowns_ * static_cast<int>(factors.size()));
+  std::vector<double> rows;
+  rows.reserve(width() * result.width());
+  const auto append = [&](std::size_t column, double factor) {
+    for (std::size_t i = 0; i < width(); ++i) rows.push_back(factor * triangle_[column * width() + i]);
+  };
+  for (const double factor : factors)
+    for (std::size_t column = 0; column + 1 < width(); ++column) append(column, factor);
+  append(width() - 1, value_factor);
+  result.fold(rows, width());
+  result.rows_ = rows_;
+  return result;
+}
+
+double LeastSquares::residual_norm(std::span<const double> x) const {
+  if (x.size() + 1 != width())
+    throw std::invalid_argument("LeastSquares: " + std::to_string(x.size()) + " values for " + std::to_string(unknowns_) + " unknowns");
+  const Eigen::Map<const MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
+  VectorXd extended(index(width()));
+  extended << Vector(x.data(), unknowns_), -1;
+  return VectorXd(triangle.triangularView<Eigen::Upper>() * extended).stableNorm();
+}
+
+std::vector<double> LeastSquares::state() const {
+  std::vector<double> result;
+  result.reserve(width() * (width() + 1) / 2 + 1);
+  for (std::size_t row = 0; row < width(); ++row)
+    for (std::size_t column = row; column < width(); ++column) result.push_back(triangle_[column * width() + row]);
+  result.push_back(static_cast<double>(rows_));
+  return result;
+}
+
+LeastSquares LeastSquares::from_state(int unknowns, std::span<const double> state) {
+  LeastSquares result(unknowns);
+  const std::size_t width = result.width();
+  if (state.size() != width * (width + 1) / 2 + 1)
+    throw std::invalid_argument("LeastSquares: a state of " + std::to_string(state.size()) + " numbers for " +
+                                std::to_string(unknowns) + " unknowns");
+  require_finite(state, "state");
+  if (state.back() < 0 || state.back() != std::floor(state.back()) || state.back() > 9e15)
+    throw std::invalid_argument("LeastSquares: a state with " + std::to_string(state.back()) + " rows");
+  auto next = state.begin();
+  for (std::size_t row = 0; row < width; ++row)
+    for (std::size_t column = row; column < width; ++column) result.triangle_[column * width + row] = *next++;
+  result.rows_ = static_cast<long>(state.back());
+  return result;
+}
+
+Solution LeastSquares::solve(double tolerance) const {
+  if (!(tolerance >= 0 && tolerance < 1))
+    throw std::invalid_argument("LeastSquares: rank tolerance " + std::to_string(tolerance) + " is not in [0, 1)");
+  const Index n = unknowns_;
+  const Eigen::Map<const MatrixXd> triangle(triangle_.data(), n + 1, n + 1);
+  const MatrixXd r = triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>();
+  const Eigen::BDCSVD<MatrixXd> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const VectorXd& s = svd.singularValues();
+  const Index rank = (s.array() > tolerance * s(0)).count();
+  const MatrixXd kept = svd.matrixV().leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
+  const VectorXd projected = svd.matrixU().transpose() * triangle.col(n).head(n);
+  const VectorXd x = kept * projected.head(rank);
+  MatrixXd inverse = MatrixXd::Zero(n, n);  // symmetric to the last bit
+  inverse.selfadjointView<Eigen::Lower>().rankUpdate(kept);
+  inverse.triangularView<Eigen::StrictlyUpper>() = inverse.transpose();
+  const MatrixXd null = svd.matrixV().rightCols(n - rank);
+
+  Solution solution;
+  solution.x.assign(x.data(), x.data() + n);
+  solution.singular_values.assign(s.data(), s.data() + n);
+  solution.rank = static_cast<int>(rank);
+  solution.residual_norm = std::hypot(triangle(n, n), projected.tail(n - rank).stableNorm());
+  solution.rows = rows_;
+  solution.inverse.assign(inverse.data(), inverse.data() + n * n);
+  solution.null_space.assign(null.data(), null.data() + null.size());
+  return solution;
+}
+
+}  // namespace mmbrdf
