@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "json_field.hpp"
+#include "mmbrdf/io.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* format_name = "mmbrdf model";
+
+/// What every file says, and must say to be read: there is no other convention that it could be in.
+ordered_json conventions() {
+  return {{"frame", "xy"},
+          {"axes", "e1 = y, e2 = x, e1 x e2 = direction of propagation"},
+          {"stokes", "germer2017"},
+          {"s4", "left - right"},
+          {"time_factor", "exp(-i omega t)"},
+          {"phi_i", "azimuth of the direction to the source"},
+          {"normalised", "f11 in sr^-1; other elements are f_ij/f11"}};
+}
+ordered_json units() {
+  return {
+      {"wavelength", "um"}, {"f11", "sr^-1"}, {"angles", "deg"}, {"coefficients", "of powers of the wavelength in um"}};
+}
+
+// ---- reading --------------------------------------------------------------------------------------------------------
+
+/// Runs a check of the library on what a field says; its complaint becomes one about the field.
+template <class Check>
+auto checked(const Field& field, Check check) {
+  try {
+    return check();
+  } catch (const std::invalid_argument& e) {
+    field.refuse(e.what());
+  }
+}
+
+Mode read_mode(const Field& field, Family family) {
+  const std::vector<Field> items = field.items();
+  if (items.size() != 5) field.refuse("must be [function, n, m, k, l]");
+  const Mode mode{.function = checked(items[0], [&] { return function_from(items[0].text()); }),
+                  .n = items[1].integer(),
+                  .m = items[2].integer(),
+                  .k = items[3].integer(),
+                  .l = items[4].integer()};
+  checked(field, [&] { require_valid(mode, family); });
+  return mode;
+}
+
+Block read_block(const Field& field, Family family) {
+  std::vector<Mode> modes;
+  for (const Field& item : field["modes"].items()) modes.push_back(read_mode(item, family));
+  std::vector<Block> canonical = checked(field["modes"], [&] { return blocks(family, modes); });
+  if (canonical.size() != 1)
+    field["modes"].refuse("must be the modes of one block, not of " + std::to_string(canonical.size()));
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    if (modes[i] != canonical[0].modes[i])
+      field["modes"].items()[i].refuse("out of order: mode " + to_string(canonical[0].modes[i]) + " comes here");
+  if (field["elements"].text() != canonical[0].name)
+    field["elements"].refuse(field["elements"].shown() + ", but the modes feed " + canonical[0].name);
+  return std::move(canonical[0]);
+}
+
+void require_count(const Field& field, std::size_t count, std::size_t needed, const std::string& what) {
+  if (count != needed)
+    field.refuse(std::to_string(count) + " numbers in place of " + std::to_string(needed) + ", " + what);
+}
+
+/// The square matrix from its lower triangle.
+std::vector<double> read_covariance(const Field& field, std::size_t size) {
+  const std::vector<double> triangle = field.numbers();
+  require_count(field, triangle.size(), size * (size + 1) / 2, "the lower triangle");
+  std::vector<double> square(size * size);
+  auto value = triangle.begin();
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column <= row; ++column)
+      square[row * size + column] = square[column * size + row] = *value++;
+  for (std::size_t i = 0; i < size; ++i)
+    if (square[i * size + i] < 0) field.refuse("variance " + std::to_string(i) + " is negative");
+  return square;
+}
+
+FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
+  field.require_no_other_than({"elements", "modes", "coefficients", "covariance", "rank", "condition"});
+  FittedBlock fitted;
+  fitted.block = read_block(field, family);
+  fitted.coefficients = field["coefficients"].numbers();
+  const std::size_t modes = fitted.block.modes.size(), size = modes * static_cast<std::size_t>(powers + 1);
+  require_count(field["coefficients"], fitted.coefficients.size(), size,
+                std::to_string(powers + 1) + " for each of the " + std::to_string(modes) + " modes");
+  if (field.has("covariance")) fitted.covariance = read_covariance(field["covariance"], size);
+  if (field.has("rank")) fitted.rank = field["rank"].integer();
+  if (field.has("condition")) fitted.condition = field["condition"].number();
+  if (fitted.rank < 0 || static_cast<std::size_t>(fitted.rank) > size)
+    field["rank"].refuse(std::to_string(fitted.rank) + " is not in 0..." + std::to_string(size));
+  if (fitted.condition < 0) field["condition"].refuse(field["condition"].shown() + " is negative");
+  return fitted;
+}
+
+std::vector<FittedBlock> read_blocks(const Field& field, Family family, int powers) {
+  std::vector<FittedBlock> result;
+  std::vector<Mode> modes;
+  for (const Field& item : field.items()) {
+    result.push_back(read_fitted_block(item, family, powers));
+    modes.insert(modes.end(), result.back().block.modes.begin(), result.back().block.modes.end());
+  }
+  if (result.empty()) field.refuse("there is no block");
+  const std::vector<Block> canonical = checked(field, [&] { return blocks(family, modes); });
+  for (std::size_t b = 0; b < result.size(); ++b)
+    if (b >= canonical.size() || result[b].block.name != canonical[b].name)
+      field.items()[b].refuse("block " + result[b].block.name + " is out of order, or there are two of it");
+  return result;
+}
+
+double read_polar_angle(const Field& field) {
+  const double value = field.number();
+  if (value < 0 || value > 90) field.refuse(field.shown() + " degrees is not in 0...90");
+  return radians(value);
+}
+
+Validity read_validity(const Field& field) {
+  field.require_no_other_than({"wavelengths_um", "theta_i_max_deg", "theta_r_max_deg"});
+  Validity validity{field["wavelengths_um"].numbers(), read_polar_angle(field["theta_i_max_deg"]),
+                    read_polar_angle(field["theta_r_max_deg"])};
+  double last = 0;
+  for (const double wavelength : validity.wavelengths) {
+    if (!(wavelength > last)) field["wavelengths_um"].refuse("must be positive and rise");
+    last = wavelength;
+  }
+  return validity;
+}
+
+ReflectanceTable read_reflectance(const Field& field) {
+  field.require_no_other_than({"wavelengths_um", "values"});
+  ReflectanceTable table{field["wavelengths_um"].numbers(), field["values"].numbers()};
+  if (table.wavelengths.empty()) field["wavelengths_um"].refuse("must not be empty");
+  checked(field, [&] { require_valid(table); });
+  return table;
+}
+
+void require_this_format(const Field& root) {
+  if (root["format"].text() != format_name)
+    root["format"].refuse(root["format"].shown() + " is not '" + format_name + "'");
+  if (const int version = root["schema_version"].integer(); version != schema_version)
+    root["schema_version"].refuse(std::to_string(version) + ", but this version of mmbrdf reads " +
+                                  std::to_string(schema_version));
+  root.require_no_other_than({"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "conventions",
+                              "units", "validity", "reflectance", "blocks", "provenance"});
+  root["conventions"].require_equal(conventions());
+  root["units"].require_equal(units());
+}
+
+Model read_model(const Field& root) {
+  require_this_format(root);
+  Model model;
+  model.name = root["name"].text();
+  model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });
+  model.mapping = checked(root["mapping"], [&] { return disc_mapping_from(root["mapping"].text()); });
+  model.powers = root["powers"].integer();
+  if (model.powers < 0) root["powers"].refuse(root["powers"].shown() + " is negative");
+  model.blocks = read_blocks(root["blocks"], model.family, model.powers);
+  const Orders found = orders(model);
+  if (root["orders"].numbers() != std::vector<double>{double(found.f11), double(found.other)})
+    root["orders"].refuse("must be [" + std::to_string(found.f11) + ", " + std::to_string(found.other) +
+                          "], the highest orders among the modes");
+  if (root.has("reflectance")) model.reflectance = read_reflectance(root["reflectance"]);
+  model.validity = read_validity(root["validity"]);
+  model.provenance = root["provenance"].texts();
+  checked(root, [&] { require_valid(model); });
+  return model;
+}
+
+/// The line of a position, counted from 1; the end of the file belongs to its last line.
+std::string line_of(std::string_view text, std::size_t position) {
+  while (text.ends_with('\n') || text.ends_with('\r')) text.remove_suffix(1);
+  return std::to_string(1 + std::ranges::count(text.substr(0, position), '\n'));
+}
+
+json parsed(std::string_view text, const std::string& name) {
+  std::vector<std::set<std::string>> open;  // names of the fields of each object that has begun
+  const auto refuse_repetition = [&](int, json::parse_event_t event, json& value) {
+    if (event == json::parse_event_t::object_start) open.emplace_back();
+    if (event == json::parse_event_t::object_end) open.pop_back();
+    if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
+      throw std::runtime_error(name + ": the field " + in_quotes(value.get<std::string>()) + " is there twice");
+    return true;
+  };
+  try {
+    return json::parse(text, refuse_repetition);
+  } catch (const json::parse_error& e) {  // "[…] parse error at line 1, column 5: what is wrong"
+    const std::string what = e.what();
+    const std::size_t begin = what.find(": ");
+    throw std::runtime_error(name + ":" + line_of(text, e.byte) + ": not JSON: " + what.substr(begin + 2, 200));
+  } catch (const json::out_of_range& e) {  // "[…] number overflow parsing '1e999'"
+    const std::string what = e.what();
+    const std::size_t begin = what.find('\'') + 1;
+    const std::string token = what.substr(begin, what.rfind('\'') - begin);
+    throw std::runtime_error(name + ":" + line_of(text, text.find(token)) + ": " + in_quotes(token) +
+                             " is beyond the range of double precision");
+  }
+}
+
+// ---- writing --------------------------------------------------------------------------------------------------------
+
+bool fits_in_a_line(const ordered_json& value) {
+  return value.is_primitive() ||
+         (value.is_array() && value.size() <= 5 &&
+          std::all_of(value.begin(), value.end(), [](const auto& v) { return v.is_primitive(); }));
+}
+
+void print(std::string& out, const ordered_json& value, std::size_t indent);
+
+/// Array elements one after the other, in lines of at most 120 characters.
+void print_filled(std::string& out, const ordered_json& array, std::size_t indent) {
+  constexpr std::size_t width = 120;
+  std::size_t column = out.size() - (out.rfind('\n') + 1) + 1;
+  out += '[';
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    const std::string text = array[i].dump() + (i + 1 < array.size() ? "," : "]");
+    if (column + 1 + text.size() > width) {
+      out += '\n' + std::string(indent + 2, ' ');
+      column = indent + 2;
+    } else if (i > 0) {
+      out += ' ';
+      ++column;
+    }
+    out += text;
+    column += text.size();
+  }
+  if (array.empty()) out += ']';
+}
+
+void print(std::string& out, const ordered_json& value, std::size_t indent) {
+  if (value.is_primitive()) {
+    out += value.dump();
+  } else if (value.is_array() && std::all_of(value.begin(), value.end(), fits_in_a_line)) {
+    print_filled(out, value, indent);
+  } else {
+    out += value.is_array() ? '[' : '{';
+    const char* separator = "\n";
+    for (const auto& [name, child] : value.items()) {
+      out += separator + std::string(indent + 2, ' ') + (value.is_array() ? "" : ordered_json(name).dump() + ": ");
+      print(out, child, indent + 2);
+      separator = ",\n";
+    }
+    if (!value.empty()) out += '\n' + std::string(indent, ' ');
+    out += value.is_array() ? ']' : '}';
+  }
+}
+
+void require_finite(const std::vector<double>& values, const std::string& what) {
+  if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
+    throw std::invalid_argument("to_json: " + what + " must be finite");
+}
+
+ordered_json block_json(const FittedBlock& fitted) {
+  require_finite({fitted.condition}, "condition of block " + fitted.block.name);
+  ordered_json result = {{"elements", fitted.block.name}, {"modes", ordered_json::array()}};
+  for (const auto& [function, n, m, k, l] : fitted.block.modes)
+    result["modes"].push_back({to_string(function), n, m, k, l});
+  result["coefficients"] = fitted.coefficients;
+  const std::size_t size = fitted.coefficients.size();
+  if (!fitted.covariance.empty()) {
+    std::vector<double> triangle;
+    for (std::size_t row = 0; row < size; ++row)
+      triangle.insert(triangle.end(), &fitted.covariance[row * size], &fitted.covariance[row * size] + row + 1);
+    result["covariance"] = triangle;
+  }
+  if (fitted.rank > 0) result["rank"] = fitted.rank;
+  if (fitted.condition > 0) result["condition"] = fitted.condition;
+  return result;
+}
+
+ordered_json model_json(const Model& model) {
+  const Orders found = orders(model);
+  ordered_json root = {{"format", format_name},
+                       {"schema_version", schema_version},
+                       {"name", model.name},
+                       {"basis", to_string(model.family)},
+                       {"orders", {found.f11, found.other}},
+                       {"powers", model.powers},
+                       {"mapping", to_string(model.mapping)},
+                       {"conventions", conventions()},
+                       {"units", units()}};
+  require_finite(model.validity.wavelengths, "wavelengths of the validity");
+  root["validity"] = {{"wavelengths_um", model.validity.wavelengths},
+                      {"theta_i_max_deg", in_degrees(model.validity.theta_i_max)},
+                      {"theta_r_max_deg", in_degrees(model.validity.theta_r_max)}};
+  if (!model.reflectance.wavelengths.empty())
+    root["reflectance"] = {{"wavelengths_um", model.reflectance.wavelengths}, {"values", model.reflectance.values}};
+  root["provenance"] = model.provenance;
+  root["blocks"] = ordered_json::array();
+  for (const FittedBlock& fitted : model.blocks) root["blocks"].push_back(block_json(fitted));
+  return root;
+}
+
+}  // namespace
+
+Model model_from_json(std::string_view text, const std::string& name) {
+  const json root = parsed(text, name);
+  return read_model(Field(root, name));
+}
+
+std::string to_json(const Model& model) {
+  require_valid(model);
+  try {
+    std::string text;
+    print(text, model_json(model), 0);
+    return text + "\n";
+  } catch (const json::exception& e) {  // text that is not UTF-8
+    throw std::invalid_argument("to_json: name or provenance of the model: " + std::string(e.what()));
+  }
+}
+
+}  // namespace mmbrdf

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "numbers.hpp"
+
+namespace mmbrdf {
+
+/// A value in a file, which knows where it stands: complaints are std::runtime_error with file and path, as in
+/// "m.json: blocks[1].coefficients[3]: must be a number, not 'x'".
+class Field {
+ public:
+  Field(const nlohmann::json& value, const std::string& file, std::string path = "")
+      : value_(value), file_(file), path_(std::move(path)) {}
+
+  [[noreturn]] void refuse(const std::string& reason) const {
+    throw std::runtime_error(file_ + ": " + path_ + (path_.empty() ? "" : ": ") + reason);
+  }
+
+  bool has(const std::string& name) const { return object().contains(name); }
+
+  Field operator[](const std::string& name) const {
+    const Field child(has(name) ? object().at(name) : value_, file_, (path_.empty() ? "" : path_ + ".") + name);
+    if (!has(name)) child.refuse("missing");
+    return child;
+  }
+
+  std::vector<Field> items() const {
+    if (!value_.is_array()) refuse("must be an array, not " + shown());
+    std::vector<Field> fields;
+    for (std::size_t i = 0; i < value_.size(); ++i)
+      fields.emplace_back(value_[i], file_, path_ + "[" + std::to_string(i) + "]");
+    return fields;
+  }
+
+  double number() const {
+    if (!value_.is_number()) refuse("must be a number, not " + shown());
+    return value_.get<double>();
+  }
+
+  int integer() const {
+    constexpr double largest = 1e6;  // beyond all that is counted here
+    if (!value_.is_number_integer() || std::abs(number()) > largest) refuse("must be an integer, not " + shown());
+    return value_.get<int>();
+  }
+
+  std::string text() const {
+    if (!value_.is_string()) refuse("must be a string, not " + shown());
+    return value_.get<std::string>();
+  }
+
+  std::vector<double> numbers() const {
+    if (value_.is_array() &&
+        std::all_of(value_.begin(), value_.end(), [](const nlohmann::json& v) { return v.is_number(); }))
+      return value_.get<std::vector<double>>();
+    std::vector<double> values;  // for the message that says which one
+    for (const Field& item : items()) values.push_back(item.number());
+    return values;
+  }
+
+  std::map<std::string, std::string> texts() const {
+    std::map<std::string, std::string> result;
+    for (const auto& [name, unused] : object().items()) result[name] = (*this)[name].text();
+    return result;
+  }
+
+  /// A misspelt optional field must not pass for an absent one.
+  void require_no_other_than(std::initializer_list<std::string_view> names) const {
+    for (const auto& [name, unused] : object().items())
+      if (std::find(names.begin(), names.end(), name) == names.end()) (*this)[name].refuse("unknown field");
+  }
+
+  void require_equal(const nlohmann::ordered_json& expected) const {
+    for (const auto& [name, value] : expected.items())
+      if (const Field field = (*this)[name]; field.text() != value)
+        field.refuse(field.shown() + " is not supported, only " + value.dump());
+  }
+
+  std::string shown() const {
+    if (value_.is_structured()) return value_.is_array() ? "an array" : "an object";
+    return value_.is_string() ? in_quotes(value_.get_ref<const std::string&>()) : value_.dump();
+  }
+
+ private:
+  const nlohmann::json& object() const {
+    if (!value_.is_object()) refuse("must be an object, not " + shown());
+    return value_;
+  }
+
+  const nlohmann::json& value_;
+  const std::string& file_;
+  std::string path_;
+};
+
+}  // namespace mmbrdf

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "files.hpp"
+#include "mmbrdf/io.hpp"
+
+namespace mmbrdf {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Files, ThatCannotBeReadAreNamedInOneLine) {
+  const Folder folder;
+  EXPECT_TRUE(
+      says(complaint([&] { load_model(folder / "none.json"); }), {"none.json: cannot be opened: No such file"}));
+  EXPECT_TRUE(
+      says(complaint([&] { read_samples(folder / "none.csv"); }), {"none.csv: cannot be opened: No such file"}));
+  EXPECT_TRUE(says(complaint([&] { load_model(folder / ""); }), {"is a folder"}));
+  EXPECT_TRUE(says(complaint([&] { read_samples(folder / ""); }), {"is a folder"}));
+  put(folder / "empty", "");
+  EXPECT_TRUE(says(complaint([&] { load_model(folder / "empty"); }), {"empty: empty file"}));
+  put(folder / "image.png", "\x89PNG\r\n\x1a\n");
+  EXPECT_TRUE(says(complaint([&] { load_model(folder / "image.png"); }), {"image.png:1: ", "'\\x89PNG'"}));
+  put(folder / "binary", "1, 1, 0, 0, 0, 0, 0, 2.5\n\x7f");
+  EXPECT_TRUE(says(complaint([&] { load_model(folder / "binary"); }), {"binary:2: ", "'\\x7f'"}));
+  EXPECT_TRUE(says(complaint([&] { load_model("/dev/zero"); }), {"/dev/zero: binary file"}));
+  EXPECT_TRUE(says(complaint([&] { read_samples("/dev/zero"); }), {"/dev/zero:1: more than 65535 characters"}));
+}
+
+TEST(Files, AppearWhole) {
+  const Folder folder;
+  write_file(folder / "a", [&](std::ostream& out) {
+    out << "first half, " << std::flush;
+    EXPECT_FALSE(fs::exists(folder / "a"));
+    out << "second half";
+  });
+  EXPECT_EQ(contents(folder / "a"), "first half, second half");
+  EXPECT_EQ(folder.files(), 1);
+}
+
+TEST(Files, AreLeftAsTheyWereByAnErrorOnTheWay) {
+  const Folder folder;
+  put(folder / "a", "old");
+  const auto half = [](std::ostream& out) {
+    out << std::string(200000, 'x');
+    throw std::runtime_error("d.csv:7: wrong");
+  };
+  EXPECT_EQ(complaint([&] { write_file(folder / "a", half); }), "d.csv:7: wrong");
+  EXPECT_EQ(complaint([&] { write_file(folder / "b", half); }), "d.csv:7: wrong");
+  EXPECT_EQ(contents(folder / "a"), "old");
+  EXPECT_EQ(folder.files(), 1);
+}
+
+// A limit on the size of files stands for a full disc: write() fails in the middle in both cases.
+TEST(Files, AreLeftAsTheyWereIfThereIsNoRoom) {
+  const Folder folder;
+  put(folder / "a", "old");
+  rlimit usual;
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const rlimit small{100000, usual.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message =
+      complaint([&] { write_file(folder / "a", [](std::ostream& out) { out << std::string(200000, 'x'); }); });
+  ::setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_TRUE(says(message, {folder / "a" + ": cannot be written: File too large"}));
+  EXPECT_EQ(contents(folder / "a"), "old");
+  EXPECT_EQ(folder.files(), 1);
+}
+
+// Only root can make a device, and only root could do harm to /dev/full.
+TEST(Files, OnAFullDiscAreReported) {
+  const Folder folder;
+  const bool root = ::geteuid() == 0;
+  const std::string full = root ? folder / "full" : "/dev/full";
+  if (root && ::mknod(full.c_str(), S_IFCHR | 0666, ::makedev(1, 7)) != 0)
+    GTEST_SKIP() << "skipped: no device can be made";
+  if (::access(full.c_str(), W_OK) != 0) GTEST_SKIP() << "skipped: there is no device that is always full";
+  EXPECT_EQ(complaint([&] { write_file(full, [](std::ostream& out) { out << "x"; }); }),
+            full + ": cannot be written: No space left on device");
+  EXPECT_TRUE(fs::is_character_file(full));
+}
+
+TEST(Files, InAFolderThatDoesNotExistAreReported) {
+  const Folder folder;
+  const auto nothing = [](std::ostream&) {};
+  EXPECT_TRUE(says(complaint([&] { write_file(folder / "none/a", nothing); }),
+                   {"none/a: cannot be written: there is no folder " + (folder / "none")}));
+  EXPECT_TRUE(says(complaint([&] { write_file(folder / "", nothing); }), {"cannot be written: Is a directory"}));
+  EXPECT_TRUE(says(complaint([&] { write_file("", nothing); }), {"cannot be written: it has no name"}));
+}
+
+TEST(Files, KeepPermissionsAndLinks) {
+  const Folder folder;
+  const auto write = [](std::ostream& out) { out << "new"; };
+  const mode_t usual = ::umask(027);
+  write_file(folder / "fresh", write);
+  ::umask(usual);
+  EXPECT_EQ(static_cast<unsigned>(fs::status(folder / "fresh").permissions()), 0640U);
+  put(folder / "shared", "old");
+  fs::permissions(folder / "shared", static_cast<fs::perms>(0664));
+  fs::create_symlink("shared", folder / "link");
+  fs::create_symlink("absent", folder / "dangling");
+  write_file(folder / "link", write);
+  write_file(folder / "dangling", write);
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(contents(folder / "shared"), "new");
+  EXPECT_EQ(contents(folder / "absent"), "new");
+  EXPECT_EQ(static_cast<unsigned>(fs::status(folder / "shared").permissions()), 0664U);
+}
+
+TEST(Files, ThatArePipesAreWrittenToAndStay) {
+  const Folder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  write_file(folder / "pipe", [](std::ostream& out) { out << "through"; });
+  char text[8] = {};
+  EXPECT_EQ(::read(reader, text, sizeof text), 7);
+  EXPECT_STREQ(text, "through");
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+  ::close(reader);
+}
+
+}  // namespace
+}  // namespace mmbrdf
