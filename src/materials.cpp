@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/materials.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "embedded_materials.hpp"
+#include "mmbrdf/io.hpp"
+
+namespace mmbrdf {
+
+std::vector<std::string> materials() {
+  std::vector<std::string> names;
+  for (const EmbeddedMaterial& embedded : embedded_materials()) names.emplace_back(embedded.name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Model material(std::string_view name) {
+  for (const EmbeddedMaterial& embedded : embedded_materials())
+    if (embedded.name == name) return model_from_json(embedded.json, "material " + std::string(name));
+  std::string known;
+  for (const std::string& other : materials()) known += (known.empty() ? "" : ", ") + other;
+  throw std::invalid_argument("material: '" + std::string(name) + "' is not one of " + known);
+}
+
+}  // namespace mmbrdf
