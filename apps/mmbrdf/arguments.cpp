@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arguments.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/materials.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+template <class T>
+bool read(const std::string& text, T& value) {
+  const char* const end = text.data() + text.size();
+  const char* const begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto result = std::from_chars(begin, end, value);
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(separator, begin);
+    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+  }
+  return parts;
+}
+
+std::invalid_argument wrong(const std::string& text, const std::string& expected) {
+  return std::invalid_argument("\"" + text + "\": expected " + expected);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : ", ") + word;
+  }
+  return text;
+}
+
+}  // namespace
+
+double number(const std::string& text) {
+  double value = 0;
+  if (!read(text, value) || !std::isfinite(value)) {
+    throw wrong(text, "a number");
+  }
+  return value;
+}
+
+int whole_number(const std::string& text) {
+  int value = 0;
+  if (!read(text, value) || value < 0) {
+    throw wrong(text, "a whole number of 0 or more");
+  }
+  return value;
+}
+
+unsigned long seed(const std::string& text) {
+  unsigned long value = 0;
+  if (!read(text, value)) {
+    throw wrong(text, "a whole number of 0 or more");
+  }
+  return value;
+}
+
+DirectionDegrees direction_degrees(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  DirectionDegrees direction;
+  if (parts.size() != 2 || !read(parts[0], direction.theta) || !read(parts[1], direction.phi) ||
+      !std::isfinite(direction.theta) || !std::isfinite(direction.phi)) {
+    throw wrong(text, "THETA,PHI in degrees");
+  }
+  return direction;
+}
+
+std::vector<double> numbers(const std::string& text) {
+  std::vector<double> values;
+  for (const std::string& part : split(text, ',')) {
+    values.push_back(number(part));
+  }
+  return values;
+}
+
+Orders orders_from(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  Orders orders;
+  if (parts.size() != 2 || !read(parts[0], orders.f11) || !read(parts[1], orders.other)) {
+    throw wrong(text, "two whole numbers, of f11 and of the other elements, as in 7,4");
+  }
+  return orders;
+}
+
+ReflectanceTable reflectance_from(const std::string& text) {
+  std::map<double, double> nodes;
+  for (const std::string& part : split(text, ',')) {
+    const std::vector<std::string> pair = split(part, ':');
+    double wavelength_nm = 0;
+    double value = 0;
+    if (pair.size() != 2 || !read(pair[0], wavelength_nm) || !read(pair[1], value)) {
+      throw wrong(part, "NM:REFLECTANCE, as in 532:0.984");
+    }
+    if (!nodes.emplace(wavelength_nm, value).second) {
+      throw std::invalid_argument("\"" + part + "\": this wavelength is given twice");
+    }
+  }
+  ReflectanceTable table;
+  for (const auto& [wavelength_nm, value] : nodes) {
+    table.wavelengths.push_back(wavelength_nm / 1000);
+    table.values.push_back(value);
+  }
+  return table;
+}
+
+std::string reflectance_argument(const ReflectanceTable& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    text += (i > 0 ? "," : "") + brief(nanometres(table.wavelengths[i])) + ":" + shortest(table.values[i]);
+  }
+  return text;
+}
+
+Frame frame_from(const std::string& name) {
+  for (const Frame frame : {Frame::xy, Frame::sp, Frame::scattering_plane}) {
+    if (name == to_string(frame)) {
+      return frame;
+    }
+  }
+  throw wrong(name, "xy, sp or scattering_plane");
+}
+
+std::string to_string(Frame frame) {
+  return frame == Frame::xy ? "xy" : frame == Frame::sp ? "sp" : "scattering_plane";
+}
+
+Format format_from(const std::string& name) {
+  if (name == "text") {
+    return Format::text;
+  }
+  if (name == "csv") {
+    return Format::csv;
+  }
+  if (name == "json") {
+    return Format::json;
+  }
+  throw wrong(name, "text, csv or json");
+}
+
+double micrometres(double wavelength_nm) {
+  if (!(wavelength_nm > 0)) {
+    throw std::invalid_argument("wavelength " + brief(wavelength_nm) + " nm: must be positive");
+  }
+  return wavelength_nm / 1000;
+}
+
+std::vector<double> micrometres(const std::vector<double>& wavelengths_nm) {
+  std::vector<double> result;
+  for (const double wavelength_nm : wavelengths_nm) {
+    result.push_back(micrometres(wavelength_nm));
+  }
+  return result;
+}
+
+double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e9; }
+
+std::string nanometre_list(const std::vector<double>& wavelengths) {
+  std::vector<std::string> words;
+  for (const double wavelength : wavelengths) {
+    words.push_back(brief(nanometres(wavelength)));
+  }
+  return joined(words) + " nm";
+}
+
+Direction direction_from(const DirectionDegrees& degrees, const std::string& option) {
+  if (std::abs(degrees.theta) > 90) {
+    throw std::invalid_argument(option + " " + brief(degrees.theta) + "," + brief(degrees.phi) +
+                                ": the polar angle is not in [-90, 90] degrees");
+  }
+  // Unfolded in degrees, where 180 is exact.
+  const double opposite = degrees.phi + (degrees.phi > 0 ? -180 : 180);
+  return {radians(std::abs(degrees.theta)), radians(degrees.theta < 0 ? opposite : degrees.phi)};
+}
+
+Model open_model(const std::string& name) {
+  const std::vector<std::string> built_in = materials();
+  if (std::find(built_in.begin(), built_in.end(), name) != built_in.end()) {
+    return material(name);
+  }
+  if (!std::filesystem::exists(name)) {
+    throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(built_in) + ")");
+  }
+  return load_model(name);
+}
+
+std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+CLI::Option* add_model(CLI::App& app, std::string& target) {
+  return app.add_option("MODEL", target, "Built-in name, JSON model or coefficient CSV")->required()->option_text(" ");
+}
+
+}  // namespace mmbrdf::program

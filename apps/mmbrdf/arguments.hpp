@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the program reads the values of its options.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/model.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+// Reading text. All throw std::invalid_argument, naming the text, if it has another form; that is wrong usage. Whether
+// a number makes sense (an angle of 95 degrees does not) is asked later, and is bad input.
+
+double number(const std::string& text);     ///< finite
+int whole_number(const std::string& text);  ///< 0 or more
+unsigned long seed(const std::string& text);
+
+/// THETA,PHI in degrees, as typed.
+struct DirectionDegrees {
+  double theta = 0;
+  double phi = 0;
+};
+DirectionDegrees direction_degrees(const std::string& text);
+
+std::vector<double> numbers(const std::string& text);             ///< A[,B…]
+Orders orders_from(const std::string& text);                      ///< F11,OTHER
+ReflectanceTable reflectance_from(const std::string& text);       ///< NM:R[,NM:R…] in any order
+std::string reflectance_argument(const ReflectanceTable& table);  ///< the opposite, exact
+
+Frame frame_from(const std::string& name);
+std::string to_string(Frame frame);
+Format format_from(const std::string& name);
+
+// What the numbers mean. These throw std::invalid_argument for values that make no sense.
+
+double micrometres(double wavelength_nm);
+std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
+double nanometres(double wavelength);  ///< to 1e-9 nm: 0.532 gives 532
+
+/// "351, 532, 633, 1064 nm"
+std::string nanometre_list(const std::vector<double>& wavelengths);
+
+/// In radians, θ ≥ 0. `option` begins the message.
+Direction direction_from(const DirectionDegrees& degrees, const std::string& option);
+
+/// A built-in model, or one from a file.
+Model open_model(const std::string& name);
+
+/// The last part of a path.
+std::string base_name(const std::string& path);
+
+// Options whose value one of the functions above reads.
+
+template <class T>
+T parsed(const std::string& option, const std::string& text, T (*parse)(const std::string&)) {
+  try {
+    return parse(text);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(option, error.what());
+  }
+}
+
+/// `shown` is what the help prints after the option's name.
+template <class Target, class T>
+CLI::Option* add_option(CLI::App& app, const std::string& names, Target& target, T (*parse)(const std::string&),
+                        const std::string& shown, const std::string& description) {
+  const std::string name = names.substr(names.find("--") == std::string::npos ? 0 : names.find("--"));
+  return app
+      .add_option_function<std::string>(
+          names, [&target, parse, name](const std::string& text) { target = parsed(name, text, parse); }, description)
+      ->option_text(shown);
+}
+
+inline CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                             const std::string& description) {
+  return app.add_option(names, target, description)->option_text(shown);
+}
+
+CLI::Option* add_model(CLI::App& app, std::string& target);
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf convert
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/fit.hpp"
+#include "mmbrdf/io.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string input, output, name;
+  std::optional<Family> family;
+  std::optional<Orders> orders;
+  std::optional<ReflectanceTable> reflectance;
+  std::optional<std::vector<double>> wavelengths_nm;
+};
+
+Family family_to_convert_to(const std::string& name) {
+  const Family family = family_from(name);
+  if (family == Family::anisotropic) {
+    throw std::invalid_argument("\"anisotropic\": expected isotropic or germer2017");
+  }
+  return family;
+}
+
+/// Root mean square of what a conversion changes, over random directions.
+struct Change {
+  double f11 = 0;  ///< sr⁻¹
+  double others = 0;
+  double theta_max;
+};
+
+Change change(const Model& before, const Model& after) {
+  constexpr int count = 2000;
+  // Models that do not say where they are valid are compared up to 75 degrees, where published data end.
+  Change change{.theta_max = std::min({before.validity.theta_i_max, before.validity.theta_r_max, radians(75)})};
+  const std::vector<double> wavelengths = known_wavelengths(before);
+  for (const double wavelength : wavelengths) {
+    const PreparedModel old_model = prepare(before, wavelength), new_model = prepare(after, wavelength);
+    for (const Geometry& geometry : random_geometries(count, 1, change.theta_max)) {
+      const Mueller f = old_model.evaluate(geometry), g = new_model.evaluate(geometry);
+      const Mueller difference = normalized(f) - normalized(g);
+      change.f11 += std::pow(f(0, 0) - g(0, 0), 2);
+      for (const double m : difference.elements) {
+        change.others += m * m;
+      }
+    }
+  }
+  const double geometries = count * static_cast<double>(wavelengths.size());
+  change.f11 = std::sqrt(change.f11 / geometries);
+  change.others = std::sqrt(change.others / (15 * geometries));
+  return change;
+}
+
+Model in_basis(const Model& model, const Options& options) {
+  const Family family = options.family.value_or(options.orders ? Family::isotropic : model.family);
+  if (family == Family::isotropic && (options.orders || model.family != Family::isotropic)) {
+    Model result = projected_on_isotropic(model, options.orders.value_or(orders(model)));
+    if (known_wavelengths(model).empty()) {
+      note("projected on the isotropic basis; --wavelength would tell where to see how much that changes");
+    } else {
+      const Change c = change(model, result);
+      note("projected on the isotropic basis: rms change of f11 " + format("%.3g", c.f11) +
+           " sr^-1, of the others / f11 " + format("%.3g", c.others) + ", below " +
+           format("%.4g", degrees(c.theta_max)) + " degrees");
+    }
+    return result;
+  }
+  return family == Family::germer2017 ? in_published_form(model) : model;
+}
+
+bool has_covariance(const Model& model) {
+  return std::any_of(model.blocks.begin(), model.blocks.end(),
+                     [](const FittedBlock& b) { return !b.covariance.empty(); });
+}
+
+/// Of what is known about `model`, that for which a coefficient CSV has no place.
+void warn_of_what_a_csv_leaves_out(const Model& model, const Options& options) {
+  const std::string path = options.output;
+  if (!model.reflectance.values.empty()) {
+    warn(base_name(path) + " has no place for the reflectance that f11 is multiplied by. Keep it: --reflectance " +
+         reflectance_argument(model.reflectance));
+  }
+  std::string lost;
+  const auto lose = [&lost](bool there, const std::string& what) {
+    lost += !there ? "" : (lost.empty() ? "" : ", ") + what;
+  };
+  lose(!options.name.empty(), "the name");
+  lose(!model.validity.wavelengths.empty(), "the fitted wavelengths and angles");
+  lose(has_covariance(model), "the covariance");
+  lose(!model.provenance.empty(), "the provenance");
+  if (!lost.empty()) {
+    warn(base_name(path) + " has no place for: " + lost);
+  }
+}
+
+void convert(const Options& options, const CommandLine& line) {
+  if (options.orders && options.family == Family::germer2017) {
+    throw CLI::ValidationError("--orders", "goes with the isotropic basis only");
+  }
+  Model model = open_model(options.input);
+  if (options.wavelengths_nm) {
+    model.validity.wavelengths = micrometres(*options.wavelengths_nm);
+    std::sort(model.validity.wavelengths.begin(), model.validity.wavelengths.end());
+  }
+  if (options.reflectance) {
+    model.reflectance = *options.reflectance;
+  }
+  Model result = in_basis(model, options);
+  result.name = options.name.empty() ? result.name : options.name;
+  result.provenance["conversion"] = line.text({options.input, options.output}) + " (" + software() + ")";
+  save_model(options.output, result);
+  if (options.output.ends_with(".csv")) {
+    warn_of_what_a_csv_leaves_out(model, options);
+  } else if (has_covariance(model) && !has_covariance(result)) {
+    warn("the covariance of the coefficients is not carried over");
+  }
+}
+
+constexpr const char* footer =
+    "OUT is JSON, or the published coefficient layout if it ends in .csv; isotropic models have that form too, "
+    "exactly.\n"
+    "germer2017 models become isotropic by projection: the nearest model, not the same one; how near is printed.\n"
+    "Coefficient files say neither at which wavelengths they hold nor by which reflectance f11 was divided: tell it.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf convert ptfe ptfe.csv\n"
+    "  mmbrdf convert PTFE.coeff.csv ptfe.json --basis isotropic --wavelength 351,532,633,1064 \\\n"
+    "      --reflectance 351:0.976,532:0.984,633:0.984,1064:0.983";
+
+}  // namespace
+
+Run convert_command(CLI::App& app, const CommandLine& line) {
+  const auto o = std::make_shared<Options>();
+  app.add_option("IN", o->input, "Built-in name, JSON model or coefficient CSV")->required()->option_text(" ");
+  app.add_option("OUT", o->output, "File to write")->required()->option_text(" ");
+  add_option(app, "--basis", o->family, family_to_convert_to, "NAME", "isotropic or germer2017 [that of IN]");
+  add_option(app, "--orders", o->orders, orders_from, "N,M",
+             "Highest radial orders of the isotropic basis, of f11\nand of the other elements [those of IN]");
+  add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
+             "Record these as the fitted wavelengths, in nm");
+  add_option(app, "--reflectance", o->reflectance, reflectance_from, "NM:R[,NM:R...]",
+             "Multiply f11 by these reflectances, each at a\nwavelength in nm, linear between them");
+  add_text(app, "--name", o->name, "NAME", "Name of the model [that of IN]");
+  app.footer(footer);
+  return [o, line] { convert(*o, line); };
+}
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What several commands say about a model.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf::program {
+
+/// "isotropic, orders 7,4, wavelength powers 0 to 1, lambert mapping: 142 modes, 284 coefficients"
+std::string basis_line(const Model& model);
+
+/// The same as fields, and the fitted wavelengths.
+nlohmann::ordered_json basis_json(const Model& model);
+
+/// Wavelengths (micrometres) at which to show the model: the fitted ones, else the nodes of the reflectance table; for
+/// models that need none and know none, some one. Empty if nothing is known.
+std::vector<double> known_wavelengths(const Model& model);
+
+/// Directional-hemispherical reflectance at normal incidence: "0.97515 at 351 nm, 0.98416 at 532 nm"
+std::string normal_reflectance_line(const Model& model);
+nlohmann::ordered_json normal_reflectance_json(const Model& model);
+
+/// On standard output, each field and each row of a table in a line of its own.
+void print(const nlohmann::ordered_json& json);
+
+}  // namespace mmbrdf::program

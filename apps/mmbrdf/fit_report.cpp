@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fit_report.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "arguments.hpp"
+#include "describe.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+std::string element_name(std::size_t element) {
+  return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
+}
+
+/// Block that element number `element` belongs to.
+std::size_t block_of(const Model& model, std::size_t element) {
+  const std::pair<int, int> wanted(static_cast<int>(element) / 4, static_cast<int>(element) % 4);
+  std::size_t block = 0;
+  for (; block < model.blocks.size(); ++block) {
+    const auto& elements = model.blocks[block].block.elements;
+    if (std::find(elements.begin(), elements.end(), wanted) != elements.end()) {
+      break;
+    }
+  }
+  return block;
+}
+
+/// Rows of the 15 normalised elements.
+long polarization_rows(const FitResult& result) {
+  long rows = 0;
+  for (std::size_t element = 1; element < 16; ++element) {
+    rows += result.elements[element].rows;
+  }
+  return rows;
+}
+
+void print_text(const FitReport& report) {
+  const Model& model = report.result.model;
+  std::cout << report.data << ": " << report.rows << " rows at " << nanometre_list(model.validity.wavelengths) << '\n'
+            << "basis " << basis_line(model) << ", weights " << report.weights
+            << "\n\nelement     rows          rms        chi^2\n";
+  for (std::size_t element = 0; element < 16; ++element) {
+    const ElementFit& fit = report.result.elements[element];
+    std::cout << format("%-7s %8ld %12.6g %12.6g\n", element_name(element).c_str(), fit.rows, fit.rms, fit.chi_squared);
+  }
+  std::cout << "\nblock                coefficients   rank   condition\n";
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const Solution& solution = report.result.solutions[b];
+    std::cout << format("%-20s %12zu %6d %11.4g\n", model.blocks[b].block.name.c_str(), solution.x.size(),
+                        solution.rank, solution.condition());
+  }
+  const char* f11 = model.reflectance.values.empty() ? "f11, sr^-1" : "f11 / reflectance, sr^-1";
+  std::cout << format("\nrms of %-27s %.6g\n", f11, report.result.elements[0].rms)
+            << format("rms of %-27s %.6g\n", "the 15 others / f11", polarization_rms(report.result))
+            << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
+}
+
+void print_csv(const FitReport& report) {
+  std::cout << "element,rows,rms,chi_squared,block,coefficients,rank,condition\n";
+  for (std::size_t element = 0; element < 16; ++element) {
+    const ElementFit& fit = report.result.elements[element];
+    const std::size_t b = block_of(report.result.model, element);
+    const Solution& solution = report.result.solutions[b];
+    std::string block = report.result.model.blocks[b].block.name;
+    std::replace(block.begin(), block.end(), ',', ' ');
+    std::cout << element_name(element) << ',' << fit.rows << ',' << exact(fit.rms) << ',' << exact(fit.chi_squared)
+              << ',' << block << ',' << solution.x.size() << ',' << solution.rank << ',' << exact(solution.condition())
+              << '\n';
+  }
+  std::cout << "polarization," << polarization_rows(report.result) << ',' << exact(polarization_rms(report.result))
+            << ",,,,,\n";
+}
+
+using Json = nlohmann::ordered_json;
+
+Json elements_json(const FitResult& result) {
+  Json json = Json::array();
+  for (std::size_t element = 0; element < 16; ++element) {
+    const ElementFit& fit = result.elements[element];
+    json.push_back(
+        {{"element", element_name(element)}, {"rows", fit.rows}, {"rms", fit.rms}, {"chi_squared", fit.chi_squared}});
+  }
+  return json;
+}
+
+Json blocks_json(const FitResult& result) {
+  Json json = Json::array();
+  for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
+    const Solution& solution = result.solutions[b];
+    json.push_back({{"block", result.model.blocks[b].block.name},
+                    {"coefficients", solution.x.size()},
+                    {"rank", solution.rank},
+                    {"condition", solution.condition()}});
+  }
+  return json;
+}
+
+void print_json(const FitReport& report) {
+  const Model& model = report.result.model;
+  Json json{{"data", report.data}, {"rows", report.rows}, {"weights", report.weights}};
+  json.update(basis_json(model));
+  json["elements"] = elements_json(report.result);
+  json["blocks"] = blocks_json(report.result);
+  json["rms_f11"] = report.result.elements[0].rms;
+  json["rms_polarization"] = polarization_rms(report.result);
+  json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);
+  print(json);
+}
+
+}  // namespace
+
+void print(const FitReport& report, Format format) {
+  (format == Format::text ? print_text : format == Format::csv ? print_csv : print_json)(report);
+}
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program mmbrdf: a table of commands, and what becomes of errors.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "command.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Command {
+  const char* name;
+  const char* purpose;
+  Run (*declare)(CLI::App&, const CommandLine&);
+};
+
+constexpr Command commands[] = {
+    {"evaluate", "Print the Mueller BRDF of a model at one geometry, or at each row of a file.", evaluate_command},
+    {"fit", "Fit a model to measured samples and print how well it fits.", fit_command},
+    {"simulate", "Make samples that a model would give, with or without noise.", simulate_command},
+    {"info", "Print what a model holds and where it is valid.", info_command},
+    {"materials", "List the built-in models.", materials_command},
+    {"convert", "Turn a model into another file format or basis.", convert_command},
+};
+
+constexpr const char* footer =
+    "MODEL is the name of a built-in model, a JSON model file or a published coefficient file (CSV).\n"
+    "Angles are in degrees, wavelengths in nanometres, BRDFs in sr^-1. Azimuths are those of the directions to the\n"
+    "source and to the detector: forward scattering is at phi_r - phi_i = 180. Results go to standard output,\n"
+    "warnings to standard error. Exit status: 0, 1 for bad input, 2 for wrong usage.\n"
+    "\n"
+    "Example:\n"
+    "  mmbrdf evaluate ptfe --wavelength 532 --incident 45,0 --reflected 30,180\n"
+    "\n"
+    "mmbrdf COMMAND --help tells the rest.";
+
+int wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
+  std::string command = "mmbrdf";
+  for (const CLI::App* chosen : app.get_subcommands()) {
+    command += " " + chosen->get_name();
+  }
+  std::cerr << "mmbrdf: " << error.what() << "\nsee " << command << " --help\n";
+  return 2;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Mueller-matrix BRDFs: fit them to measurements, evaluate them anywhere.", "mmbrdf"};
+  app.set_version_flag("--version", software(), "Print the version");
+  app.set_help_flag("-h,--help", "Print this help");
+  app.get_formatter()->column_width(34);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Subcommands", "Commands");
+  app.get_formatter()->label("Positionals", "Arguments");
+  app.require_subcommand(0, 1);
+  app.footer(footer);
+
+  const CommandLine line{{argv, argv + argc}};
+  Run chosen = [&app] { std::cout << app.help(); };
+  for (const Command& command : commands) {
+    CLI::App* subcommand = app.add_subcommand(command.name, command.purpose)->group("Commands");
+    subcommand->parse_complete_callback([&chosen, run = command.declare(*subcommand, line)] { chosen = run; });
+  }
+  try {
+    app.parse(argc, argv);
+    chosen();
+  } catch (const CLI::CallForHelp&) {
+    std::cout << app.help();
+  } catch (const CLI::CallForVersion&) {
+    std::cout << software() << '\n';
+  } catch (const CLI::ParseError& error) {
+    return wrong_usage(app, error);
+  }
+  flush_output();
+  return 0;
+}
+
+std::string shell_quoted(const std::string& word) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,=+@%-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+    return word;
+  }
+  std::string result = "'";
+  for (const char c : word) {
+    result += c == '\'' ? "'\\''" : std::string(1, c);
+  }
+  return result + "'";
+}
+
+}  // namespace
+
+std::string software() { return "mmbrdf " MMBRDF_VERSION; }
+
+std::string CommandLine::text(const std::vector<std::string>& paths) const {
+  std::string result = "mmbrdf";
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    std::string word = words[i];
+    for (const std::string& path : paths) {
+      if (!path.empty() && word.ends_with(path)) {  // also in -oPATH and --output=PATH
+        word = word.substr(0, word.size() - path.size()) + std::filesystem::path(path).filename().string();
+        break;
+      }
+    }
+    result += " " + shell_quoted(word);
+  }
+  return result;
+}
+
+}  // namespace mmbrdf::program
+
+int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);
+  try {
+    return mmbrdf::program::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "mmbrdf: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf info, mmbrdf materials
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "mmbrdf/materials.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string model;
+  Format format = Format::text;
+};
+
+constexpr const char* frame_line = "xy; element ij is f_ij / f11, but for 11";
+constexpr const char* convention_line =
+    "germer2017: S2 = y - x (s - p), S4 = left - right; phi_i is that of the direction to the source";
+constexpr const char* unit_line = "f11 in sr^-1; inside, angles in radians and wavelengths in micrometres";
+
+/// "u 8, v 22"
+std::string functions_line(const Block& block) {
+  std::map<Function, int> counts;
+  for (const Mode& mode : block.modes) {
+    ++counts[mode.function];
+  }
+  std::string text;
+  for (const auto& [function, count] : counts) {
+    text += (text.empty() ? "" : ", ") + to_string(function) + " " + std::to_string(count);
+  }
+  return text;
+}
+
+void print_blocks(const Model& model) {
+  std::cout << "\nblock                modes                coefficients   rank   condition  covariance\n";
+  for (const FittedBlock& fitted : model.blocks) {
+    std::cout << format("%-20s %-20s %12zu", fitted.block.name.c_str(), functions_line(fitted.block).c_str(),
+                        fitted.coefficients.size())
+              << (fitted.rank > 0 ? format(" %6d", fitted.rank) : "      -")
+              << (fitted.condition > 0 ? format(" %11.4g", fitted.condition) : "           -")
+              << (fitted.covariance.empty() ? "  no\n" : "  yes\n");
+  }
+}
+
+void print_line(const std::string& name, const std::string& value) {
+  std::cout << format("%-12s ", name.substr(0, 100).c_str()) << value << '\n';
+}
+
+void print_text(const Model& model) {
+  const Validity& validity = model.validity;
+  print_line("name", model.name);
+  print_line("basis", basis_line(model));
+  print_line("wavelengths", validity.wavelengths.empty() ? "not known" : nanometre_list(validity.wavelengths));
+  print_line("angles", format("theta_i <= %.4g, theta_r <= %.4g degrees", degrees(validity.theta_i_max),
+                              degrees(validity.theta_r_max)));
+  print_line("reflectance", model.reflectance.values.empty()
+                                ? "none: f11 is that of the coefficients"
+                                : "f11 is multiplied by " + reflectance_argument(model.reflectance));
+  print_line("DHR(0)", normal_reflectance_line(model));
+  print_line("frame", frame_line);
+  print_line("convention", convention_line);
+  print_line("units", unit_line);
+  print_blocks(model);
+  std::cout << (model.provenance.empty() ? "" : "\n");
+  for (const auto& [key, value] : model.provenance) {
+    print_line(key, value);
+  }
+}
+
+nlohmann::ordered_json blocks_json(const Model& model) {
+  auto json = nlohmann::ordered_json::array();
+  for (const FittedBlock& fitted : model.blocks) {
+    json.push_back({{"block", fitted.block.name},
+                    {"modes", functions_line(fitted.block)},
+                    {"coefficients", fitted.coefficients.size()},
+                    {"rank", fitted.rank},
+                    {"condition", fitted.condition},
+                    {"covariance", !fitted.covariance.empty()}});
+  }
+  return json;
+}
+
+void print_json(const Model& model) {
+  nlohmann::ordered_json json{{"name", model.name}};
+  json.update(basis_json(model));
+  json["theta_i_max_deg"] = degrees(model.validity.theta_i_max);
+  json["theta_r_max_deg"] = degrees(model.validity.theta_r_max);
+  json["reflectance"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < model.reflectance.values.size(); ++i) {
+    json["reflectance"].push_back(
+        {{"wavelength_nm", nanometres(model.reflectance.wavelengths[i])}, {"value", model.reflectance.values[i]}});
+  }
+  json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);
+  json["frame"] = "xy";
+  json["convention"] = "germer2017";
+  json["unit_f11"] = "sr^-1";
+  json["blocks"] = blocks_json(model);
+  json["provenance"] = model.provenance;
+  print(json);
+}
+
+void info(const Options& options) {
+  (options.format == Format::json ? print_json : print_text)(open_model(options.model));
+}
+
+Format text_or_json(const std::string& name) {
+  const Format format = format_from(name);
+  if (format == Format::csv) {
+    throw std::invalid_argument("\"csv\": expected text or json");
+  }
+  return format;
+}
+
+void list_materials() {
+  std::cout << "name        wavelengths              model\n";
+  for (const std::string& name : materials()) {
+    const Model model = material(name);
+    std::cout << format("%-11s %-24s ", name.c_str(), nanometre_list(model.validity.wavelengths).c_str())
+              << basis_line(model) << '\n';
+  }
+}
+
+}  // namespace
+
+Run info_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_model(app, o->model);
+  add_option(app, "--format", o->format, text_or_json, "FORMAT", "text or json [text]");
+  app.footer(
+      "Angles are in degrees, wavelengths in nm, reflectances without unit. The last lines say where the model is "
+      "from.\n"
+      "\n"
+      "Example:\n"
+      "  mmbrdf info ptfe");
+  return [o] { info(*o); };
+}
+
+Run materials_command(CLI::App& app, const CommandLine&) {
+  app.footer(
+      "Wavelengths are in nm. mmbrdf info NAME tells the rest.\n"
+      "\n"
+      "Example:\n"
+      "  mmbrdf materials");
+  return list_materials;
+}
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output.hpp"
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <stdexcept>
+
+namespace mmbrdf::program {
+
+void flush_output() {
+  errno = std::cout ? 0 : errno;
+  std::cout.flush();
+  if (!std::cout) {
+    throw std::runtime_error(std::string("standard output: cannot write") +
+                             (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
+  }
+}
+
+void warn(const std::string& message) { std::cerr << "mmbrdf: warning: " << message << '\n'; }
+
+void note(const std::string& message) { std::cerr << "mmbrdf: note: " << message << '\n'; }
+
+std::string format(const char* pattern, ...) {
+  std::array<char, 512> buffer{};
+  std::va_list values;
+  va_start(values, pattern);
+  const int size = std::vsnprintf(buffer.data(), buffer.size(), pattern, values);
+  va_end(values);
+  if (size < 0 || static_cast<std::size_t>(size) >= buffer.size()) {
+    throw std::logic_error(std::string("format: the text is too long for ") + pattern);
+  }
+  return std::string(buffer.data(), static_cast<std::size_t>(size));
+}
+
+void append_exact(std::string& text, double value) {
+  std::array<char, 32> buffer;  // sign, 17 digits, point and exponent: 24 at most
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 17);
+  text.append(buffer.data(), end.ptr);
+}
+
+std::string exact(double value) {
+  std::string text;
+  append_exact(text, value);
+  return text;
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> buffer;
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string brief(double value) { return format("%.10g", value); }
+
+std::string element_columns(bool normalized) {
+  std::string text;
+  for (int element = 0; element < 16; ++element) {
+    text += format(",%c%d%d", normalized && element > 0 ? 'm' : 'f', element / 4 + 1, element % 4 + 1);
+  }
+  return text;
+}
+
+void append_elements(std::string& text, const Mueller& m) {
+  for (const double value : m.elements) {
+    text += ',';
+    append_exact(text, value);
+  }
+}
+
+Mueller normalized_beside_f11(const Mueller& f) {
+  Mueller m = normalized(f);
+  m(0, 0) = f(0, 0);
+  return m;
+}
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Results on standard output, talk on standard error.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "mmbrdf/mueller.hpp"
+
+namespace mmbrdf::program {
+
+enum class Format { text, csv, json };
+
+/// Throws std::runtime_error unless everything sent to standard output so far could be written.
+void flush_output();
+
+/// One line on standard error.
+void warn(const std::string& message);
+void note(const std::string& message);
+
+/// As printf.
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
+
+/// Appends 17 significant digits: reading them gives the same number.
+void append_exact(std::string& text, double value);
+std::string exact(double value);
+
+/// The fewest digits that give the same number: 0.984.
+std::string shortest(double value);
+
+/// Up to 10 significant digits, no more than needed: 532, 81.87 …
+std::string brief(double value);
+
+/// ",f11,f12,…,f44", or of normalised elements ",f11,m12,…,m44".
+std::string element_columns(bool normalized);
+
+/// Appends "," and 17 significant digits for each of the 16 elements.
+void append_elements(std::string& text, const Mueller& m);
+
+/// M with all elements but 11 divided by it. Throws std::invalid_argument if f11 is 0.
+Mueller normalized_beside_f11(const Mueller& f);
+
+}  // namespace mmbrdf::program
