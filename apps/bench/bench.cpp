@@ -2,13 +2,11 @@
 // How long it takes to prepare and to evaluate the built-in model ptfe. items_per_second counts Mueller matrices.
 
 #include <benchmark/benchmark.h>
-#include <mmbrdf/geometry.hpp>
+#include <mmbrdf/dataset.hpp>
 #include <mmbrdf/materials.hpp>
 #include <mmbrdf/model.hpp>
 
 #include <cstdint>
-#include <numbers>
-#include <random>
 #include <vector>
 
 namespace {
@@ -18,14 +16,7 @@ using namespace mmbrdf;
 constexpr double wavelength = 0.532;
 constexpr std::size_t count = 4096;  // geometries and their matrices stay in the second-level cache
 
-std::vector<Geometry> random_geometries() {
-  std::mt19937_64 engine(1);
-  std::uniform_real_distribution<double> theta(0, radians(80));
-  std::uniform_real_distribution<double> phi(-std::numbers::pi, std::numbers::pi);
-  std::vector<Geometry> geometries(count);
-  for (Geometry& geometry : geometries) geometry = {{theta(engine), phi(engine)}, {theta(engine), phi(engine)}};
-  return geometries;
-}
+std::vector<Geometry> sample_geometries() { return random_geometries(static_cast<int>(count), 1, radians(80)); }
 
 void count_matrices(benchmark::State& state, std::size_t for_each_iteration) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(for_each_iteration));
@@ -39,7 +30,7 @@ BENCHMARK(prepare_model);
 
 void evaluate_one(benchmark::State& state) {
   const PreparedModel prepared = prepare(material("ptfe"), wavelength);
-  const std::vector<Geometry> geometries = random_geometries();
+  const std::vector<Geometry> geometries = sample_geometries();
   const auto frame = static_cast<Frame>(state.range(0));
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(prepared.evaluate(geometries[i++ % count], frame));
@@ -53,7 +44,7 @@ BENCHMARK(evaluate_one)
 
 void evaluate_many(benchmark::State& state) {
   const PreparedModel prepared = prepare(material("ptfe"), wavelength);
-  const std::vector<Geometry> geometries = random_geometries();
+  const std::vector<Geometry> geometries = sample_geometries();
   std::vector<Mueller> out(count);
   for (auto _ : state) {
     prepared.evaluate(geometries, Frame::xy, out);
@@ -66,7 +57,7 @@ BENCHMARK(evaluate_many);
 void evaluate_many_at_one_incident_direction(benchmark::State& state) {
   const PreparedIncidence prepared = prepare(material("ptfe"), wavelength).at(Direction{radians(45), 0});
   std::vector<Direction> reflected;
-  for (const Geometry& geometry : random_geometries()) reflected.push_back(geometry.reflected);
+  for (const Geometry& geometry : sample_geometries()) reflected.push_back(geometry.reflected);
   std::vector<Mueller> out(count);
   for (auto _ : state) {
     prepared.evaluate(reflected, Frame::xy, out);
