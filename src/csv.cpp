@@ -52,13 +52,13 @@ Direction direction(const CsvReader& reader, int theta_column, int phi_column) {
 
 CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::move(name)), line_(longest_line + 1) {
   if (!read_row()) throw std::runtime_error(name_ + ": empty file, without a header line");
+  if (is_number(fields_[0]))
+    throw error("no header line: instead of a column's name there is the number " + std::string(fields_[0]));
   for (const std::string_view field : fields_) {
     if (!field.empty() && std::find(columns_.begin(), columns_.end(), field) != columns_.end())
       throw error("two columns have the name " + in_quotes(field));
     columns_.emplace_back(field);
   }
-  if (is_number(fields_[0]))
-    throw error("no header line: instead of a column's name there is the number " + columns_[0]);
 }
 
 CsvReader::CsvReader(std::istream& in, std::string name, std::vector<std::string> columns)

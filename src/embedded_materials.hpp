@@ -12,7 +12,7 @@ struct EmbeddedMaterial {
   std::string_view json;  ///< the file's text
 };
 
-/// All of them, ordered by name; they live as long as the program.
+/// All of them, in any order; they live as long as the program.
 std::span<const EmbeddedMaterial> embedded_materials();
 
 }  // namespace mmbrdf

@@ -19,7 +19,8 @@ namespace {
 using Table = std::array<double, zernike_count(max_order)>;
 
 constexpr std::size_t samples_at_once = 128;
-constexpr double involved = 1e-6;  // least part of a free combination for which a mode is named
+constexpr double involved = 1e-6;        // least part of a free combination for which a mode is named
+constexpr std::size_t most_named = 24;  // modes in a message of one line
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
@@ -41,28 +42,35 @@ Sample at_zero_azimuth(Sample sample) {
   return sample;
 }
 
-/// Names the combinations of coefficients that the data leave free.
+/// "11(7,7,5,-5)", and the power of the wavelength where there are several.
+std::string short_name(const Block& block, std::size_t coefficient, std::size_t count) {
+  const Mode& mode = block.modes[coefficient % block.modes.size()];
+  std::string name = to_string(mode.function) + "(" + std::to_string(mode.n) + "," + std::to_string(mode.m) + "," +
+                     std::to_string(mode.k) + "," + std::to_string(mode.l) + ")";
+  if (count > block.modes.size()) name += "p" + std::to_string(coefficient / block.modes.size());
+  return name;
+}
+
+/// What the data leave free of a block, or nothing.
 std::string undetermined(const Block& block, const Solution& solution) {
   const std::size_t n = solution.x.size(), free = n - size(solution.rank);
+  if (free == 0) return "";
   std::string names;
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i) {
     double part = 0;
     for (std::size_t f = 0; f < free; ++f) part = std::max(part, std::abs(solution.null_space[f * n + i]));
-    if (part < involved) continue;
-    if (++count > 4) continue;
-    names += (names.empty() ? "" : ", ") + to_string(block.modes[i % block.modes.size()]);
-    if (n > block.modes.size()) names += " p = " + std::to_string(i / block.modes.size());
+    if (part > involved && ++count <= most_named) names += " " + short_name(block, i, n);
   }
-  if (count > 4) names += " and " + std::to_string(count - 4) + " more";
-  return "the data do not determine the model: block " + block.name + " has " + std::to_string(n) + " coefficients, rank " +
-         std::to_string(solution.rank) + "; " + std::to_string(free) + " combinations are free, of the modes " + names +
-         " (choose lower orders, or the minimum-norm solution)";
+  if (count > most_named) names += " and " + std::to_string(count - most_named) + " more";
+  return "; block " + block.name + ": rank " + std::to_string(solution.rank) + " of " + std::to_string(n) + ", " +
+         std::to_string(free) + " combinations are free of the modes (n,m,k,l)" + names;
 }
 
-void require_determined(const Block& block, const Solution& solution, Family family, const FitOptions& options) {
-  if (solution.rank < static_cast<int>(solution.x.size()) && !options.minimum_norm && family != Family::germer2017)
-    throw std::invalid_argument(undetermined(block, solution));
+void require_determined(const std::string& complaints) {
+  if (!complaints.empty())
+    throw std::invalid_argument("the data do not determine the model" + complaints +
+                                "; choose lower orders, or the minimum-norm solution");
 }
 
 }  // namespace
@@ -181,7 +189,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) cons
   if (wavelengths_.size() < 2) return table;
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance);
-    require_determined(blocks_[0], solution, basis_.family, options);
+    if (!accepts_minimum_norm(options)) require_determined(undetermined(blocks_[0], solution));
     Model f11;
     f11.family = basis_.family;
     f11.mapping = basis_.mapping;
@@ -196,6 +204,10 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) cons
   return table;
 }
 
+bool FitAccumulator::accepts_minimum_norm(const FitOptions& options) const {
+  return options.minimum_norm || basis_.family == Family::germer2017;
+}
+
 int FitAccumulator::chosen_powers(const FitOptions& options) const {
   const int powers = options.powers.value_or(wavelengths_.size() > 1 ? 1 : 0);
   if (powers < 0) throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is negative");
@@ -208,6 +220,7 @@ int FitAccumulator::chosen_powers(const FitOptions& options) const {
 FitResult FitAccumulator::solve(const FitOptions& options) const {
   if (samples_ == 0) throw std::invalid_argument("fit: no samples");
   const int powers = chosen_powers(options);
+  std::string complaints;
   FitResult result;
   Model& model = result.model;
   model.family = basis_.family;
@@ -225,7 +238,7 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
     LeastSquares whole = parts.front().second;
     for (std::size_t i = 1; i < parts.size(); ++i) whole.merge(parts[i].second);
     Solution solution = whole.solve(options.rank_tolerance);
-    require_determined(blocks_[b], solution, basis_.family, options);
+    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
     for (const auto& [e, part] : parts) result.elements[e] = element_fit(e, part, solution.x);
     FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition()};
     if (solution.degrees_of_freedom() > 0) {
@@ -235,6 +248,7 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
     model.blocks.push_back(std::move(fitted));
     result.solutions.push_back(std::move(solution));
   }
+  require_determined(complaints);
   return result;
 }
 

@@ -164,19 +164,22 @@ std::vector<Sample> read_samples(const std::string& path) {
 
 void write_samples(const std::string& path, std::span<const Sample> samples) {
   require_valid(samples);
-  write_file(path, [&](std::ostream& out) {
-    out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11";
-    for (std::size_t e = 1; e < 16; ++e) out << ",m" << element_name(e);
+  write_file(path, [&](std::ostream& out) { write_samples(out, samples); });
+}
+
+void write_samples(std::ostream& out, std::span<const Sample> samples) {
+  require_valid(samples);
+  out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11";
+  for (std::size_t e = 1; e < 16; ++e) out << ",m" << element_name(e);
+  out << '\n';
+  for (const Sample& sample : samples) {
+    out << shortest(in_nanometres(sample.wavelength));
+    for (const Direction& direction : {sample.geometry.incident, sample.geometry.reflected})
+      out << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
+    out << ',' << shortest(sample.f11);
+    for (std::size_t e = 1; e < 16; ++e) out << ',' << shortest(sample.normalized.elements[e]);
     out << '\n';
-    for (const Sample& sample : samples) {
-      out << shortest(in_nanometres(sample.wavelength));
-      for (const Direction& direction : {sample.geometry.incident, sample.geometry.reflected})
-        out << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
-      out << ',' << shortest(sample.f11);
-      for (std::size_t e = 1; e < 16; ++e) out << ',' << shortest(sample.normalized.elements[e]);
-      out << '\n';
-    }
-  });
+  }
 }
 
 Model read_coefficients(std::istream& in, const std::string& name) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "embedded_materials.hpp"
 #include "mmbrdf/io.hpp"
@@ -12,7 +13,9 @@ namespace mmbrdf {
 std::vector<std::string> materials() {
   std::vector<std::string> names;
   for (const EmbeddedMaterial& embedded : embedded_materials()) names.emplace_back(embedded.name);
-  std::sort(names.begin(), names.end());
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {  // ptfe-351 before ptfe-1064
+    return std::pair(a.size(), a) < std::pair(b.size(), b);
+  });
   return names;
 }
 

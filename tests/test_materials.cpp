@@ -14,7 +14,7 @@ namespace mmbrdf {
 namespace {
 
 TEST(Materials, ArePtfeAtAllWavelengthsAndAtEach) {
-  EXPECT_EQ(materials(), (std::vector<std::string>{"ptfe", "ptfe-1064", "ptfe-351", "ptfe-532", "ptfe-633"}));
+  EXPECT_EQ(materials(), (std::vector<std::string>{"ptfe", "ptfe-351", "ptfe-532", "ptfe-633", "ptfe-1064"}));
 }
 
 TEST(Materials, AreIsotropicAndSayWhereTheyAreFrom) {
@@ -50,7 +50,7 @@ TEST(Materials, OfOtherNamesAreRefusedWithTheNamesThereAre) {
     material("spectralon");
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "material: 'spectralon' is not one of ptfe, ptfe-1064, ptfe-351, ptfe-532, ptfe-633");
+    EXPECT_STREQ(e.what(), "material: 'spectralon' is not one of ptfe, ptfe-351, ptfe-532, ptfe-633, ptfe-1064");
   }
 }
 

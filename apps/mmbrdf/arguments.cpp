@@ -161,6 +161,7 @@ double micrometres(double wavelength_nm) {
 
 std::vector<double> micrometres(const std::vector<double>& wavelengths_nm) {
   std::vector<double> result;
+  result.reserve(wavelengths_nm.size());
   for (const double wavelength_nm : wavelengths_nm) {
     result.push_back(micrometres(wavelength_nm));
   }
@@ -171,6 +172,7 @@ double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e
 
 std::string nanometre_list(const std::vector<double>& wavelengths) {
   std::vector<std::string> words;
+  words.reserve(wavelengths.size());
   for (const double wavelength : wavelengths) {
     words.push_back(brief(nanometres(wavelength)));
   }

@@ -37,6 +37,10 @@ std::string by_lines(const nlohmann::ordered_json& json) {
   return (table ? "[" : "{") + text + (table ? "\n  ]" : "\n  }");
 }
 
+std::string counted(int count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 bool wavelength_unknown(const Model& model) {
   return model.validity.wavelengths.empty() && model.reflectance.wavelengths.empty();
 }
@@ -48,8 +52,8 @@ std::string basis_line(const Model& model) {
   std::string text = to_string(model.family) + ", orders " + std::to_string(order.f11) + "," +
                      std::to_string(order.other) + ", wavelength power";
   text += model.powers == 0 ? " 0" : "s 0 to " + std::to_string(model.powers);
-  return text + ", " + to_string(model.mapping) + " mapping: " + std::to_string(mode_count(model)) + " modes, " +
-         std::to_string(coefficient_count(model)) + " coefficients";
+  return text + ", " + to_string(model.mapping) + " mapping: " + counted(mode_count(model), "mode") + ", " +
+         counted(coefficient_count(model), "coefficient");
 }
 
 nlohmann::ordered_json basis_json(const Model& model) {

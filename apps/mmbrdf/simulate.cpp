@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf simulate
 
+#include <iostream>
 #include <memory>
 
 #include "arguments.hpp"
@@ -64,11 +65,13 @@ std::vector<double> wavelengths_of(const Model& model, const Options& options) {
 void simulate_data(const Options& options) {
   const Model model = open_model(options.model);
   const std::vector<double> wavelengths = wavelengths_of(model, options);
-  // The noise has another seed than the directions: with the same one both would follow the same random numbers.
   const std::vector<Geometry> geometries =
       options.grid->random > 0 ? random_geometries(options.grid->random, options.seed) : germer2017_grid();
-  const auto samples = simulate(model, wavelengths, geometries, options.speckle, options.seed + 1);
-  write_samples(options.output.empty() ? "/dev/stdout" : options.output, samples);
+  const auto samples = simulate(model, wavelengths, geometries, options.speckle, options.seed);
+  if (options.output.empty())
+    write_samples(std::cout, samples);
+  else
+    write_samples(options.output, samples);
 }
 
 constexpr const char* footer =

@@ -48,7 +48,9 @@ struct FitOptions {
   std::optional<ReflectanceTable> reflectance;  ///< f11 is divided by it. Default for several wavelengths: each one's own
                                                 ///< normal-incidence DHR; for one wavelength: none.
   bool minimum_norm = false;  ///< accept data that do not determine every mode. Always so for germer2017.
-  double rank_tolerance = LeastSquares::default_rank_tolerance;
+  /// Singular values below this part of the largest count as 0: 1e-8 to 1e-13 all give the published files, and the
+  /// published grid, whose incidence at 0.001 degrees is as good as 0, is found not to determine order 11.
+  double rank_tolerance = 1e-8;
 };
 
 /// How well one matrix element is fitted.
@@ -105,6 +107,7 @@ class FitAccumulator {
   AtWavelength& slot(double wavelength);
   void add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
                 std::span<const double> weights, std::span<const double> f11_weights);
+  bool accepts_minimum_norm(const FitOptions& options) const;
   int chosen_powers(const FitOptions& options) const;
   ReflectanceTable own_reflectance(const FitOptions& options) const;
   void require_covered(const ReflectanceTable& table) const;

@@ -94,6 +94,7 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name);
 /// The project's own columns: wavelength_nm, angles in degrees, f11, m12 … m44, with as many digits as it takes:
 /// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place.
 void write_samples(const std::string& path, std::span<const Sample> samples);
+void write_samples(std::ostream& out, std::span<const Sample> samples);
 
 /// Published coefficient files: i, j, n, m, k, l, p, a without a header, rows in any order. The model has family
 /// germer2017, no reflectance table, and its validity is unknown; powers of a mode that the file lacks are 0. Throws

@@ -10,7 +10,7 @@
 
     # After an empty line again a comment.
     $ mmbrdf info nowhere.json
-    error: nowhere.json: cannot open
+    mmbrdf: nowhere.json: no such file, and not a built-in model (ptfe, ...)
     [exit 1]
 
     ? test -d "$MMBRDF_DATA"
@@ -24,6 +24,8 @@ $ COMMAND   Run by bash with pipefail; standard output and error together must b
 A line that differs is still equal if only its numbers and the width of its gaps differ, each number
 by at most 1e-9 of its value or 1e-12. A number is a decimal literal that does not continue a word:
 f11 and germer2017 hold none. Empty lines at the end of an output do not count.
+
+Of a Markdown page, the code blocks that begin with a command are the transcript; --update leaves pages alone.
 
 All commands of a file run in one fresh folder, with the programs first on the PATH. MMBRDF_SOURCE is
 the source folder and MMBRDF_DATA the published data; in an output their paths are printed as these names.
@@ -49,6 +51,12 @@ class Step:
     command: str
     expected: list = field(default_factory=list)  # output lines, [exit N] included
     after: list = field(default_factory=list)  # empty lines and comments before the next step
+
+
+def transcript_of_page(text):
+    """The code blocks of a Markdown page that begin with a command."""
+    blocks = re.findall(r"^```\w*\n(\$ .*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+    return "\n".join(blocks)
 
 
 def parse(text):
@@ -145,7 +153,9 @@ def print_difference(path, step, actual):
 
 def replay(path, programs, source, update):
     """Exit status for one file: 0, 1 or SKIPPED."""
-    before, steps = parse(path.read_text(encoding="utf-8"))
+    text = path.read_text(encoding="utf-8")
+    is_page = path.suffix == ".md"
+    before, steps = parse(transcript_of_page(text) if is_page else text)
     if not any(step.kind == "$" for step in steps):
         print(f"{path}: no command")
         return 1
@@ -163,7 +173,7 @@ def replay(path, programs, source, update):
                 print_difference(path, step, actual)
                 step.expected = actual
                 failed = True
-    if failed and update:
+    if failed and update and not is_page:
         path.write_text(unparse(before, steps), encoding="utf-8")
         print(f"{path}: updated")
         failed = False
