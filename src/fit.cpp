@@ -9,9 +9,9 @@
 
 #include "mmbrdf/radiometry.hpp"
 
-// For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit of a
-// block over all wavelengths, with any powers and any reflectance table, is put together from them: a coefficient that is
-// a polynomial of λ repeats the columns of each wavelength's triangle, multiplied by λ^p.
+// For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit
+// of a block over all wavelengths, with any powers and any reflectance table, is put together from them: a coefficient
+// that is a polynomial of λ repeats the columns of each wavelength's triangle, multiplied by λ^p.
 
 namespace mmbrdf {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 using Table = std::array<double, zernike_count(max_order)>;
 
 constexpr std::size_t samples_at_once = 128;
-constexpr double involved = 1e-6;        // least part of a free combination for which a mode is named
+constexpr double involved = 1e-6;       // least part of a free combination for which a mode is named
 constexpr std::size_t most_named = 24;  // modes in a message of one line
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
@@ -109,11 +109,13 @@ FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
   return fresh;
 }
 
-void FitAccumulator::add(std::span<const Sample> samples, std::span<const double> weights, std::span<const double> f11_weights) {
+void FitAccumulator::add(std::span<const Sample> samples, std::span<const double> weights,
+                         std::span<const double> f11_weights) {
   require_valid(samples);
   for (const std::span<const double>& list : {weights, f11_weights}) {
     if (!list.empty() && list.size() != samples.size())
-      throw std::invalid_argument("fit: " + std::to_string(list.size()) + " weights for " + std::to_string(samples.size()) + " samples");
+      throw std::invalid_argument("fit: " + std::to_string(list.size()) + " weights for " +
+                                  std::to_string(samples.size()) + " samples");
     for (std::size_t s = 0; s < list.size(); ++s)
       if (!(list[s] >= 0) || !std::isfinite(list[s]))
         throw std::invalid_argument("fit: weight " + std::to_string(list[s]) + " of sample " + std::to_string(s + 1));
@@ -122,8 +124,8 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const double
   for (std::size_t s = 0; s < samples.size(); ++s) groups[&slot(samples[s].wavelength)].push_back(s);
   for (auto& [at, members] : groups)
     for (std::size_t first = 0; first < members.size(); first += samples_at_once)
-      add_some(*at, samples, std::span(members).subspan(first, std::min(samples_at_once, members.size() - first)), weights,
-               f11_weights);
+      add_some(*at, samples, std::span(members).subspan(first, std::min(samples_at_once, members.size() - first)),
+               weights, f11_weights);
   for (const Sample& sample : samples) {
     validity_.theta_i_max = std::max(validity_.theta_i_max, sample.geometry.incident.theta);
     validity_.theta_r_max = std::max(validity_.theta_r_max, sample.geometry.reflected.theta);
@@ -150,7 +152,8 @@ void FitAccumulator::add_some(AtWavelength& at, std::span<const Sample> samples,
     row_weights.clear();
     const std::span<const double> list = e == 0 ? f11_weights : weights;
     for (std::size_t s = 0; s < members.size(); ++s) {
-      for (const ColumnTerm& t : terms_[e]) rows[s * columns + t.column] += t.weight * k_i[s][t.incident] * k_r[s][t.reflected];
+      for (const ColumnTerm& t : terms_[e])
+        rows[s * columns + t.column] += t.weight * k_i[s][t.incident] * k_r[s][t.reflected];
       values.push_back(e == 0 ? used[s].f11 : used[s].normalized.elements[e]);
       row_weights.push_back(list.empty() ? 1 : list[members[s]]);
       at.weight[e] += row_weights.back();
@@ -173,7 +176,8 @@ void FitAccumulator::merge(const FitAccumulator& other) {
   samples_ += other.samples_;
 }
 
-LeastSquares FitAccumulator::over_wavelengths(std::size_t element, int powers, const ReflectanceTable& reflectance) const {
+LeastSquares FitAccumulator::over_wavelengths(std::size_t element, int powers,
+                                              const ReflectanceTable& reflectance) const {
   const int modes = wavelengths_.begin()->second.elements[element].unknowns();
   LeastSquares result(modes * (powers + 1));
   for (const auto& [wavelength, at] : wavelengths_) {
@@ -196,8 +200,8 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) cons
     f11.blocks.push_back({blocks_[0], solution.x, {}, 0, 0});
     const double dhr = directional_hemispherical_reflectance(f11, wavelength, {0, 0});
     if (!(dhr > 0))
-      throw std::invalid_argument("fit: the normal-incidence reflectance at " + nanometres(wavelength) + " nm comes out as " +
-                                  std::to_string(dhr) + "; give a reflectance table");
+      throw std::invalid_argument("fit: the normal-incidence reflectance at " + nanometres(wavelength) +
+                                  " nm comes out as " + std::to_string(dhr) + "; give a reflectance table");
     table.wavelengths.push_back(wavelength);
     table.values.push_back(dhr);
   }
@@ -210,10 +214,12 @@ bool FitAccumulator::accepts_minimum_norm(const FitOptions& options) const {
 
 int FitAccumulator::chosen_powers(const FitOptions& options) const {
   const int powers = options.powers.value_or(wavelengths_.size() > 1 ? 1 : 0);
-  if (powers < 0) throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is negative");
+  if (powers < 0)
+    throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is negative");
   if (size(powers) >= wavelengths_.size())
     throw std::invalid_argument("fit: powers of the wavelength up to " + std::to_string(powers) + " need " +
-                                std::to_string(powers + 1) + " wavelengths, the data have " + std::to_string(wavelengths_.size()));
+                                std::to_string(powers + 1) + " wavelengths, the data have " +
+                                std::to_string(wavelengths_.size()));
   return powers;
 }
 
@@ -255,7 +261,8 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
 void FitAccumulator::require_covered(const ReflectanceTable& table) const {
   if (table.values.empty()) return;
   for (const auto& [wavelength, at] : wavelengths_)
-    if (wavelength < table.wavelengths.front() - wavelength_resolution || wavelength > table.wavelengths.back() + wavelength_resolution)
+    if (wavelength < table.wavelengths.front() - wavelength_resolution ||
+        wavelength > table.wavelengths.back() + wavelength_resolution)
       throw std::invalid_argument("fit: the reflectance table does not reach " + nanometres(wavelength) + " nm");
 }
 
@@ -270,14 +277,16 @@ ElementFit FitAccumulator::element_fit(std::size_t element, const LeastSquares& 
   return fit;
 }
 
-// ---- samples in memory ------------------------------------------------------------------------------------------------
+// ---- samples in memory
+// ------------------------------------------------------------------------------------------------
 
 std::vector<double> speckle_weights(std::span<const Sample> samples) {
   std::vector<double> weights;
   for (const Sample& sample : samples) {
     const double cos_i = std::cos(sample.geometry.incident.theta), cos_r = std::cos(sample.geometry.reflected.theta);
     if (!(cos_i > 1e-12))
-      throw std::invalid_argument("speckle weights: sample " + std::to_string(weights.size() + 1) + " has theta_i = 90 degrees");
+      throw std::invalid_argument("speckle weights: sample " + std::to_string(weights.size() + 1) +
+                                  " has theta_i = 90 degrees");
     weights.push_back(std::max(0.0, cos_r / cos_i));
   }
   return weights;
@@ -291,7 +300,8 @@ class PreparedAt {
   PreparedAt(const Model& model, Rotation rotation) : model_(model), rotation_(rotation) {}
   const PreparedModel& operator()(double wavelength) {
     const auto at = prepared_.find(wavelength);
-    return at != prepared_.end() ? at->second : prepared_.emplace(wavelength, prepare(model_, wavelength, rotation_)).first->second;
+    return at != prepared_.end() ? at->second
+                                 : prepared_.emplace(wavelength, prepare(model_, wavelength, rotation_)).first->second;
   }
 
  private:
@@ -307,8 +317,8 @@ std::vector<double> relative_weights(const Model& first, std::span<const Sample>
     const double wavelength = samples[s].wavelength;
     const double f11 = prepared(wavelength).f11(samples[s].geometry) / first.reflectance.at(wavelength);
     if (!(f11 > 0))
-      throw std::invalid_argument("speckle weights: f11 of the unweighted fit is " + std::to_string(f11) + " at sample " +
-                                  std::to_string(s + 1));
+      throw std::invalid_argument("speckle weights: f11 of the unweighted fit is " + std::to_string(f11) +
+                                  " at sample " + std::to_string(s + 1));
     weights[s] /= f11 * f11;
   }
   return weights;
@@ -343,7 +353,8 @@ std::vector<Mueller> residuals(const Model& model, std::span<const Sample> sampl
   return result;
 }
 
-// ---- projection -------------------------------------------------------------------------------------------------------
+// ---- projection
+// -------------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -355,8 +366,9 @@ std::vector<std::pair<Geometry, double>> quadrature(const Validity& validity, in
   for (const Node& i : gauss_legendre(order + 6))
     for (const Node& r : gauss_legendre(order + 6))
       for (int a = 0; a < azimuths; ++a)
-        result.push_back({{{std::acos(1 - i.x * height_i), 0}, {std::acos(1 - r.x * height_r), 2 * std::numbers::pi * a / azimuths}},
-                          i.weight * r.weight});
+        result.push_back(
+            {{{std::acos(1 - i.x * height_i), 0}, {std::acos(1 - r.x * height_r), 2 * std::numbers::pi * a / azimuths}},
+             i.weight * r.weight});
   return result;
 }
 
@@ -373,7 +385,8 @@ std::vector<double> wavelengths_for(const Model& model) {
 
 Model projected_on_isotropic(const Model& model, const Orders& orders) {
   require_valid(model);
-  if (model.family == Family::anisotropic) throw std::invalid_argument("a model of the anisotropic family is not isotropic");
+  if (model.family == Family::anisotropic)
+    throw std::invalid_argument("a model of the anisotropic family is not isotropic");
   Model bare = model;
   bare.reflectance = {};
   FitAccumulator accumulator({Family::isotropic, orders, model.mapping, Rotation::covariant});

@@ -7,9 +7,11 @@
 #include <stdexcept>
 #include <string>
 
-// The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ| is
-// the norm of what the columns of A cannot reach. New rows B are folded in column by column: the reflection that maps
-// (T_jj, B_j) to (β, 0) is applied to the columns behind j.
+#include "numbers.hpp"
+
+// The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ|
+// is the norm of what the columns of A cannot reach. New rows B are folded in column by column: the reflection that
+// maps (T_jj, B_j) to (β, 0) is applied to the columns behind j.
 
 namespace mmbrdf {
 namespace {
@@ -19,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Vector = Eigen::Map<const VectorXd>;
 
-constexpr std::size_t rows_at_once = 128;      // keeps a block of rows in the cache
+constexpr std::size_t rows_at_once = 128;    // keeps a block of rows in the cache
 constexpr double estimability_limit = 1e-8;  // theory 4.2
 
 Index index(std::size_t n) { return static_cast<Index>(n); }
@@ -27,7 +29,8 @@ Index index(std::size_t n) { return static_cast<Index>(n); }
 void require_finite(std::span<const double> numbers, const char* what) {
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!std::isfinite(numbers[i]))
-      throw std::invalid_argument("LeastSquares: " + std::string(what) + " number " + std::to_string(i + 1) + " is not finite");
+      throw std::invalid_argument("LeastSquares: " + std::string(what) + " number " + std::to_string(i + 1) +
+                                  " is not finite");
 }
 
 }  // namespace
@@ -42,7 +45,8 @@ double Solution::variance() const {
 
 bool Solution::estimable(std::span<const double> g) const {
   if (g.size() != x.size())
-    throw std::invalid_argument("estimable: " + std::to_string(g.size()) + " numbers for " + std::to_string(x.size()) + " unknowns");
+    throw std::invalid_argument("estimable: " + std::to_string(g.size()) + " numbers for " + std::to_string(x.size()) +
+                                " unknowns");
   const Vector direction(g.data(), index(g.size()));
   const Eigen::Map<const MatrixXd> null(null_space.data(), index(g.size()), index(g.size()) - rank);
   return (null.transpose() * direction).norm() <= estimability_limit * direction.norm();
@@ -80,16 +84,17 @@ void LeastSquares::fold(std::vector<double>& columns, std::size_t count) {
 void LeastSquares::add(std::span<const double> rows, std::span<const double> values, std::span<const double> weights) {
   const std::size_t n = width() - 1;
   if (rows.size() != n * values.size())
-    throw std::invalid_argument("LeastSquares: " + std::to_string(rows.size()) + " numbers in " + std::to_string(values.size()) +
-                                " rows of " + std::to_string(n) + " unknowns");
+    throw std::invalid_argument("LeastSquares: " + std::to_string(rows.size()) + " numbers in " +
+                                std::to_string(values.size()) + " rows of " + std::to_string(n) + " unknowns");
   if (!weights.empty() && weights.size() != values.size())
     throw std::invalid_argument("LeastSquares: " + std::to_string(weights.size()) + " weights for " +
                                 std::to_string(values.size()) + " rows");
   require_finite(rows, "row");
   require_finite(values, "value");
   require_finite(weights, "weight");
-  if (const auto low = std::find_if(weights.begin(), weights.end(), [](double w) { return w < 0; }); low != weights.end())
-    throw std::invalid_argument("LeastSquares: weight " + std::to_string(*low) + " is negative");
+  if (const auto low = std::find_if(weights.begin(), weights.end(), [](double w) { return w < 0; });
+      low != weights.end())
+    throw std::invalid_argument("LeastSquares: weight " + shortest(*low) + " is negative");
 
   std::vector<double> columns;
   for (std::size_t first = 0; first < values.size(); first += rows_at_once) {
@@ -117,7 +122,8 @@ void LeastSquares::merge(const LeastSquares& other) {
 LeastSquares LeastSquares::repeated(std::span<const double> factors, double value_factor) const {
   require_finite(factors, "factor");
   require_finite({&value_factor, 1}, "value factor");
-  if (factors.size() > static_cast<std::size_t>(max_unknowns)) throw std::invalid_argument("LeastSquares: too many factors");
+  if (factors.size() > static_cast<std::size_t>(max_unknowns))
+    throw std::invalid_argument("LeastSquares: too many factors");
   LeastSquares result(unknowns_ * static_cast<int>(factors.size()));
   std::vector<double> rows;
   rows.reserve(width() * result.width());
@@ -134,7 +140,8 @@ LeastSquares LeastSquares::repeated(std::span<const double> factors, double valu
 
 double LeastSquares::residual_norm(std::span<const double> x) const {
   if (x.size() + 1 != width())
-    throw std::invalid_argument("LeastSquares: " + std::to_string(x.size()) + " values for " + std::to_string(unknowns_) + " unknowns");
+    throw std::invalid_argument("LeastSquares: " + std::to_string(x.size()) + " values for " +
+                                std::to_string(unknowns_) + " unknowns");
   const Eigen::Map<const MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
   VectorXd extended(index(width()));
   extended << Vector(x.data(), unknowns_), -1;
@@ -158,7 +165,7 @@ LeastSquares LeastSquares::from_state(int unknowns, std::span<const double> stat
                                 std::to_string(unknowns) + " unknowns");
   require_finite(state, "state");
   if (state.back() < 0 || state.back() != std::floor(state.back()) || state.back() > 9e15)
-    throw std::invalid_argument("LeastSquares: a state with " + std::to_string(state.back()) + " rows");
+    throw std::invalid_argument("LeastSquares: a state with " + shortest(state.back()) + " rows");
   auto next = state.begin();
   for (std::size_t row = 0; row < width; ++row)
     for (std::size_t column = row; column < width; ++column) result.triangle_[column * width + row] = *next++;
@@ -168,7 +175,7 @@ LeastSquares LeastSquares::from_state(int unknowns, std::span<const double> stat
 
 Solution LeastSquares::solve(double tolerance) const {
   if (!(tolerance >= 0 && tolerance < 1))
-    throw std::invalid_argument("LeastSquares: rank tolerance " + std::to_string(tolerance) + " is not in [0, 1)");
+    throw std::invalid_argument("LeastSquares: rank tolerance " + shortest(tolerance) + " is not in [0, 1)");
   const Index n = unknowns_;
   const Eigen::Map<const MatrixXd> triangle(triangle_.data(), n + 1, n + 1);
   const MatrixXd r = triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>();

@@ -9,10 +9,12 @@
 #include <tuple>
 #include <utility>
 
+#include "numbers.hpp"
+
 namespace mmbrdf {
 
-/// All that does not depend on the wavelength. Products of Zernike functions are listed element by element; the weight of
-/// a product is a polynomial of the wavelength.
+/// All that does not depend on the wavelength. Products of Zernike functions are listed element by element; the weight
+/// of a product is a polynomial of the wavelength.
 struct PreparedModel::Pattern {
   struct Product {
     int incident, reflected;
@@ -21,10 +23,10 @@ struct PreparedModel::Pattern {
     return disc_point(Direction{direction.theta, direction.phi - turn}, mapping);
   }
 
-  int order = 0;                           // largest radial order
-  bool turns = false;                      // evaluate at phi_i = 0 and turn the result
+  int order = 0;       // largest radial order
+  bool turns = false;  // evaluate at phi_i = 0 and turn the result
   DiscMapping mapping = DiscMapping::lambert;
-  std::array<std::size_t, 17> begin{};     // products of element e: begin[e] … begin[e + 1]
+  std::array<std::size_t, 17> begin{};  // products of element e: begin[e] … begin[e + 1]
   std::vector<Product> products;
   std::vector<std::vector<double>> powers;  // for each power of the wavelength, a weight for each product
   ReflectanceTable reflectance;
@@ -42,7 +44,16 @@ std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 void require_wavelength(double wavelength) {
   if (!(wavelength > 0) || !std::isfinite(wavelength))
-    throw std::invalid_argument("wavelength " + std::to_string(wavelength * 1000) + " nm is not positive");
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is not positive");
+}
+
+/// A vector of length 1 to 1e-6 with exactly that length.
+Vector3 normalized(const Vector3& v) {
+  const double length = std::hypot(v[0], v[1], v[2]);
+  if (!(std::abs(length - 1) < 1e-6) || v[2] < 0)
+    throw std::invalid_argument("evaluate: (" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) +
+                                ") is not a unit vector with z >= 0");
+  return {v[0] / length, v[1] / length, v[2] / length};
 }
 
 /// f11 and the normalised elements → sr⁻¹.
@@ -92,10 +103,10 @@ void require_valid(const ReflectanceTable& table) {
   for (std::size_t i = 0; i < table.values.size(); ++i) {
     require_wavelength(table.wavelengths[i]);
     if (i > 0 && table.wavelengths[i] <= table.wavelengths[i - 1])
-      throw std::invalid_argument("reflectance table: wavelength " + std::to_string(table.wavelengths[i] * 1000) +
+      throw std::invalid_argument("reflectance table: wavelength " + shortest(in_nanometres(table.wavelengths[i])) +
                                   " nm does not rise");
     if (!(table.values[i] > 0) || !std::isfinite(table.values[i]))
-      throw std::invalid_argument("reflectance table: value " + std::to_string(table.values[i]) + " is not positive");
+      throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not positive");
   }
 }
 
@@ -115,10 +126,13 @@ void require_valid(const Model& model) {
     throw std::invalid_argument("highest power of the wavelength " + std::to_string(model.powers) + " is not in 0..." +
                                 std::to_string(max_power));
   std::vector<Mode> modes;
-  for (const FittedBlock& fitted : model.blocks) modes.insert(modes.end(), fitted.block.modes.begin(), fitted.block.modes.end());
+  for (const FittedBlock& fitted : model.blocks)
+    modes.insert(modes.end(), fitted.block.modes.begin(), fitted.block.modes.end());
   const std::vector<Block> expected = blocks(model.family, modes);
-  if (expected.empty() || expected.front().name != "11") throw std::invalid_argument("model has no modes of element 11");
-  if (expected.size() != model.blocks.size()) throw std::invalid_argument("model: modes are not in the blocks of the family");
+  if (expected.empty() || expected.front().name != "11")
+    throw std::invalid_argument("model has no modes of element 11");
+  if (expected.size() != model.blocks.size())
+    throw std::invalid_argument("model: modes are not in the blocks of the family");
   for (std::size_t b = 0; b < expected.size(); ++b) {
     const FittedBlock& fitted = model.blocks[b];
     const std::string where = "block " + fitted.block.name + ": ";
@@ -129,8 +143,8 @@ void require_valid(const Model& model) {
       throw std::invalid_argument(where + std::to_string(fitted.coefficients.size()) + " coefficients, expected " +
                                   std::to_string(count));
     if (!fitted.covariance.empty() && fitted.covariance.size() != count * count)
-      throw std::invalid_argument(where + "covariance of " + std::to_string(fitted.covariance.size()) + " numbers, expected " +
-                                  std::to_string(count * count));
+      throw std::invalid_argument(where + "covariance of " + std::to_string(fitted.covariance.size()) +
+                                  " numbers, expected " + std::to_string(count * count));
     const auto finite = [](double x) { return std::isfinite(x); };
     if (!std::all_of(fitted.coefficients.begin(), fitted.coefficients.end(), finite) ||
         !std::all_of(fitted.covariance.begin(), fitted.covariance.end(), finite))
@@ -167,11 +181,13 @@ double only_wavelength(const Model& model) {
     return known == 1 ? model.validity.wavelengths.front() : 1.0;
   std::string list;
   for (const double wavelength : model.validity.wavelengths)
-    list += (list.empty() ? ", fitted at " : ", ") + std::to_string(std::lround(wavelength * 1000));
-  throw std::invalid_argument("the model depends on the wavelength" + list + (list.empty() ? "" : " nm") + ": give one");
+    list += (list.empty() ? ", fitted at " : ", ") + shortest(in_nanometres(wavelength));
+  throw std::invalid_argument("the model depends on the wavelength" + list + (list.empty() ? "" : " nm") +
+                              ": give one");
 }
 
-// ---- evaluation -------------------------------------------------------------------------------------------------------
+// ---- evaluation
+// -------------------------------------------------------------------------------------------------------
 
 PreparedModel prepare(const Model& model, double wavelength, Rotation rotation) {
   require_valid(model);
@@ -194,13 +210,19 @@ PreparedModel prepare(const Model& model, double wavelength, Rotation rotation) 
 }
 
 PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength)
-    : pattern_(std::move(pattern)), weights_(pattern_->powers[0]), reflectance_(pattern_->reflectance.at(wavelength)),
+    : pattern_(std::move(pattern)),
+      weights_(pattern_->powers[0]),
+      reflectance_(pattern_->reflectance.at(wavelength)),
       wavelength_(wavelength) {
   double power = 1;
   for (std::size_t p = 1; p < pattern_->powers.size(); ++p) {
     power *= wavelength;
     for (std::size_t t = 0; t < weights_.size(); ++t) weights_[t] += power * pattern_->powers[p][t];
   }
+  for (const double weight : weights_)
+    if (!std::isfinite(weight))
+      throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) +
+                                  " nm: its powers are too large");
 }
 
 PreparedModel PreparedModel::at(double wavelength) const {
@@ -240,14 +262,9 @@ Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
 }
 
 Mueller PreparedModel::evaluate(const Vector3& incident, const Vector3& reflected, Frame frame) const {
-  for (const Vector3* v : {&incident, &reflected}) {
-    const double length = std::hypot((*v)[0], (*v)[1], (*v)[2]);
-    if (!(std::abs(length - 1) < 1e-6) || (*v)[2] < 0)
-      throw std::invalid_argument("evaluate: (" + std::to_string((*v)[0]) + ", " + std::to_string((*v)[1]) + ", " +
-                                  std::to_string((*v)[2]) + ") is not a unit vector with z >= 0");
-  }
-  if (pattern_->turns || frame != Frame::xy) return evaluate({direction(incident), direction(reflected)}, frame);
-  return sum(disc_point(incident, pattern_->mapping), disc_point(reflected, pattern_->mapping), 16);
+  const Vector3 to_source = normalized(incident), to_detector = normalized(reflected);
+  if (pattern_->turns || frame != Frame::xy) return evaluate({direction(to_source), direction(to_detector)}, frame);
+  return sum(disc_point(to_source, pattern_->mapping), disc_point(to_detector, pattern_->mapping), 16);
 }
 
 void PreparedModel::evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const {
@@ -296,7 +313,8 @@ void PreparedIncidence::evaluate(std::span<const Direction> reflected, Frame fra
   for (std::size_t q = 0; q < out.size(); ++q) out[q] = evaluate(reflected[q], frame);
 }
 
-// ---- published form ---------------------------------------------------------------------------------------------------
+// ---- published form
+// ---------------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -311,8 +329,9 @@ ZernikeIndex from_index(int index) {
   return {n, 2 * index - n * (n + 2)};
 }
 
-/// The published mode that a product belongs to at phi_i = 0, and the coefficient that gives it weight 1 there. Of an element
-/// below the diagonal the product is that of Eq. 16; a mode with k, l ≥ 0 is taken from above the diagonal only.
+/// The published mode that a product belongs to at phi_i = 0, and the coefficient that gives it weight 1 there. Of an
+/// element below the diagonal the product is that of Eq. 16; a mode with k, l ≥ 0 is taken from above the diagonal
+/// only.
 std::optional<std::pair<Mode, double>> published_mode(const Term& term) {
   auto [n, k] = from_index(term.incident);
   auto [m, l] = from_index(term.reflected);
@@ -327,7 +346,7 @@ std::optional<std::pair<Mode, double>> published_mode(const Term& term) {
     factor = (row == 2) != (column == 2) ? -1 : 1;  // Eq. 13
   } else if (row == column) {
     const auto first = std::tuple(n, k), second = std::tuple(m, l);
-    if (first < second) return {};  // its twin is there too
+    if (first < second) return {};                // its twin is there too
     const bool twice_cosine = row == 0 && k > 0;  // I_nm^k of Eq. 9 is (H^kk + H^−k−k) / √2
     factor = (first == second ? 1 : std::numbers::sqrt2) * (twice_cosine ? std::numbers::sqrt2 : 1);
   }

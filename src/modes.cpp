@@ -109,8 +109,10 @@ void add_u_or_v(Terms& t, const V& a, const V& b, bool is_u) {
   const int sign = is_u ? 1 : -1;
   const auto add_both = [&](auto add, int row, int column, int weight) {
     add(t, row, column, a, b, weight);  // Z(i,r), then Z(r,i) for u and its conjugate for v
-    if (is_u) add(t, row, column, b, a, weight);
-    else add(t, row, column, b.conjugate(), a.conjugate(), weight);
+    if (is_u)
+      add(t, row, column, b, a, weight);
+    else
+      add(t, row, column, b.conjugate(), a.conjugate(), weight);
   };
   add_both(add_real, 1, 1, 1);
   add_both(add_real, 2, 2, sign);
@@ -147,8 +149,11 @@ std::vector<Term> isotropic_terms(const Mode& mode) {
       add_real(t, 2, 3, b, a, 1);
       break;
     case Function::u:
-    case Function::v: add_u_or_v(t, a, b, mode.function == Function::u); break;
-    default: throw std::logic_error("isotropic_terms: " + to_string(mode));
+    case Function::v:
+      add_u_or_v(t, a, b, mode.function == Function::u);
+      break;
+    default:
+      throw std::logic_error("isotropic_terms: " + to_string(mode));
   }
   return t.take();
 }
@@ -161,8 +166,8 @@ std::pair<int, int> element_of(Function function) {
 /// Elements with exactly one index 3 change sign when source and detector are exchanged (Eq. 13).
 int exchange_sign(int row, int column) { return (row == 2) != (column == 2) ? -1 : 1; }
 
-/// H_nm^kl of Eq. 2 (m11 anisotropic, and the other diagonal elements of both families, Eq. 14) and the products of Eqs. 15
-/// and 16; for m11 of germer2017 I_nm^k of Eq. 9.
+/// H_nm^kl of Eq. 2 (m11 anisotropic, and the other diagonal elements of both families, Eq. 14) and the products of
+/// Eqs. 15 and 16; for m11 of germer2017 I_nm^k of Eq. 9.
 std::vector<Term> published_terms(const Mode& mode, Family family) {
   const auto [function, n, m, k, l] = mode;
   const auto [row, column] = element_of(function);
@@ -190,13 +195,9 @@ std::vector<Term> published_terms(const Mode& mode, Family family) {
 
 /// The canonical order of azimuthal orders: |k|, |l|, then k > 0 before k < 0, then l > 0 before l < 0.
 auto azimuthal_key(int k, int l) { return std::tuple(std::abs(k), std::abs(l), k < 0, l < 0); }
-auto key(const Mode& mode) {
-  return std::tuple(mode.function, mode.n, mode.m, azimuthal_key(mode.k, mode.l));
-}
+auto key(const Mode& mode) { return std::tuple(mode.function, mode.n, mode.m, azimuthal_key(mode.k, mode.l)); }
 
-bool not_before(int n, int k, int m, int l) {
-  return std::tuple(n, std::abs(k), k) >= std::tuple(m, std::abs(l), l);
-}
+bool not_before(int n, int k, int m, int l) { return std::tuple(n, std::abs(k), k) >= std::tuple(m, std::abs(l), l); }
 
 /// Whether the published files have this index (theory 2.3).
 bool is_published(const Mode& mode) {
@@ -207,16 +208,23 @@ bool is_published(const Mode& mode) {
   };
   switch (function) {
     case Function::m11:
-    case Function::m44: return n >= m && k == l && k >= 0;
+    case Function::m44:
+      return n >= m && k == l && k >= 0;
     case Function::m22:
-    case Function::m33: return n >= m && k >= l && (same_sign || (l == 0 && (k == 0 || k == 4)));
+    case Function::m33:
+      return n >= m && k >= l && (same_sign || (l == 0 && (k == 0 || k == 4)));
     case Function::m12:
-    case Function::m34: return same_sign || zero_with(2);
+    case Function::m34:
+      return same_sign || zero_with(2);
     case Function::m13:
-    case Function::m24: return opposite || zero_with(-2);
-    case Function::m14: return opposite;
-    case Function::m23: return opposite || zero_with(-4);
-    default: return false;
+    case Function::m24:
+      return opposite || zero_with(-2);
+    case Function::m14:
+      return opposite;
+    case Function::m23:
+      return opposite || zero_with(-4);
+    default:
+      return false;
   }
 }
 
@@ -224,9 +232,12 @@ bool is_published(const Mode& mode) {
 int spin_sum(Function function) {
   switch (function) {
     case Function::g:
-    case Function::h: return 2;
-    case Function::u: return 4;
-    default: return 0;
+    case Function::h:
+      return 2;
+    case Function::u:
+      return 4;
+    default:
+      return 0;
   }
 }
 
@@ -240,7 +251,8 @@ std::string broken_rule(const Mode& mode, Family family) {
     const auto [row, column] = element_of(function);
     if (row == column && n < m) return "n must not be less than m";
     if (row == column && !not_before(n, k, m, l)) return "for n = m, k must not come before l";
-    if (function == Function::m11 && family == Family::germer2017 && (k != l || k < 0)) return "k and l must be equal and >= 0";
+    if (function == Function::m11 && family == Family::germer2017 && (k != l || k < 0))
+      return "k and l must be equal and >= 0";
     return "";
   }
   if (!shared && function != Function::m11 && function != Function::m14 && function != Function::m44)
@@ -249,11 +261,16 @@ std::string broken_rule(const Mode& mode, Family family) {
   if (k + l != sum) return "k + l must be " + std::to_string(sum);
   switch (function) {
     case Function::m11:
-    case Function::m44: return n >= m && k >= 0 ? "" : "n must not be less than m, nor k less than 0";
-    case Function::m14: return k > 0 ? "" : "k must be positive";
-    case Function::u: return n > m || (n == m && k >= l) ? "" : "n must be greater than m, or equal with k >= l";
-    case Function::v: return n >= m ? "" : "n must not be less than m";
-    default: return "";
+    case Function::m44:
+      return n >= m && k >= 0 ? "" : "n must not be less than m, nor k less than 0";
+    case Function::m14:
+      return k > 0 ? "" : "k must be positive";
+    case Function::u:
+      return n > m || (n == m && k >= l) ? "" : "n must be greater than m, or equal with k >= l";
+    case Function::v:
+      return n >= m ? "" : "n must not be less than m";
+    default:
+      return "";
   }
 }
 
@@ -273,9 +290,15 @@ Block empty_block(const std::vector<Function>& functions) {
   using Elements = std::vector<std::pair<int, int>>;
   Block block;
   switch (functions.front()) {
-    case Function::g: block.elements = {{0, 1}, {0, 2}, {1, 0}, {2, 0}}; break;
-    case Function::h: block.elements = {{1, 3}, {2, 3}, {3, 1}, {3, 2}}; break;
-    case Function::u: block.elements = {{1, 1}, {1, 2}, {2, 1}, {2, 2}}; break;
+    case Function::g:
+      block.elements = {{0, 1}, {0, 2}, {1, 0}, {2, 0}};
+      break;
+    case Function::h:
+      block.elements = {{1, 3}, {2, 3}, {3, 1}, {3, 2}};
+      break;
+    case Function::u:
+      block.elements = {{1, 1}, {1, 2}, {2, 1}, {2, 2}};
+      break;
     default: {
       const auto [row, column] = element_of(functions.front());
       block.elements = row == column ? Elements{{row, column}} : Elements{{row, column}, {column, row}};
@@ -376,8 +399,8 @@ void require_valid(const Mode& mode, Family family) {
 }
 
 std::string to_string(const Mode& mode) {
-  return to_string(mode.function) + " (n, m, k, l) = (" + std::to_string(mode.n) + ", " + std::to_string(mode.m) + ", " +
-         std::to_string(mode.k) + ", " + std::to_string(mode.l) + ")";
+  return to_string(mode.function) + " (n, m, k, l) = (" + std::to_string(mode.n) + ", " + std::to_string(mode.m) +
+         ", " + std::to_string(mode.k) + ", " + std::to_string(mode.l) + ")";
 }
 
 std::string to_string(Family family) { return name_of(family_names, family); }

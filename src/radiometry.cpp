@@ -12,7 +12,7 @@ namespace {
 
 /// ∫ K_n^0 cos θ dΩ over the hemisphere; the other K integrate to 0 (theory 4.3).
 double projected_integral(int n, DiscMapping mapping) {
-  const double radial_integral = n == 0 ? std::numbers::pi
+  const double radial_integral = n == 0                                      ? std::numbers::pi
                                  : n == 2 && mapping == DiscMapping::lambert ? -std::numbers::pi / 3
                                                                              : 0;
   return std::sqrt((n + 1) / (2 * std::numbers::pi)) * radial_integral;
@@ -51,7 +51,7 @@ double directional_hemispherical_reflectance(const Model& model, double waveleng
   std::array<double, zernike_count(max_order)> k_i;
   zernike_table(orders(model).f11, disc_point(incident, model.mapping), k_i.data());
   const std::array<std::pair<int, double>, 2> integrals{{{zernike_index(0, 0), projected_integral(0, model.mapping)},
-                                                        {zernike_index(2, 0), projected_integral(2, model.mapping)}}};
+                                                         {zernike_index(2, 0), projected_integral(2, model.mapping)}}};
   double sum = 0, power = 1;
   std::size_t next = 0;
   for (int p = 0; p <= model.powers; ++p, power *= wavelength)
@@ -59,7 +59,8 @@ double directional_hemispherical_reflectance(const Model& model, double waveleng
       const double coefficient = power * f11.coefficients[next++];
       for (const Term& term : terms(mode, model.family))
         for (const auto& [index, integral] : integrals)
-          if (term.reflected == index) sum += coefficient * term.weight * k_i[static_cast<std::size_t>(term.incident)] * integral;
+          if (term.reflected == index)
+            sum += coefficient * term.weight * k_i[static_cast<std::size_t>(term.incident)] * integral;
     }
   return model.reflectance.at(wavelength) * sum;
 }

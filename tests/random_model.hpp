@@ -27,7 +27,8 @@ inline Model random_model(Family family, Orders orders, int powers, std::uint64_
     const auto [row, column] = fitted.block.elements.front();
     const bool is_f11 = row == 0 && column == 0;
     const double count = static_cast<double>(fitted.block.modes.size()) * (powers + 1);
-    const double amplitude = (is_f11 ? 0.03 : 0.3) * 2 * std::numbers::pi / std::sqrt(count);  // 2π: area of a hemisphere
+    const double amplitude =
+        (is_f11 ? 0.03 : 0.3) * 2 * std::numbers::pi / std::sqrt(count);  // 2π: area of a hemisphere
     for (int p = 0; p <= powers; ++p)
       for (const Mode& mode : fitted.block.modes)
         fitted.coefficients.push_back(amplitude * random() / std::sqrt(squared_norm(mode, family, row, column)));

@@ -89,7 +89,8 @@ std::string message_of(const auto& call) {
   return "no error";
 }
 
-// ---- the published data -------------------------------------------------------------------------------------------------
+// ---- the published data
+// -------------------------------------------------------------------------------------------------
 
 class PublishedData : public testing::Test {
  protected:
@@ -141,9 +142,15 @@ TEST_F(PublishedData, PublishedIndexSetsHaveTheResidualsOfTheTheory) {
   for (std::size_t w = 0; w < 4; ++w)
     EXPECT_NEAR(fit(at(wavelengths_there[w]), {Family::germer2017, {7, 4}}).elements[0].rms, f11[w], 5e-7);
   const FitResult single = fit(at(0.532), {Family::germer2017, {7, 4}});
-  for (const auto& [row, column, expected] :
-       {PairFact{0, 1, .00623}, {0, 2, .00610}, {0, 3, .00595}, {1, 1, .00752}, {1, 2, .00811}, {1, 3, .00981},
-        {2, 2, .00752}, {2, 3, .00763}, {3, 3, .00666}})
+  for (const auto& [row, column, expected] : {PairFact{0, 1, .00623},
+                                              {0, 2, .00610},
+                                              {0, 3, .00595},
+                                              {1, 1, .00752},
+                                              {1, 2, .00811},
+                                              {1, 3, .00981},
+                                              {2, 2, .00752},
+                                              {2, 3, .00763},
+                                              {3, 3, .00666}})
     EXPECT_NEAR(pair_rms(single, row, column), expected, 5e-6) << row + 1 << column + 1;
 }
 
@@ -155,11 +162,12 @@ TEST_F(PublishedData, MultiWavelengthResidualsAreThoseOfTheTheory) {
   options.reflectance = manufacturer;
   const FitResult result = fit(grid, {Family::germer2017, {7, 4}}, options);
   EXPECT_NEAR(result.elements[0].rms, .00414, 5e-6);
-  for (const auto& [row, column, expected] : multi_wavelength) EXPECT_NEAR(pair_rms(result, row, column), expected, 5e-6);
+  for (const auto& [row, column, expected] : multi_wavelength)
+    EXPECT_NEAR(pair_rms(result, row, column), expected, 5e-6);
 }
 
-// Theory 2.5: fewer than half the coefficients, the residuals of the published set on the data fitted, and the noise on the
-// data that were not.
+// Theory 2.5: fewer than half the coefficients, the residuals of the published set on the data fitted, and the noise on
+// the data that were not.
 TEST_F(PublishedData, IsotropicBasisFitsAsWellWithFewerThanHalfTheCoefficientsAndPredictsBetter) {
   const FitResult result = fit(at(0.532));
   EXPECT_EQ(coefficient_count(result.model), 142);
@@ -202,7 +210,8 @@ TEST_F(PublishedData, WithoutATableEachWavelengthIsDividedByItsOwnNormalIncidenc
   for (std::size_t w = 0; w < 4; ++w) EXPECT_NEAR(result.model.reflectance.values[w], expected[w], 1e-6);
 }
 
-// ---- laws -----------------------------------------------------------------------------------------------------------------
+// ---- laws
+// -----------------------------------------------------------------------------------------------------------------
 
 // The reflectance table is found from the data: a model that has its own normal-incidence DHR in it comes back.
 TEST(Fit, GivesBackTheModelThatMadeTheSamples) {
@@ -211,7 +220,8 @@ TEST(Fit, GivesBackTheModelThatMadeTheSamples) {
     FitOptions options;
     options.reflectance = model.reflectance;
     const FitResult result = fit(samples_of(model), {}, options);
-    EXPECT_LT(largest_difference(result.model, model), 1e-11) << name;  // rounding of 1e-15 × the condition of p = 0, 1: 1e3
+    EXPECT_LT(largest_difference(result.model, model), 1e-11)
+        << name;  // rounding of 1e-15 × the condition of p = 0, 1: 1e3
     EXPECT_LT(polarization_rms(result), 1e-14);
   }
 }
@@ -224,7 +234,8 @@ TEST(Fit, GivesBackModelsOfEveryFamilyAndMapping) {
       model.mapping = mapping;
       for (const Block& block : blocks(family, {3, 2})) {
         FittedBlock fitted{block, {}, {}, 0, 0};
-        for (std::size_t i = 0; i < block.modes.size(); ++i) fitted.coefficients.push_back(0.02 * std::sin(1.0 + 1.7 * static_cast<double>(i)));
+        for (std::size_t i = 0; i < block.modes.size(); ++i)
+          fitted.coefficients.push_back(0.02 * std::sin(1.0 + 1.7 * static_cast<double>(i)));
         if (block.name == "11") fitted.coefficients[0] = 2;
         model.blocks.push_back(fitted);
       }
@@ -300,9 +311,9 @@ TEST(Fit, ElementTableIsThatOfTheResiduals) {
   }
 }
 
-// For Gaussian noise of known law (â − a)ᵀ V⁻¹ (â − a) / n has expectation 1 if V is the true covariance. Here V is diagonal in
-// the basis of the singular vectors, so it is enough to look at each coefficient: the mean of (â − a)² / V_aa over 40 seeds
-// and 142 coefficients, correlated ones among them, scatters by about 0.04.
+// For Gaussian noise of known law (â − a)ᵀ V⁻¹ (â − a) / n has expectation 1 if V is the true covariance. Here V is
+// diagonal in the basis of the singular vectors, so it is enough to look at each coefficient: the mean of (â − a)² /
+// V_aa over 40 seeds and 142 coefficients, correlated ones among them, scatters by about 0.04.
 TEST(Fit, CovarianceOfSpeckleWeightsPredictsTheErrorsThatSpeckleMakes) {
   const Model model = material("ptfe-532");
   double sum = 0, variance = 0;
@@ -327,11 +338,13 @@ TEST(Fit, ProjectionOfAPublishedFormIsTheModelItCameFrom) {
   for (const char* name : {"ptfe-532", "ptfe"}) {
     const Model model = material(name);
     const Model back = projected_on_isotropic(in_published_form(model), orders(model));
-    EXPECT_LT(largest_difference(back, model), 1e-10) << name;  // the range of angles is not the whole hemisphere: condition 1e4
+    EXPECT_LT(largest_difference(back, model), 1e-10)
+        << name;  // the range of angles is not the whole hemisphere: condition 1e4
   }
 }
 
-// ---- refusals -------------------------------------------------------------------------------------------------------------
+// ---- refusals
+// -------------------------------------------------------------------------------------------------------------
 
 TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesTheModes) {
   std::vector<Sample> samples = samples_of(material("ptfe-532"));
@@ -339,7 +352,8 @@ TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesTheModes) {
   const std::string message = message_of([&] { fit(samples); });
   EXPECT_NE(message.find("; block 11: rank "), std::string::npos) << message;
   EXPECT_NE(message.find(" combinations are free of the modes (n,m,k,l) 11(0,0,0,0)"), std::string::npos) << message;
-  EXPECT_NE(message.find("; block 22,23,32,33: rank "), std::string::npos) << message;  // all blocks, not the first alone
+  EXPECT_NE(message.find("; block 22,23,32,33: rank "), std::string::npos)
+      << message;  // all blocks, not the first alone
   FitOptions options;
   options.minimum_norm = true;
   const FitResult result = fit(samples, {}, options);
@@ -366,7 +380,10 @@ TEST(Fit, RefusesWhatItCannotFit) {
   EXPECT_EQ(message_of([&] { fit(four, {}, options); }), "fit: the reflectance table does not reach 351 nm");
   EXPECT_EQ(message_of([&] { fit({}); }), "fit: no samples");
   EXPECT_THROW(FitAccumulator({Family::isotropic, {41, 4}}), std::invalid_argument);
-  EXPECT_NE(message_of([] { FitAccumulator({Family::anisotropic, {7, 14}}); }).find("more than 8192"), std::string::npos);
+  EXPECT_NE(message_of([] {
+              FitAccumulator({Family::anisotropic, {7, 14}});
+            }).find("more than 8192"),
+            std::string::npos);
 
   FitAccumulator accumulator{Basis{}};
   std::vector<Sample> bad = one;

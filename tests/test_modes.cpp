@@ -75,7 +75,7 @@ std::vector<Mode> modes_of_file(const std::string& path) {
   return modes;
 }
 
-// ---- the functions as printed, from radial() and sines ----
+// ---- the functions as printed, from radial() and sines --------------------------------------------------------------
 
 double k_function(int n, int k, const Direction& d) {
   const double azimuthal = k > 0 ? std::cos(k * d.phi) : k < 0 ? -std::sin(k * d.phi) : 1 / std::numbers::sqrt2;
@@ -127,12 +127,17 @@ Mueller spin_weighted(const Mode& mode, const Geometry& geometry) {
     return std::sqrt((n + 1) * (m + 1)) / pi * radial(n, std::abs(k), rho_a) * radial(m, std::abs(l), rho_b) *
            std::polar(1.0, k * a.phi + l * b.phi);
   };
-  const Complex z = z_of(geometry.incident, geometry.reflected), exchanged = z_of(geometry.reflected, geometry.incident);
+  const Complex z = z_of(geometry.incident, geometry.reflected),
+                exchanged = z_of(geometry.reflected, geometry.incident);
   const Complex i(0, 1);
   Mueller result;
   switch (function) {
-    case m11: result(0, 0) = (z + exchanged).real(); break;
-    case m44: result(3, 3) = (z + exchanged).real(); break;
+    case m11:
+      result(0, 0) = (z + exchanged).real();
+      break;
+    case m44:
+      result(3, 3) = (z + exchanged).real();
+      break;
     case m14:
       result(0, 3) = z.imag();
       result(3, 0) = exchanged.imag();
@@ -166,8 +171,8 @@ Mueller sum_of_terms(const Mode& mode, Family family, const Geometry& geometry) 
   zernike_table(max_order, disc_point(geometry.reflected, DiscMapping::lambert), k_r.data());
   Mueller result;
   for (const Term& term : terms(mode, family))
-    result(term.row, term.column) += term.weight * k_i[static_cast<std::size_t>(term.incident)] *
-                                     k_r[static_cast<std::size_t>(term.reflected)];
+    result(term.row, term.column) +=
+        term.weight * k_i[static_cast<std::size_t>(term.incident)] * k_r[static_cast<std::size_t>(term.reflected)];
   return result;
 }
 
@@ -203,7 +208,7 @@ std::string refusal(const Mode& mode, Family family) {
 
 }  // namespace
 
-// ---- how many ---------------------------------------------------------------------------------------------------------
+// ---- how many -------------------------------------------------------------------------------------------------------
 
 TEST(Modes, OfGermer2017AtOrders7And4AreThe330OfThePublishedFiles) {
   const std::map<Function, int> expected{{m11, 40}, {m12, 30}, {m13, 48}, {m14, 36}, {m22, 21},
@@ -261,16 +266,18 @@ TEST(Modes, OfTheAnisotropicFamilyAreAllThereCanBe) {
   EXPECT_EQ(mode_count(blocks(Family::anisotropic, {7, 4})), 2376);
 }
 
-// Of the products of K, those of f11 that depend on φr − φi alone and do not change sign in a mirror are cos k(φr − φi).
+// Of the products of K, those of f11 that depend on φr − φi alone and do not change sign in a mirror are cos k(φr −
+// φi).
 TEST(Modes, OfF11AreTheSameFunctionsInTheIsotropicFamilyAndInGermer2017) {
-  EXPECT_EQ(blocks(Family::isotropic, {12, 0}).front().modes.size(), blocks(Family::germer2017, {12, 0}).front().modes.size());
+  EXPECT_EQ(blocks(Family::isotropic, {12, 0}).front().modes.size(),
+            blocks(Family::germer2017, {12, 0}).front().modes.size());
 }
 
-// ---- in which order ---------------------------------------------------------------------------------------------------
+// ---- in which order -------------------------------------------------------------------------------------------------
 
 TEST(Modes, StandInTheOrderOfThePublishedFiles) {
-  for (const char* name : {"PTFE.351.coeff.csv", "PTFE.532.coeff.csv", "PTFE.633.coeff.csv", "PTFE.1064.coeff.csv",
-                           "PTFE.coeff.csv"}) {
+  for (const char* name :
+       {"PTFE.351.coeff.csv", "PTFE.532.coeff.csv", "PTFE.633.coeff.csv", "PTFE.1064.coeff.csv", "PTFE.coeff.csv"}) {
     const std::string file = published(name);
     if (file.empty()) GTEST_SKIP() << absent(name);
     EXPECT_EQ(modes_of(Family::germer2017, {7, 4}), modes_of_file(file)) << name;
@@ -329,7 +336,8 @@ RC_GTEST_PROP(Modes, GivenInAnyOrderComeBackInTheCanonicalBlocks, ()) {
   const Family family = *rc::gen::elementOf(every_family);
   const std::vector<Block> canonical = blocks(family, {4, 3});
   std::vector<Mode> shuffled = modes_of(canonical);
-  for (std::size_t i = shuffled.size(); i > 1; --i) std::swap(shuffled[i - 1], shuffled[*rc::gen::inRange<std::size_t>(0, i)]);
+  for (std::size_t i = shuffled.size(); i > 1; --i)
+    std::swap(shuffled[i - 1], shuffled[*rc::gen::inRange<std::size_t>(0, i)]);
   const std::vector<Block> found = blocks(family, shuffled);
   RC_ASSERT(names_of(found) == names_of(canonical));
   RC_ASSERT(modes_of(found) == modes_of(canonical));
@@ -359,7 +367,7 @@ TEST(Modes, OfTheGermer2017FamilyNeedNotBeInThePublishedSets) {
   EXPECT_EQ(modes_of(blocks(Family::germer2017, modes)), modes);
 }
 
-// ---- what they are ----------------------------------------------------------------------------------------------------
+// ---- what they are --------------------------------------------------------------------------------------------------
 
 // Of √((n+1)(m+1)), for a few products with some roundings each; the largest seen in 60000 cases is 5.5e-16.
 constexpr double printed_error = 4e-15;
@@ -432,7 +440,8 @@ TEST(Modes, OfABlockAreOrthogonalOverItsElementsTogether) {
     }
 }
 
-// In one element alone v with k and v with −k are one and the same function up to its sign; 22, 33 and 23, 32 tell them apart.
+// In one element alone v with k and v with −k are one and the same function up to its sign; 22, 33 and 23, 32 tell them
+// apart.
 TEST(Modes, OfABlockAreOrthogonalInEachElementButForVOfOppositeK) {
   for (const Family family : every_family)
     for (const Block& block : blocks(family, {6, 4})) {
@@ -444,12 +453,13 @@ TEST(Modes, OfABlockAreOrthogonalInEachElementButForVOfOppositeK) {
             const Mode &p = block.modes[a], &q = block.modes[b];
             const bool opposite = p.function == v && q == Mode{v, p.n, p.m, -p.k, -p.l};
             const double norm = opposite ? squared_norm(p, family, row, column) : 0;
-            EXPECT_NEAR(std::abs(overlap(all[a], all[b], row, column)), norm, norm_error) << to_string(p) << " " << to_string(q);
+            EXPECT_NEAR(std::abs(overlap(all[a], all[b], row, column)), norm, norm_error)
+                << to_string(p) << " " << to_string(q);
           }
     }
 }
 
-// ---- which are valid --------------------------------------------------------------------------------------------------
+// ---- which are valid ------------------------------------------------------------------------------------------------
 
 TEST(Modes, OfEveryFamilyAreValidInIt) {
   for (const Family family : every_family)
@@ -501,8 +511,10 @@ TEST(Modes, ThatBreakARuleAreRefusedWithModeFamilyAndRule) {
       {isotropic, {u, 4, 4, 0, 4}, "n must be greater than m, or equal with k >= l"},
       {isotropic, {v, 2, 4, 2, -2}, "n must not be less than m"},
   };
-  for (const auto& [family, mode, rule] : cases) {
-    const std::string expected = "mode " + to_string(mode) + " of the " + to_string(family) + " family: " + rule;
+  for (const Case& one : cases) {
+    const Mode mode = one.mode;
+    const Family family = one.family;
+    const std::string expected = "mode " + to_string(mode) + " of the " + to_string(family) + " family: " + one.rule;
     EXPECT_EQ(refusal(mode, family), expected);
     EXPECT_EQ(message_of([&] { terms(mode, family); }), expected);
     EXPECT_EQ(message_of([&] { squared_norm(mode, family, 0, 0); }), expected);
@@ -522,12 +534,13 @@ TEST(Modes, AreNotValidTogetherWithTheirTwins) {
     // Z(r,i) of v enters conjugated, which turns the signs of k and l as well.
     const Mode twin = mode.function == v ? Mode{v, mode.m, mode.n, -mode.l, -mode.k}
                                          : Mode{mode.function, mode.m, mode.n, mode.l, mode.k};
-    if (mode.function == u || mode.function == v)
+    if (mode.function == u || mode.function == v) {
       EXPECT_EQ(refusal(twin, Family::isotropic) == "nothing was thrown", twin == mode) << to_string(twin);
+    }
   }
 }
 
-// ---- names ------------------------------------------------------------------------------------------------------------
+// ---- names ----------------------------------------------------------------------------------------------------------
 
 TEST(Modes, AreNamedByFunctionAndIndices) {
   EXPECT_EQ(to_string(Mode{m22, 4, 2, 4, -2}), "22 (n, m, k, l) = (4, 2, 4, -2)");

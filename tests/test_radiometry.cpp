@@ -15,8 +15,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// ∫ f11 cos θr dΩr by quadrature: Gauss–Legendre in u = 1 − cos θ, equidistant in azimuth. With more nodes than the degree
-/// of the polynomial it is exact but for rounding.
+/// ∫ f11 cos θr dΩr by quadrature: Gauss–Legendre in u = 1 − cos θ, equidistant in azimuth. With more nodes than the
+/// degree of the polynomial it is exact but for rounding.
 double dhr_by_quadrature(const Model& model, double wavelength, const Direction& incident) {
   const PreparedModel prepared = prepare(model, wavelength);
   constexpr int azimuths = 40;
@@ -64,12 +64,14 @@ TEST(Radiometry, ClosedFormHoldsForTheOtherMappingAndTheOtherFamilies) {
       model.reflectance = {{0.4, 0.6}, {0.9, 0.7}};
       for (const Block& block : blocks(family, {4, 2})) {
         FittedBlock fitted{block, {}, {}, 0, 0};
-        for (std::size_t i = 0; i < 2 * block.modes.size(); ++i) fitted.coefficients.push_back(std::sin(1.0 + 1.7 * static_cast<double>(i)));
+        for (std::size_t i = 0; i < 2 * block.modes.size(); ++i)
+          fitted.coefficients.push_back(std::sin(1.0 + 1.7 * static_cast<double>(i)));
         model.blocks.push_back(fitted);
       }
       const Direction incident{radians(33), radians(70)};
       // ρ² is no polynomial of 1 − cos θ for the projected mapping, so 40 nodes are not exact there
-      EXPECT_NEAR(directional_hemispherical_reflectance(model, 0.5, incident), dhr_by_quadrature(model, 0.5, incident), 1e-12)
+      EXPECT_NEAR(directional_hemispherical_reflectance(model, 0.5, incident), dhr_by_quadrature(model, 0.5, incident),
+                  1e-12)
           << to_string(mapping) << " " << to_string(family);
     }
 }

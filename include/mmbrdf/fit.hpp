@@ -9,7 +9,8 @@
 ///
 /// That holds for independent errors whose variances are as 1/W. Speckle noise grows towards grazing angles: use
 /// Weights::speckle for it. It does not hold where the model misses structure that the sample has; then s² contains the
-/// misfit, but correlated. Blocks are fitted apart from each other, so coefficients of different blocks are uncorrelated.
+/// misfit, but correlated. Blocks are fitted apart from each other, so coefficients of different blocks are
+/// uncorrelated.
 ///
 /// WARNING: the published index sets (germer2017) are not determined by data with one azimuth of the source. Their
 /// solution is the one of minimum norm, as in the published files, and combinations that the data say nothing about
@@ -38,15 +39,15 @@ struct Basis {
 };
 
 enum class Weights {
-  none,     ///< every row counts the same
-  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1). f11
-            ///< is then fitted twice: the first, unweighted fit tells what σ is relative to.
+  none,  ///< every row counts the same
+  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1).
+            ///< f11 is then fitted twice: the first, unweighted fit tells what σ is relative to.
 };
 
 struct FitOptions {
   std::optional<int> powers;  ///< highest power of the wavelength; default 0 for one wavelength, 1 for several
-  std::optional<ReflectanceTable> reflectance;  ///< f11 is divided by it. Default for several wavelengths: each one's own
-                                                ///< normal-incidence DHR; for one wavelength: none.
+  std::optional<ReflectanceTable> reflectance;  ///< f11 is divided by it. Default for several wavelengths: each one's
+                                                ///< own normal-incidence DHR; for one wavelength: none.
   bool minimum_norm = false;  ///< accept data that do not determine every mode. Always so for germer2017.
   /// Singular values below this part of the largest count as 0: 1e-8 to 1e-13 all give the published files, and the
   /// published grid, whose incidence at 0.001 degrees is as good as 0, is found not to determine order 11.
@@ -64,8 +65,8 @@ struct FitResult {
   Model model;
   std::vector<Solution> solutions;      ///< one for each block of the model
   std::array<ElementFit, 16> elements;  ///< in row-major order
-  std::vector<Mueller> residuals;       ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
-                                        ///< Only from fit(); a FitAccumulator keeps no samples.
+  std::vector<Mueller> residuals;  ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
+                                   ///< Only from fit(); a FitAccumulator keeps no samples.
 };
 
 /// Root mean square over the 15 normalised elements.
@@ -80,7 +81,8 @@ class FitAccumulator {
 
   /// Weights, one for each sample, are for m_ij; f11_weights for f11 / reflectance. Empty means 1.
   /// Throws std::invalid_argument for an invalid sample, before anything is added.
-  void add(std::span<const Sample> samples, std::span<const double> weights = {}, std::span<const double> f11_weights = {});
+  void add(std::span<const Sample> samples, std::span<const double> weights = {},
+           std::span<const double> f11_weights = {});
 
   /// As if all of other's samples had been added here. Throws std::invalid_argument for another basis.
   void merge(const FitAccumulator& other);
@@ -116,7 +118,7 @@ class FitAccumulator {
 
   Basis basis_;
   std::vector<Block> blocks_;
-  std::array<int, 16> block_of_{};                  // −1: no block feeds the element
+  std::array<int, 16> block_of_{};                 // −1: no block feeds the element
   std::array<std::vector<ColumnTerm>, 16> terms_;  // of all modes that feed an element
   std::map<double, AtWavelength> wavelengths_;
   Validity validity_;
@@ -127,16 +129,17 @@ class FitAccumulator {
 FitResult fit(std::span<const Sample> samples, const Basis& basis = {}, const FitOptions& options = {},
               Weights weights = Weights::none);
 
-/// Relative weights of the speckle law for m_ij: cos θr / cos θi. Throws std::invalid_argument, with the sample's number,
-/// where θi is 90 degrees.
+/// Relative weights of the speckle law for m_ij: cos θr / cos θi. Throws std::invalid_argument, with the sample's
+/// number, where θi is 90 degrees.
 std::vector<double> speckle_weights(std::span<const Sample> samples);
 
 /// Measured − model for each sample, as in FitResult.
-std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation = Rotation::covariant);
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,
+                               Rotation rotation = Rotation::covariant);
 
 /// The isotropic model nearest to another one: least squares over the model's range of angles, in solid angle on both
-/// sides, for f11 and m_ij apart. f11 of a germer2017 model is carried over exactly if the orders suffice. The covariance
-/// is not carried over. Throws std::invalid_argument for an anisotropic model.
+/// sides, for f11 and m_ij apart. f11 of a germer2017 model is carried over exactly if the orders suffice. The
+/// covariance is not carried over. Throws std::invalid_argument for an anisotropic model.
 Model projected_on_isotropic(const Model& model, const Orders& orders);
 
 }  // namespace mmbrdf

@@ -26,8 +26,8 @@ struct Solution {
   bool estimable(std::span<const double> g) const;
 };
 
-/// Holds only the triangle of A = QR, Qᵀb and the norm of the rest: n(n+1)/2 + n + 2 numbers, however many rows are added.
-/// Rows are folded in by Householder reflections, never by normal equations.
+/// Holds only the triangle of A = QR, Qᵀb and the norm of the rest: n(n+1)/2 + n + 2 numbers, however many rows are
+/// added. Rows are folded in by Householder reflections, never by normal equations.
 ///
 /// Laws: the order of rows and how they are split among accumulators change a well-conditioned solution only in the
 /// last digits; merge() gives what adding all rows to one accumulator gives.
@@ -45,8 +45,8 @@ class LeastSquares {
   void merge(const LeastSquares& other);
 
   /// The problem whose unknowns are this one's, once for each factor: each row a, with value b, becomes
-  /// [factors[0] a, factors[1] a, …] with value value_factor × b. For coefficients that are polynomials of something that
-  /// all rows share. Throws std::invalid_argument without factors or if one is not finite.
+  /// [factors[0] a, factors[1] a, …] with value value_factor × b. For coefficients that are polynomials of something
+  /// that all rows share. Throws std::invalid_argument without factors or if one is not finite.
   LeastSquares repeated(std::span<const double> factors, double value_factor = 1) const;
 
   /// ‖A x − b‖ for any x of the right size.

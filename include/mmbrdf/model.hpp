@@ -47,8 +47,8 @@ struct FittedBlock {
   double condition = 0;              ///< of the fit; 0: unknown
 };
 
-/// f11 = R(λ) Σ_p λ^p Σ a_p Y,   f_ij = f11 Σ_p λ^p Σ a_p Y, λ in micrometres (Eqs. 17–20). Plain data; fit() and load_model()
-/// make valid ones, prepare() checks.
+/// f11 = R(λ) Σ_p λ^p Σ a_p Y,   f_ij = f11 Σ_p λ^p Σ a_p Y, λ in micrometres (Eqs. 17–20). Plain data; fit() and
+/// load_model() make valid ones, prepare() checks.
 struct Model {
   std::string name;
   Family family = Family::isotropic;
@@ -73,9 +73,9 @@ Outside outside(const Validity& validity, double wavelength, const Geometry& geo
 enum class Rotation {
   covariant,   ///< as an isotropic sample demands. germer2017 is evaluated at phi_i = 0 and turned: M(phi_i, phi_r) =
                ///< R(−phi_i) M(0, phi_r − phi_i) R(−phi_i). The other families are evaluated as they are.
-  as_printed,  ///< the published sum at the azimuths given. For comparison with other programs only: for germer2017 the answer
-               ///< then depends on how the sample is turned, since the files lack the sine partners of their modes,
-               ///< and it misses the measured random directions by half as much again (0.0175 against 0.0113).
+  as_printed,  ///< the published sum at the azimuths given. For comparison with other programs only: for germer2017 the
+               ///< answer then depends on how the sample is turned, since the files lack the sine partners of their
+               ///< modes, and it misses the measured random directions by half as much again (0.0175 against 0.0113).
 };
 
 class PreparedIncidence;
@@ -89,6 +89,7 @@ class PreparedModel {
   Mueller evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
 
   /// The same for directions given as unit vectors (z ≥ 0, length 1 to 1e-6); along the normal, phi = 0.
+  /// Throws std::invalid_argument for other vectors.
   Mueller evaluate(const Vector3& incident, const Vector3& reflected, Frame frame = Frame::xy) const;
 
   /// One matrix for each geometry. Throws std::invalid_argument if the sizes differ, before anything is written, or for
@@ -124,7 +125,8 @@ class PreparedModel {
 /// A model at one wavelength and one incident direction: what is left is one dot product for each element.
 class PreparedIncidence {
  public:
-  /// As PreparedModel::evaluate, for the incident direction this was made for. Agrees with it to evaluation_error × f11.
+  /// As PreparedModel::evaluate, for the incident direction this was made for. Agrees with it to evaluation_error ×
+  /// f11.
   Mueller evaluate(const Direction& reflected, Frame frame = Frame::xy) const;
   void evaluate(std::span<const Direction> reflected, Frame frame, std::span<Mueller> out) const;
   const Direction& incident() const { return incident_; }
@@ -143,16 +145,16 @@ class PreparedIncidence {
 /// Throws std::invalid_argument for an invalid model or wavelength.
 PreparedModel prepare(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
 
-/// Models that need no wavelength: with highest power 0, and no reflectance table or one with a single node. Returns their
-/// wavelength, or 1 if that is unknown. Throws std::invalid_argument, with the fitted wavelengths, for others.
+/// Models that need no wavelength: with highest power 0, and no reflectance table or one with a single node. Returns
+/// their wavelength, or 1 if that is unknown. Throws std::invalid_argument, with the fitted wavelengths, for others.
 double only_wavelength(const Model& model);
 
 /// Bound on |error| / |f11| of an evaluated element for fitted models up to orders 7, 4, away from zeros of f11.
 inline constexpr double evaluation_error = 1e-13;
 
-/// An isotropic model in the modes of germer2017: the published coefficient layout. Exact, since that family is evaluated at
-/// phi_i = 0 and turned. The covariance is not carried over. Returns germer2017 models unchanged.
-/// Throws std::invalid_argument for an anisotropic model.
+/// An isotropic model in the modes of germer2017: the published coefficient layout. Exact, since that family is
+/// evaluated at phi_i = 0 and turned. The covariance is not carried over. Returns germer2017 models unchanged. Throws
+/// std::invalid_argument for an anisotropic model.
 Model in_published_form(const Model& model);
 
 }  // namespace mmbrdf

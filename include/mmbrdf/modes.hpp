@@ -25,8 +25,8 @@ enum class Family {
   anisotropic,  ///< every index: the complete reciprocal expansion, Eqs. 1, 2 and 14–16. 2376 modes at orders 7, 4.
 };
 
-/// The function a mode belongs to. Pairs m_ij name element ij and, by reciprocity, ji. g, h, u and v are the functions of
-/// the isotropic family that several elements share:
+/// The function a mode belongs to. Pairs m_ij name element ij and, by reciprocity, ji. g, h, u and v are the functions
+/// of the isotropic family that several elements share:
 ///   g: m12 = Re g(i,r)   m13 = −Im g(i,r)   m21 = Re g(r,i)   m31 = Im g(r,i)
 ///   h: m42 = Re h(i,r)   m43 = −Im h(i,r)   m24 = Re h(r,i)   m34 = Im h(r,i)
 ///   u, v: m22 = Re(u+v)  m33 = Re(u−v)      m32 = Im(u+v)     m23 = Im(v−u)
@@ -51,16 +51,16 @@ struct Term {
 /// Throws std::invalid_argument if the mode is not valid in the family (see require_valid).
 std::vector<Term> terms(const Mode& mode, Family family);
 
-/// ∫∫ Y² dΩi dΩr of the part Y that a mode gives to an element (row, column from 0), lambert mapping; 0 if it feeds that
-/// element nothing. germer2017 and anisotropic modes have 1 for each element; isotropic ones carry no A_nm factor
+/// ∫∫ Y² dΩi dΩr of the part Y that a mode gives to an element (row, column from 0), lambert mapping; 0 if it feeds
+/// that element nothing. germer2017 and anisotropic modes have 1 for each element; isotropic ones carry no A_nm factor
 /// and have 2, 4, 8 or 16. The modes of a block are orthogonal, all its elements taken together; in one element alone
 /// all are but the isotropic v of opposite k.
 double squared_norm(const Mode& mode, Family family, int row, int column);
 
 /// Modes that are fitted together, because they feed the same elements or elements related by reciprocity.
 struct Block {
-  std::string name;                             ///< "11", "12,21", "22,23,32,33", …: the elements fed
-  std::vector<std::pair<int, int>> elements;    ///< row and column from 0
+  std::string name;                           ///< "11", "12,21", "22,23,32,33", …: the elements fed
+  std::vector<std::pair<int, int>> elements;  ///< row and column from 0
   std::vector<Mode> modes;
 };
 
@@ -88,16 +88,17 @@ int mode_count(const std::vector<Block>& blocks);
 
 /// Throws std::invalid_argument, naming mode and rule, unless |k| ≤ n ≤ max_order, |l| ≤ m ≤ max_order, n − k and m − l
 /// even, and the family's rules hold:
-///   m11, m22, m33, m44 of germer2017 and anisotropic   (n, k) not before (m, l): n > m, or n = m and (|k|, k) ≥ (|l|, l);
-///   germer2017    n − m even                           m11: k = l ≥ 0
-///   isotropic     m11, m44: k + l = 0, n ≥ m, k ≥ 0    m14: k + l = 0, k > 0   g, h: k + l = 2
+///   m11, m22, m33, m44 of germer2017 and anisotropic   (n, k) not before (m, l): n > m, or n = m and (|k|, k) ≥ (|l|,
+///   l); germer2017    n − m even                           m11: k = l ≥ 0 isotropic     m11, m44: k + l = 0, n ≥ m, k
+///   ≥ 0    m14: k + l = 0, k > 0   g, h: k + l = 2
 ///                 u: k + l = 4, n > m or n = m and k ≥ l           v: k + l = 0, n ≥ m
 void require_valid(const Mode& mode, Family family);
 
 /// "22 (n, m, k, l) = (4, 2, 4, 2)" for messages.
 std::string to_string(const Mode& mode);
 
-/// The names used in files and by the program: isotropic, germer2017, anisotropic; 11, 12, …, g, h, u, v; lambert, projected.
+/// The names used in files and by the program: isotropic, germer2017, anisotropic; 11, 12, …, g, h, u, v; lambert,
+/// projected.
 std::string to_string(Family family);
 std::string to_string(Function function);
 std::string to_string(DiscMapping mapping);
