@@ -52,6 +52,8 @@ Direction direction(const CsvReader& reader, int theta_column, int phi_column) {
 
 CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::move(name)), line_(longest_line + 1) {
   if (!read_row()) throw std::runtime_error(name_ + ": empty file, without a header line");
+  if (fields_.size() == 1 && fields_[0].find_first_of(";\t") != std::string_view::npos)
+    throw error("no commas in the header line " + in_quotes(fields_[0]) + ": values must be separated by commas");
   if (is_number(fields_[0]))
     throw error("no header line: instead of a column's name there is the number " + std::string(fields_[0]));
   for (const std::string_view field : fields_) {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "mmbrdf/radiometry.hpp"
+#include "numbers.hpp"
 
 // For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit
 // of a block over all wavelengths, with any powers and any reflectance table, is put together from them: a coefficient
@@ -24,14 +24,7 @@ constexpr std::size_t most_named = 24;  // modes in a message of one line
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-std::string nanometres(double wavelength) {
-  std::string text = std::to_string(wavelength * 1000);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
-bool turns(const Basis& basis) { return basis.family == Family::germer2017 && basis.rotation == Rotation::covariant; }
+std::string nanometres(double wavelength) { return shortest(in_nanometres(wavelength)); }
 
 /// The sample as an isotropic specimen would give it at phi_i = 0.
 Sample at_zero_azimuth(Sample sample) {
@@ -45,9 +38,15 @@ Sample at_zero_azimuth(Sample sample) {
 /// "11(7,7,5,-5)", and the power of the wavelength where there are several.
 std::string short_name(const Block& block, std::size_t coefficient, std::size_t count) {
   const Mode& mode = block.modes[coefficient % block.modes.size()];
-  std::string name = to_string(mode.function) + "(" + std::to_string(mode.n) + "," + std::to_string(mode.m) + "," +
-                     std::to_string(mode.k) + "," + std::to_string(mode.l) + ")";
-  if (count > block.modes.size()) name += "p" + std::to_string(coefficient / block.modes.size());
+  std::string name = to_string(mode.function);
+  char separator = '(';
+  for (const int order : {mode.n, mode.m, mode.k, mode.l}) {
+    name += separator;
+    name += std::to_string(order);
+    separator = ',';
+  }
+  name += ')';
+  if (count > block.modes.size()) name.append("p").append(std::to_string(coefficient / block.modes.size()));
   return name;
 }
 
@@ -60,9 +59,9 @@ std::string undetermined(const Block& block, const Solution& solution) {
   for (std::size_t i = 0; i < n; ++i) {
     double part = 0;
     for (std::size_t f = 0; f < free; ++f) part = std::max(part, std::abs(solution.null_space[f * n + i]));
-    if (part > involved && ++count <= most_named) names += " " + short_name(block, i, n);
+    if (part > involved && ++count <= most_named) names.append(" ").append(short_name(block, i, n));
   }
-  if (count > most_named) names += " and " + std::to_string(count - most_named) + " more";
+  if (count > most_named) names.append(" and ").append(std::to_string(count - most_named)).append(" more");
   return "; block " + block.name + ": rank " + std::to_string(solution.rank) + " of " + std::to_string(n) + ", " +
          std::to_string(free) + " combinations are free of the modes (n,m,k,l)" + names;
 }
@@ -70,7 +69,7 @@ std::string undetermined(const Block& block, const Solution& solution) {
 void require_determined(const std::string& complaints) {
   if (!complaints.empty())
     throw std::invalid_argument("the data do not determine the model" + complaints +
-                                "; choose lower orders, or the minimum-norm solution");
+                                "; choose lower orders, or ask for the solution of minimum norm");
 }
 
 }  // namespace
@@ -97,7 +96,6 @@ FitAccumulator::FitAccumulator(const Basis& basis) : basis_(basis), blocks_(bloc
       for (const Term& term : terms(blocks_[b].modes[q], basis.family))
         terms_[size(4 * term.row + term.column)].push_back({q, size(term.incident), size(term.reflected), term.weight});
   }
-  validity_.theta_i_max = validity_.theta_r_max = 0;
 }
 
 FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
@@ -118,7 +116,7 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const double
                                   std::to_string(samples.size()) + " samples");
     for (std::size_t s = 0; s < list.size(); ++s)
       if (!(list[s] >= 0) || !std::isfinite(list[s]))
-        throw std::invalid_argument("fit: weight " + std::to_string(list[s]) + " of sample " + std::to_string(s + 1));
+        throw std::invalid_argument("fit: weight " + shortest(list[s]) + " of sample " + std::to_string(s + 1));
   }
   std::map<AtWavelength*, std::vector<std::size_t>> groups;
   for (std::size_t s = 0; s < samples.size(); ++s) groups[&slot(samples[s].wavelength)].push_back(s);
@@ -127,8 +125,8 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const double
       add_some(*at, samples, std::span(members).subspan(first, std::min(samples_at_once, members.size() - first)),
                weights, f11_weights);
   for (const Sample& sample : samples) {
-    validity_.theta_i_max = std::max(validity_.theta_i_max, sample.geometry.incident.theta);
-    validity_.theta_r_max = std::max(validity_.theta_r_max, sample.geometry.reflected.theta);
+    theta_i_max_ = std::max(theta_i_max_, sample.geometry.incident.theta);
+    theta_r_max_ = std::max(theta_r_max_, sample.geometry.reflected.theta);
   }
   samples_ += static_cast<long>(samples.size());
 }
@@ -139,13 +137,12 @@ void FitAccumulator::add_some(AtWavelength& at, std::span<const Sample> samples,
   std::vector<Table> k_i(members.size()), k_r(members.size());
   const int order = std::max(basis_.orders.f11, basis_.orders.other);
   for (std::size_t s = 0; s < members.size(); ++s) {
-    used.push_back(turns(basis_) ? at_zero_azimuth(samples[members[s]]) : samples[members[s]]);
+    used.push_back(basis_.family == Family::germer2017 ? at_zero_azimuth(samples[members[s]]) : samples[members[s]]);
     zernike_table(order, disc_point(used[s].geometry.incident, basis_.mapping), k_i[s].data());
     zernike_table(order, disc_point(used[s].geometry.reflected, basis_.mapping), k_r[s].data());
   }
   std::vector<double> rows, values, row_weights;
   for (std::size_t e = 0; e < 16; ++e) {
-    if (block_of_[e] < 0) continue;
     const std::size_t columns = size(at.elements[e].unknowns());
     rows.assign(members.size() * columns, 0);
     values.clear();
@@ -171,8 +168,8 @@ void FitAccumulator::merge(const FitAccumulator& other) {
       ours.weight[e] += theirs.weight[e];
     }
   }
-  validity_.theta_i_max = std::max(validity_.theta_i_max, other.validity_.theta_i_max);
-  validity_.theta_r_max = std::max(validity_.theta_r_max, other.validity_.theta_r_max);
+  theta_i_max_ = std::max(theta_i_max_, other.theta_i_max_);
+  theta_r_max_ = std::max(theta_r_max_, other.theta_r_max_);
   samples_ += other.samples_;
 }
 
@@ -193,7 +190,9 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) cons
   if (wavelengths_.size() < 2) return table;
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance);
-    if (!accepts_minimum_norm(options)) require_determined(undetermined(blocks_[0], solution));
+    if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
+      throw std::invalid_argument("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
+                                  "reflectance it is to be divided by; give a reflectance table" + free);
     Model f11;
     f11.family = basis_.family;
     f11.mapping = basis_.mapping;
@@ -201,7 +200,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) cons
     const double dhr = directional_hemispherical_reflectance(f11, wavelength, {0, 0});
     if (!(dhr > 0))
       throw std::invalid_argument("fit: the normal-incidence reflectance at " + nanometres(wavelength) +
-                                  " nm comes out as " + std::to_string(dhr) + "; give a reflectance table");
+                                  " nm comes out as " + shortest(dhr) + "; give a reflectance table");
     table.wavelengths.push_back(wavelength);
     table.values.push_back(dhr);
   }
@@ -216,6 +215,9 @@ int FitAccumulator::chosen_powers(const FitOptions& options) const {
   const int powers = options.powers.value_or(wavelengths_.size() > 1 ? 1 : 0);
   if (powers < 0)
     throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is negative");
+  if (powers > max_power)
+    throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is more than " +
+                                std::to_string(max_power));
   if (size(powers) >= wavelengths_.size())
     throw std::invalid_argument("fit: powers of the wavelength up to " + std::to_string(powers) + " need " +
                                 std::to_string(powers + 1) + " wavelengths, the data have " +
@@ -232,7 +234,7 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
   model.family = basis_.family;
   model.mapping = basis_.mapping;
   model.powers = powers;
-  model.validity = validity_;
+  model.validity = {{}, theta_i_max_, theta_r_max_};
   for (const auto& [wavelength, at] : wavelengths_) model.validity.wavelengths.push_back(wavelength);
   model.reflectance = options.reflectance ? *options.reflectance : own_reflectance(options);
   require_valid(model.reflectance);
@@ -255,6 +257,9 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
     result.solutions.push_back(std::move(solution));
   }
   require_determined(complaints);
+  for (std::size_t e = 0; e < 16; ++e)
+    if (block_of_[e] < 0)  // no mode: the model's element is 0
+      result.elements[e] = element_fit(e, over_wavelengths(e, 0, model.reflectance), std::array{0.0});
   return result;
 }
 
@@ -317,8 +322,8 @@ std::vector<double> relative_weights(const Model& first, std::span<const Sample>
     const double wavelength = samples[s].wavelength;
     const double f11 = prepared(wavelength).f11(samples[s].geometry) / first.reflectance.at(wavelength);
     if (!(f11 > 0))
-      throw std::invalid_argument("speckle weights: f11 of the unweighted fit is " + std::to_string(f11) +
-                                  " at sample " + std::to_string(s + 1));
+      throw std::invalid_argument("speckle weights: f11 of the unweighted fit is " + shortest(f11) + " at sample " +
+                                  std::to_string(s + 1));
     weights[s] /= f11 * f11;
   }
   return weights;
@@ -336,7 +341,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
     weighted.add(samples, relative, relative_weights(result.model, samples, relative));
     result = weighted.solve(options);
   }
-  result.residuals = residuals(result.model, samples, basis.rotation);
+  result.residuals = residuals(result.model, samples);
   return result;
 }
 
@@ -350,69 +355,6 @@ std::vector<Mueller> residuals(const Model& model, std::span<const Sample> sampl
     difference(0, 0) = sample.f11 - predicted(0, 0);
     result.push_back(difference);
   }
-  return result;
-}
-
-// ---- projection
-// -------------------------------------------------------------------------------------------------------
-
-namespace {
-
-/// Geometries at phi_i = 0 and weights that integrate over the range of a model in solid angle, dΩ = d(1 − cos θ) dφ.
-std::vector<std::pair<Geometry, double>> quadrature(const Validity& validity, int order) {
-  const double height_i = 1 - std::cos(validity.theta_i_max), height_r = 1 - std::cos(validity.theta_r_max);
-  const int azimuths = 4 * order + 8;
-  std::vector<std::pair<Geometry, double>> result;
-  for (const Node& i : gauss_legendre(order + 6))
-    for (const Node& r : gauss_legendre(order + 6))
-      for (int a = 0; a < azimuths; ++a)
-        result.push_back(
-            {{{std::acos(1 - i.x * height_i), 0}, {std::acos(1 - r.x * height_r), 2 * std::numbers::pi * a / azimuths}},
-             i.weight * r.weight});
-  return result;
-}
-
-/// powers + 1 or more wavelengths, enough to determine polynomials of that degree.
-std::vector<double> wavelengths_for(const Model& model) {
-  std::vector<double> list = model.validity.wavelengths;
-  if (list.size() > size(model.powers)) return list;
-  list.clear();
-  for (int p = 0; p <= model.powers; ++p) list.push_back(0.5 + 0.5 * p);
-  return list;
-}
-
-}  // namespace
-
-Model projected_on_isotropic(const Model& model, const Orders& orders) {
-  require_valid(model);
-  if (model.family == Family::anisotropic)
-    throw std::invalid_argument("a model of the anisotropic family is not isotropic");
-  Model bare = model;
-  bare.reflectance = {};
-  FitAccumulator accumulator({Family::isotropic, orders, model.mapping, Rotation::covariant});
-  const Orders both = mmbrdf::orders(model);
-  const auto nodes = quadrature(model.validity, std::max({orders.f11, orders.other, both.f11, both.other}));
-  for (const double wavelength : wavelengths_for(model)) {
-    const PreparedModel prepared = prepare(bare, wavelength);
-    std::vector<Sample> samples;
-    std::vector<double> weights;
-    for (const auto& [geometry, weight] : nodes) {
-      const Mueller m = prepared.evaluate(geometry);
-      samples.push_back({wavelength, geometry, m(0, 0), normalized(m)});
-      weights.push_back(weight);
-    }
-    accumulator.add(samples, weights, weights);
-  }
-  Model result = accumulator.solve({model.powers, ReflectanceTable{}, false}).model;
-  for (FittedBlock& fitted : result.blocks) {
-    fitted.covariance.clear();  // of the quadrature, not of the data
-    fitted.rank = 0;
-    fitted.condition = 0;
-  }
-  result.name = model.name;
-  result.reflectance = model.reflectance;
-  result.validity = model.validity;
-  result.provenance = model.provenance;
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include "mmbrdf/io.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -11,24 +12,26 @@
 #include <sstream>
 #include <tuple>
 
+#include "mmbrdf/conversion.hpp"
 #include "numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-std::ifstream opened(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw std::runtime_error(path + ": is a folder, not a file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
-  return in;
-}
-
 // ---- samples --------------------------------------------------------------------------------------------------------
 
 std::string element_name(std::size_t element) {
   return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
+}
+
+/// A value whose square and sums of squares are finite, as any measured one is.
+double measured(const CsvReader& reader, int column) {
+  constexpr double beyond_all = 1e100;
+  const double value = reader.number(column);
+  if (std::abs(value) > beyond_all)
+    throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + std::string(reader.field(column)) +
+                       " is beyond " + shortest(beyond_all));
+  return value;
 }
 
 /// The columns of f11 and of the normalised elements, in row-major order. That of m11, if there is one, must be 1.
@@ -44,7 +47,9 @@ std::array<int, 16> element_columns(const CsvReader& reader, int& m11) {
         "by it; a table of elements that are not divided cannot be read as samples");
   if (columns[0] < 0) throw reader.error("no column f11 (nor f_r11), the unpolarized BRDF in 1/sr");
   for (std::size_t e = 1; e < columns.size(); ++e) {
-    const std::string own = "m" + element_name(e), published = "f_r" + element_name(e) + "/f_r11";
+    const std::string number = element_name(e);
+    const std::string own = std::string("m").append(number);
+    const std::string published = std::string("f_r").append(number).append("/f_r11");
     const std::string_view names[] = {own, published};
     columns[e] = reader.find(names);
     if (columns[e] < 0) throw reader.error("no column " + own + " (nor " + published + "), the element divided by f11");
@@ -53,8 +58,6 @@ std::array<int, 16> element_columns(const CsvReader& reader, int& m11) {
 }
 
 // ---- coefficients ---------------------------------------------------------------------------------------------------
-
-constexpr int highest_power = 9;  // as in every model
 
 struct CoefficientRow {
   Mode mode;
@@ -105,7 +108,7 @@ CoefficientRow coefficient_row(const CsvReader& reader) {
                                                     "column 4 is m and goes with l"
                                                   : ""));
   }
-  return {mode, index_in(reader, 6, 0, highest_power), reader.number(7)};
+  return {mode, index_in(reader, 6, 0, max_power), reader.number(7)};
 }
 
 auto key(const Mode& mode, int p) { return std::tuple(mode.function, mode.n, mode.m, mode.k, mode.l, p); }
@@ -121,7 +124,7 @@ std::string file_stem(const std::string& path) { return std::filesystem::path(pa
 
 /// All that a text file holds.
 std::string contents(const std::string& path) {
-  std::ifstream in = opened(path);
+  std::ifstream in = open_input(path);
   std::string text;
   std::vector<char> piece(1 << 16);
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
@@ -135,30 +138,44 @@ std::string contents(const std::string& path) {
 
 }  // namespace
 
-std::vector<Sample> read_samples(std::istream& in, const std::string& name) {
-  CsvReader reader(in, name);
-  const GeometryColumns geometry(reader);
-  int m11 = -1;
-  const std::array<int, 16> columns = element_columns(reader, m11);
-  std::vector<Sample> samples;
-  while (reader.next()) {
-    Sample sample;
-    sample.wavelength = geometry.wavelength(reader);
-    sample.geometry = geometry.geometry(reader);
-    sample.f11 = reader.number(columns[0]);
-    sample.normalized.elements[0] = 1;
-    for (std::size_t e = 1; e < columns.size(); ++e) sample.normalized.elements[e] = reader.number(columns[e]);
-    if (m11 >= 0 && reader.number(m11) != 1)
-      throw reader.error("m11: " + std::string(reader.field(m11)) +
-                         ": must be 1 next to f11, as elements are divided by it");
-    samples.push_back(sample);
+std::ifstream open_input(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw std::runtime_error(path + ": is a folder, not a file");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
+  return in;
+}
+
+SampleReader::SampleReader(std::istream& in, const std::string& name)
+    : name_(name), reader_(in, name), geometry_(reader_), elements_(element_columns(reader_, m11_)) {}
+
+bool SampleReader::next(Sample& sample) {
+  if (!reader_.next()) {
+    if (rows_ == 0) throw std::runtime_error(name_ + ": no samples after the header line");
+    return false;
   }
-  if (samples.empty()) throw std::runtime_error(name + ": no samples after the header line");
+  ++rows_;
+  sample.wavelength = geometry_.wavelength(reader_);
+  sample.geometry = geometry_.geometry(reader_);
+  sample.f11 = measured(reader_, elements_[0]);
+  sample.normalized.elements[0] = 1;
+  for (std::size_t e = 1; e < elements_.size(); ++e) sample.normalized.elements[e] = measured(reader_, elements_[e]);
+  if (m11_ >= 0 && reader_.number(m11_) != 1)
+    throw reader_.error("m11: " + std::string(reader_.field(m11_)) +
+                        ": must be 1 next to f11, as elements are divided by it");
+  return true;
+}
+
+std::vector<Sample> read_samples(std::istream& in, const std::string& name) {
+  SampleReader reader(in, name);
+  std::vector<Sample> samples;
+  for (Sample sample; reader.next(sample);) samples.push_back(sample);
   return samples;
 }
 
 std::vector<Sample> read_samples(const std::string& path) {
-  std::ifstream in = opened(path);
+  std::ifstream in = open_input(path);
   return read_samples(in, path);
 }
 
@@ -218,7 +235,7 @@ Model read_coefficients(std::istream& in, const std::string& name) {
 }
 
 Model read_coefficients(const std::string& path) {
-  std::ifstream in = opened(path);
+  std::ifstream in = open_input(path);
   return read_coefficients(in, path);
 }
 
@@ -255,8 +272,18 @@ Model load_model(const std::string& path) {
   return read_coefficients(lines, path);
 }
 
+namespace {
+
+bool is_csv(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending == ".csv";
+}
+
+}  // namespace
+
 void save_model(const std::string& path, const Model& model) {
-  const std::string text = path.ends_with(".csv") ? to_coefficients_csv(model) : to_json(model);
+  const std::string text = is_csv(path) ? to_coefficients_csv(model) : to_json(model);
   write_file(path, [&](std::ostream& out) { out << text; });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "json_field.hpp"
@@ -119,7 +120,9 @@ std::vector<FittedBlock> read_blocks(const Field& field, Family family, int powe
   return result;
 }
 
-double read_polar_angle(const Field& field) {
+/// null: unknown.
+std::optional<double> read_polar_angle(const Field& field) {
+  if (field.is_null()) return {};
   const double value = field.number();
   if (value < 0 || value > 90) field.refuse(field.shown() + " degrees is not in 0...90");
   return radians(value);
@@ -278,6 +281,10 @@ ordered_json block_json(const FittedBlock& fitted) {
   return result;
 }
 
+ordered_json angle_json(const std::optional<double>& angle) {
+  return angle ? ordered_json(in_degrees(*angle)) : nullptr;
+}
+
 ordered_json model_json(const Model& model) {
   const Orders found = orders(model);
   ordered_json root = {{"format", format_name},
@@ -291,8 +298,8 @@ ordered_json model_json(const Model& model) {
                        {"units", units()}};
   require_finite(model.validity.wavelengths, "wavelengths of the validity");
   root["validity"] = {{"wavelengths_um", model.validity.wavelengths},
-                      {"theta_i_max_deg", in_degrees(model.validity.theta_i_max)},
-                      {"theta_r_max_deg", in_degrees(model.validity.theta_r_max)}};
+                      {"theta_i_max_deg", angle_json(model.validity.theta_i_max)},
+                      {"theta_r_max_deg", angle_json(model.validity.theta_r_max)}};
   if (!model.reflectance.wavelengths.empty())
     root["reflectance"] = {{"wavelengths_um", model.reflectance.wavelengths}, {"values", model.reflectance.values}};
   root["provenance"] = model.provenance;

@@ -40,6 +40,8 @@ class Field {
     return fields;
   }
 
+  bool is_null() const { return value_.is_null(); }
+
   double number() const {
     if (!value_.is_number()) refuse("must be a number, not " + shown());
     return value_.get<double>();

@@ -37,15 +37,10 @@ namespace {
 
 using Table = std::array<double, zernike_count(max_order)>;
 
+constexpr double pi = std::numbers::pi;
 constexpr double edge = 1e-9;  // radians and micrometres: angles that went through degrees are still inside
-constexpr int max_power = 9;
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
-void require_wavelength(double wavelength) {
-  if (!(wavelength > 0) || !std::isfinite(wavelength))
-    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is not positive");
-}
 
 /// A vector of length 1 to 1e-6 with exactly that length.
 Vector3 normalized(const Vector3& v) {
@@ -86,6 +81,13 @@ std::map<ProductKey, std::vector<double>> collected_products(const Model& model)
 
 }  // namespace
 
+void require_wavelength(double wavelength) {
+  if (!(wavelength > 0))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is not positive");
+  if (!(wavelength <= max_wavelength))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is more than a metre");
+}
+
 double ReflectanceTable::at(double wavelength) const {
   if (values.empty()) return 1;
   const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
@@ -113,13 +115,32 @@ void require_valid(const ReflectanceTable& table) {
 std::string to_string(Outside outside) {
   std::string result;
   const auto append = [&](Outside reason, const char* name) {
-    if (outside & reason) result += (result.empty() ? "" : "+") + std::string(name);
+    if (outside & reason) result.append(result.empty() ? "" : "+").append(name);
   };
   append(outside_theta_i, "theta_i");
   append(outside_theta_r, "theta_r");
   append(outside_wavelength, "wavelength");
+  append(unknown_range, "unknown");
   return result.empty() ? "ok" : result;
 }
+
+namespace {
+
+void require_valid(const Validity& validity) {
+  double last = 0;
+  for (const double wavelength : validity.wavelengths) {
+    require_wavelength(wavelength);
+    if (wavelength <= last)
+      throw std::invalid_argument("validity: wavelength " + shortest(in_nanometres(wavelength)) + " nm does not rise");
+    last = wavelength;
+  }
+  for (const std::optional<double>& theta : {validity.theta_i_max, validity.theta_r_max})
+    if (theta && !(*theta >= 0 && *theta <= pi / 2 + edge))
+      throw std::invalid_argument("validity: polar angle " + shortest(in_degrees(*theta)) +
+                                  " degrees is not in [0, 90]");
+}
+
+}  // namespace
 
 void require_valid(const Model& model) {
   if (model.powers < 0 || model.powers > max_power)
@@ -151,6 +172,7 @@ void require_valid(const Model& model) {
       throw std::invalid_argument(where + "a number is not finite");
   }
   require_valid(model.reflectance);
+  require_valid(model.validity);
 }
 
 int coefficient_count(const Model& model) {
@@ -167,8 +189,9 @@ Orders orders(const Model& model) {
 
 Outside outside(const Validity& validity, double wavelength, const Geometry& geometry) {
   unsigned result = inside;
-  if (geometry.incident.theta > validity.theta_i_max + edge) result |= outside_theta_i;
-  if (geometry.reflected.theta > validity.theta_r_max + edge) result |= outside_theta_r;
+  if (!validity.theta_i_max || !validity.theta_r_max || validity.wavelengths.empty()) result |= unknown_range;
+  if (geometry.incident.theta > validity.theta_i_max.value_or(pi / 2) + edge) result |= outside_theta_i;
+  if (geometry.reflected.theta > validity.theta_r_max.value_or(pi / 2) + edge) result |= outside_theta_r;
   if (!validity.wavelengths.empty() &&
       (wavelength < validity.wavelengths.front() - edge || wavelength > validity.wavelengths.back() + edge))
     result |= outside_wavelength;
@@ -311,77 +334,6 @@ void PreparedIncidence::evaluate(std::span<const Direction> reflected, Frame fra
     throw std::invalid_argument("evaluate: " + std::to_string(reflected.size()) + " directions, room for " +
                                 std::to_string(out.size()));
   for (std::size_t q = 0; q < out.size(); ++q) out[q] = evaluate(reflected[q], frame);
-}
-
-// ---- published form
-// ---------------------------------------------------------------------------------------------------
-
-namespace {
-
-struct ZernikeIndex {
-  int n, k;
-};
-
-/// The inverse of zernike_index.
-ZernikeIndex from_index(int index) {
-  int n = 0;
-  while (zernike_count(n) <= index) ++n;
-  return {n, 2 * index - n * (n + 2)};
-}
-
-/// The published mode that a product belongs to at phi_i = 0, and the coefficient that gives it weight 1 there. Of an
-/// element below the diagonal the product is that of Eq. 16; a mode with k, l ≥ 0 is taken from above the diagonal
-/// only.
-std::optional<std::pair<Mode, double>> published_mode(const Term& term) {
-  auto [n, k] = from_index(term.incident);
-  auto [m, l] = from_index(term.reflected);
-  if (k < 0) return {};  // sin k phi_i is zero
-  int row = term.row, column = term.column;
-  double factor = 1;
-  if (row > column) {
-    if (l >= 0) return {};
-    std::swap(row, column);
-    std::swap(n, m);
-    std::swap(k, l);
-    factor = (row == 2) != (column == 2) ? -1 : 1;  // Eq. 13
-  } else if (row == column) {
-    const auto first = std::tuple(n, k), second = std::tuple(m, l);
-    if (first < second) return {};                // its twin is there too
-    const bool twice_cosine = row == 0 && k > 0;  // I_nm^k of Eq. 9 is (H^kk + H^−k−k) / √2
-    factor = (first == second ? 1 : std::numbers::sqrt2) * (twice_cosine ? std::numbers::sqrt2 : 1);
-  }
-  const Function function = function_from(std::to_string(row + 1) + std::to_string(column + 1));
-  return {{Mode{function, n, m, k, l}, factor}};
-}
-
-}  // namespace
-
-Model in_published_form(const Model& model) {
-  require_valid(model);
-  if (model.family == Family::germer2017) return model;
-  if (model.family != Family::isotropic)
-    throw std::invalid_argument("a model of the " + to_string(model.family) + " family has no published form");
-  std::vector<std::pair<Mode, std::vector<double>>> found;
-  for (const auto& [key, weights] : collected_products(model)) {
-    const auto mode = published_mode({key.element / 4, key.element % 4, key.incident, key.reflected, 1});
-    if (!mode) continue;
-    found.push_back({mode->first, weights});
-    for (double& weight : found.back().second) weight *= mode->second;
-  }
-  Model result = model;
-  result.family = Family::germer2017;
-  result.blocks.clear();
-  std::vector<Mode> modes;
-  for (const auto& [mode, weights] : found) modes.push_back(mode);
-  for (Block& block : blocks(Family::germer2017, modes)) {
-    FittedBlock fitted{std::move(block), {}, {}, 0, 0};
-    for (std::size_t p = 0; p <= size(model.powers); ++p)
-      for (const Mode& mode : fitted.block.modes)
-        fitted.coefficients.push_back(
-            std::find_if(found.begin(), found.end(), [&](const auto& f) { return f.first == mode; })->second[p]);
-    result.blocks.push_back(std::move(fitted));
-  }
-  return result;
 }
 
 }  // namespace mmbrdf

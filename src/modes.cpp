@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 // Every mode is written as a sum of products K_n^k(i) K_m^l(r) of real Zernike functions.
 //
@@ -18,42 +19,6 @@
 
 namespace mmbrdf {
 namespace {
-
-constexpr std::array<std::pair<Function, const char*>, 14> function_names{{{Function::m11, "11"},
-                                                                           {Function::m12, "12"},
-                                                                           {Function::m13, "13"},
-                                                                           {Function::m14, "14"},
-                                                                           {Function::m22, "22"},
-                                                                           {Function::m23, "23"},
-                                                                           {Function::m24, "24"},
-                                                                           {Function::m33, "33"},
-                                                                           {Function::m34, "34"},
-                                                                           {Function::m44, "44"},
-                                                                           {Function::g, "g"},
-                                                                           {Function::h, "h"},
-                                                                           {Function::u, "u"},
-                                                                           {Function::v, "v"}}};
-constexpr std::array<std::pair<Family, const char*>, 3> family_names{
-    {{Family::isotropic, "isotropic"}, {Family::germer2017, "germer2017"}, {Family::anisotropic, "anisotropic"}}};
-constexpr std::array<std::pair<DiscMapping, const char*>, 2> mapping_names{
-    {{DiscMapping::lambert, "lambert"}, {DiscMapping::projected, "projected"}}};
-
-template <class Names, class Value>
-std::string name_of(const Names& names, Value value) {
-  for (const auto& [candidate, name] : names)
-    if (candidate == value) return name;
-  throw std::invalid_argument("unknown enumerator " + std::to_string(static_cast<int>(value)));
-}
-
-template <class Names>
-auto value_of(const Names& names, const std::string& text, const char* what) {
-  std::string known;
-  for (const auto& [value, name] : names) {
-    if (name == text) return value;
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  }
-  throw std::invalid_argument(std::string(what) + " '" + text + "' is not one of " + known);
-}
 
 // ---- terms ----------------------------------------------------------------------------------------------------------
 
@@ -162,9 +127,6 @@ std::pair<int, int> element_of(Function function) {
   const std::string name = to_string(function);
   return {name[0] - '1', name[1] - '1'};
 }
-
-/// Elements with exactly one index 3 change sign when source and detector are exchanged (Eq. 13).
-int exchange_sign(int row, int column) { return (row == 2) != (column == 2) ? -1 : 1; }
 
 /// H_nm^kl of Eq. 2 (m11 anisotropic, and the other diagonal elements of both families, Eq. 14) and the products of
 /// Eqs. 15 and 16; for m11 of germer2017 I_nm^k of Eq. 9.
@@ -305,7 +267,7 @@ Block empty_block(const std::vector<Function>& functions) {
     }
   }
   for (const auto& [row, column] : block.elements)
-    block.name += (block.name.empty() ? "" : ",") + std::to_string(row + 1) + std::to_string(column + 1);
+    block.name.append(block.name.empty() ? "" : ",").append(std::to_string(10 * (row + 1) + column + 1));
   return block;
 }
 
@@ -391,8 +353,8 @@ void require_valid(const Mode& mode, Family family) {
   };
   if (n < 0 || n > max_order) refuse("n must be in 0..." + std::to_string(max_order));
   if (m < 0 || m > max_order) refuse("m must be in 0..." + std::to_string(max_order));
-  if (std::abs(k) > n) refuse("|k| must not exceed n");
-  if (std::abs(l) > m) refuse("|l| must not exceed m");
+  if (k < -n || k > n) refuse("|k| must not exceed n");
+  if (l < -m || l > m) refuse("|l| must not exceed m");
   if ((n - k) % 2 != 0) refuse("n - k must be even");
   if ((m - l) % 2 != 0) refuse("m - l must be even");
   if (const std::string rule = broken_rule(mode, family); !rule.empty()) refuse(rule);
@@ -402,12 +364,5 @@ std::string to_string(const Mode& mode) {
   return to_string(mode.function) + " (n, m, k, l) = (" + std::to_string(mode.n) + ", " + std::to_string(mode.m) +
          ", " + std::to_string(mode.k) + ", " + std::to_string(mode.l) + ")";
 }
-
-std::string to_string(Family family) { return name_of(family_names, family); }
-std::string to_string(Function function) { return name_of(function_names, function); }
-std::string to_string(DiscMapping mapping) { return name_of(mapping_names, mapping); }
-Family family_from(const std::string& name) { return value_of(family_names, name, "basis"); }
-Function function_from(const std::string& name) { return value_of(function_names, name, "function"); }
-DiscMapping disc_mapping_from(const std::string& name) { return value_of(mapping_names, name, "mapping"); }
 
 }  // namespace mmbrdf

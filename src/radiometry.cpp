@@ -45,8 +45,7 @@ std::vector<Node> gauss_legendre(int count) {
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident) {
   require_valid(model);
   require_valid(Geometry{incident, {}}, "directional_hemispherical_reflectance");
-  if (!(wavelength > 0) || !std::isfinite(wavelength))
-    throw std::invalid_argument("wavelength " + std::to_string(wavelength * 1000) + " nm is not positive");
+  require_wavelength(wavelength);
   const FittedBlock& f11 = model.blocks.front();
   std::array<double, zernike_count(max_order)> k_i;
   zernike_table(orders(model).f11, disc_point(incident, model.mapping), k_i.data());

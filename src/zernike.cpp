@@ -87,7 +87,7 @@ double radial(int n, int k, double rho) {
   if (n < 0 || n > max_order)
     throw std::invalid_argument("radial: n = " + std::to_string(n) + ", must be in 0…" + std::to_string(max_order));
   if (!(rho >= 0 && rho <= 1)) throw std::invalid_argument("radial: rho = " + shortest(rho) + ", must be in [0, 1]");
-  if (std::abs(k) > n || (n - k) % 2 != 0) return 0;
+  if (k < -n || k > n || (n - k) % 2 != 0) return 0;
   std::array<double, table_size> values;
   unnormalized_table(n, {rho, 0}, values.data());
   return values[at(n, std::abs(k))];

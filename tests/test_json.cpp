@@ -61,8 +61,10 @@ void expect_same(const Model& a, const Model& b) {
   EXPECT_EQ(a.reflectance.wavelengths, b.reflectance.wavelengths);
   EXPECT_EQ(a.reflectance.values, b.reflectance.values);
   EXPECT_EQ(a.validity.wavelengths, b.validity.wavelengths);
-  EXPECT_DOUBLE_EQ(a.validity.theta_i_max, b.validity.theta_i_max);
-  EXPECT_DOUBLE_EQ(a.validity.theta_r_max, b.validity.theta_r_max);
+  ASSERT_EQ(a.validity.theta_i_max.has_value(), b.validity.theta_i_max.has_value());
+  ASSERT_EQ(a.validity.theta_r_max.has_value(), b.validity.theta_r_max.has_value());
+  EXPECT_DOUBLE_EQ(a.validity.theta_i_max.value_or(0), b.validity.theta_i_max.value_or(0));
+  EXPECT_DOUBLE_EQ(a.validity.theta_r_max.value_or(0), b.validity.theta_r_max.value_or(0));
   EXPECT_EQ(a.provenance, b.provenance);
 }
 
@@ -210,7 +212,7 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
        "m.json: blocks[0].modes: must be the modes of one block"},
       {"[\"11\",0,0,0,0]", "[\"44\",0,0,0,0]", "m.json: blocks[0].elements: '11', but the modes feed 44"},
       {"\"orders\": [0, 1]", "\"orders\": [7, 4]", "m.json: orders: must be [0, 1]"},
-      {"\"theta_i_max_deg\": 90", "\"theta_i_max_deg\": 91", "m.json: validity.theta_i_max_deg: 91"},
+      {"\"theta_i_max_deg\": null", "\"theta_i_max_deg\": 91", "m.json: validity.theta_i_max_deg: 91"},
       {"\"wavelengths_um\": []", "\"wavelengths_um\": [0.5, 0.4]",
        "m.json: validity.wavelengths_um: must be positive and rise"},
       {"\"values\": [0.9]", "\"values\": [0.9, 1]", "m.json: reflectance: "},

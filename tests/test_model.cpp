@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "mmbrdf/conversion.hpp"
 #include "random_model.hpp"
 
 // Every allocation of this program is counted. Not inlined: gcc would take the pair for a mismatch of new and free().
@@ -493,7 +494,20 @@ TEST(Validity, IsNotLeftByARounding) {
   EXPECT_EQ(outside(validity, 0.351 - 1.1e-9, {}), outside_wavelength);
 }
 
-TEST(Validity, ThatIsUnknownIsNeverLeft) { EXPECT_EQ(outside(Validity{}, 10, in_degrees(90, 0, 90, 0)), inside); }
+TEST(Validity, ThatIsUnknownIsSaidToBe) {
+  EXPECT_EQ(outside(Validity{}, 10, in_degrees(90, 0, 90, 0)), unknown_range);
+  EXPECT_EQ(to_string(outside({{0.5}, {}, radians(75)}, 0.5, {})), "unknown");
+  EXPECT_EQ(to_string(outside({{}, radians(75), radians(75)}, 0.5, in_degrees(80, 0, 0, 0))), "theta_i+unknown");
+}
+
+TEST(Validity, OfAModelMustBeOne) {
+  Model model = diffuser({1});
+  for (const Validity& bad : {Validity{{0.5, 0.5}, {}, {}}, Validity{{-1}, {}, {}}, Validity{{}, radians(91), {}},
+                              Validity{{}, {}, nan_value}}) {
+    model.validity = bad;
+    EXPECT_THROW(prepare(model, 0.5), std::invalid_argument);
+  }
+}
 
 // ---- the published form ---------------------------------------------------------------------------------------------
 
@@ -605,12 +619,17 @@ TEST(Model, RefusesWavelengthsThatAreNotPositive) {
 }
 
 // A finite question has a finite answer or none.
-TEST(Model, RefusesWavelengthsWhosePowersOverflow) {
+TEST(Model, RefusesWavelengthsBeyondAMetre) {
   const Model cubic = diffuser({1, 0, 0, 1});
-  EXPECT_THROW(prepare(cubic, 1e200), std::invalid_argument);
+  EXPECT_THROW(prepare(cubic, 1.001 * max_wavelength), std::invalid_argument);
   EXPECT_THROW(prepare(cubic, 1).at(1e200), std::invalid_argument);
-  EXPECT_TRUE(std::isfinite(f11_of(cubic, 1e100)));
+  EXPECT_TRUE(std::isfinite(f11_of(diffuser({1, 0, 0, 0, 0, 0, 0, 0, 0, 1}), max_wavelength)));
   EXPECT_TRUE(std::isfinite(f11_of(cubic, 1e-300)));
+}
+
+// λ⁹ is 1e54 at a metre: only a coefficient beyond all reason makes it infinite.
+TEST(Model, RefusesWavelengthsWhosePowersOverflow) {
+  EXPECT_THROW(prepare(diffuser({1, 0, 0, 0, 0, 0, 0, 0, 0, 1e300}), max_wavelength), std::invalid_argument);
 }
 
 TEST(Model, RefusesDirectionsBelowTheHorizonAndAnglesThatAreNone) {

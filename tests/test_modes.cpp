@@ -9,6 +9,7 @@
 #include <cmath>
 #include <complex>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -520,6 +521,19 @@ TEST(Modes, ThatBreakARuleAreRefusedWithModeFamilyAndRule) {
     EXPECT_EQ(message_of([&] { squared_norm(mode, family, 0, 0); }), expected);
     EXPECT_EQ(message_of([&] { blocks(family, std::vector{mode}); }), expected);
   }
+}
+
+TEST(Modes, WithIndicesAtTheEndOfIntegersAreRefused) {
+  constexpr int lowest = std::numeric_limits<int>::min();
+  EXPECT_NE(refusal({m22, 2, 2, lowest, 0}, Family::germer2017).find("|k| must not exceed n"), std::string::npos);
+  EXPECT_NE(refusal({m12, 2, 2, 0, lowest}, Family::anisotropic).find("|l| must not exceed m"), std::string::npos);
+  EXPECT_EQ(radial(2, lowest, 0.5), 0);
+  EXPECT_EQ(zernike(2, lowest, {0.5, 0}), 0);
+}
+
+TEST(Modes, HaveTheOrderOfTheirLargerFactor) {
+  EXPECT_EQ(orders(blocks(Family::germer2017, std::vector<Mode>{{m11, 2, 0, 0, 0}, {m12, 0, 4, 0, 2}})),
+            (Orders{2, 4}));
 }
 
 // Of two ways to write one function, at most one is valid: else a model could hold it twice.

@@ -29,12 +29,11 @@
 
 namespace mmbrdf {
 
-/// What is fitted: the modes, and how azimuths enter them (see Rotation).
+/// What is fitted: which modes. Samples for germer2017 are turned to phi_i = 0 first, as its models are evaluated.
 struct Basis {
   Family family = Family::isotropic;
   Orders orders;
   DiscMapping mapping = DiscMapping::lambert;
-  Rotation rotation = Rotation::covariant;
   friend bool operator==(const Basis&, const Basis&) = default;
 };
 
@@ -46,15 +45,17 @@ enum class Weights {
 
 struct FitOptions {
   std::optional<int> powers;  ///< highest power of the wavelength; default 0 for one wavelength, 1 for several
-  std::optional<ReflectanceTable> reflectance;  ///< f11 is divided by it. Default for several wavelengths: each one's
-                                                ///< own normal-incidence DHR; for one wavelength: none.
+  std::optional<ReflectanceTable>
+      reflectance;            ///< f11 is divided by it; an empty table: by nothing. Default for several
+                              ///< wavelengths: each one's own normal-incidence DHR; for one: nothing.
   bool minimum_norm = false;  ///< accept data that do not determine every mode. Always so for germer2017.
   /// Singular values below this part of the largest count as 0: 1e-8 to 1e-13 all give the published files, and the
   /// published grid, whose incidence at 0.001 degrees is as good as 0, is found not to determine order 11.
   double rank_tolerance = 1e-8;
 };
 
-/// How well one matrix element is fitted.
+/// How well one matrix element is fitted. An element without modes is 0 in the model, and its samples are the
+/// residuals.
 struct ElementFit {
   long rows = 0;
   double rms = 0;          ///< √(Σ w r² / Σ w) of the residuals r; those of f11 are of f11 / reflectance
@@ -121,7 +122,7 @@ class FitAccumulator {
   std::array<int, 16> block_of_{};                 // −1: no block feeds the element
   std::array<std::vector<ColumnTerm>, 16> terms_;  // of all modes that feed an element
   std::map<double, AtWavelength> wavelengths_;
-  Validity validity_;
+  double theta_i_max_ = 0, theta_r_max_ = 0;
   long samples_ = 0;
 };
 
@@ -136,10 +137,5 @@ std::vector<double> speckle_weights(std::span<const Sample> samples);
 /// Measured − model for each sample, as in FitResult.
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,
                                Rotation rotation = Rotation::covariant);
-
-/// The isotropic model nearest to another one: least squares over the model's range of angles, in solid angle on both
-/// sides, for f11 and m_ij apart. f11 of a germer2017 model is carried over exactly if the orders suffice. The
-/// covariance is not carried over. Throws std::invalid_argument for an anisotropic model.
-Model projected_on_isotropic(const Model& model, const Orders& orders);
 
 }  // namespace mmbrdf

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <fstream>
 #include <functional>
 #include <iosfwd>
 #include <span>
@@ -18,6 +19,10 @@
 #include "mmbrdf/model.hpp"
 
 namespace mmbrdf {
+
+/// Opens a file for reading. Throws std::runtime_error, naming the path and the reason, if that fails or it is a
+/// folder.
+std::ifstream open_input(const std::string& path);
 
 /// Rows of comma-separated fields under a header line, one at a time, in constant memory. LF or CRLF; empty lines and
 /// lines that begin with # are passed over; a UTF-8 byte order mark too. Fields are not quoted; blanks around them do
@@ -86,6 +91,23 @@ class GeometryColumns {
   std::array<int, 4> angles_{};  // theta_i, phi_i, theta_r, phi_r
 };
 
+/// Samples of a file one at a time, in constant memory: see read_samples.
+class SampleReader {
+ public:
+  /// Reads the header.
+  SampleReader(std::istream& in, const std::string& name);
+  /// The next sample; false at the end.
+  bool next(Sample& sample);
+
+ private:
+  std::string name_;
+  CsvReader reader_;
+  GeometryColumns geometry_;
+  int m11_ = -1;
+  std::array<int, 16> elements_;
+  long rows_ = 0;
+};
+
 /// Samples in the layout of the published data, or with the project's own column names (docs/formats.md). Throws
 /// std::runtime_error, as the classes above do, and for a file without rows or with elements that are not normalised.
 std::vector<Sample> read_samples(const std::string& path);
@@ -119,7 +141,7 @@ std::string to_json(const Model& model);
 /// without a name gets that of the file, without folder and extension.
 Model load_model(const std::string& path);
 
-/// JSON, or the published coefficient layout if the path ends in .csv.
+/// JSON, or the published coefficient layout if the path ends in .csv or .CSV.
 void save_model(const std::string& path, const Model& model);
 
 /// Runs `write` on a stream whose contents appear under `path` only when all of it is written: a temporary file in the

@@ -13,7 +13,7 @@ struct Solution {
   std::vector<double> singular_values;  ///< n, falling
   int rank = 0;                         ///< singular values above tolerance × the largest
   double residual_norm = 0;             ///< ‖A x − b‖
-  long rows = 0;                        ///< rows added
+  long rows = 0;                        ///< rows added with a weight other than 0
   std::vector<double> inverse;          ///< (AᵀA)⁺, n × n row-major; the covariance of x for rows of unit variance
   std::vector<double> null_space;       ///< orthonormal combinations that the rows do not determine, (n − rank) × n
 
@@ -26,8 +26,8 @@ struct Solution {
   bool estimable(std::span<const double> g) const;
 };
 
-/// Holds only the triangle of A = QR, Qᵀb and the norm of the rest: n(n+1)/2 + n + 2 numbers, however many rows are
-/// added. Rows are folded in by Householder reflections, never by normal equations.
+/// Holds only the triangle of A = QR, Qᵀb and the norm of the rest: (n + 1)² numbers, however many rows are added.
+/// Rows are folded in by Householder reflections, never by normal equations.
 ///
 /// Laws: the order of rows and how they are split among accumulators change a well-conditioned solution only in the
 /// last digits; merge() gives what adding all rows to one accumulator gives.
@@ -56,7 +56,7 @@ class LeastSquares {
   long rows() const { return rows_; }
 
   /// Everything there is, for sending or saving: unknowns + 1 columns of the triangle of [A b], row by row from the
-  /// diagonal on, then the number of rows. The pivots may have either sign.
+  /// diagonal on, then the number of rows: n(n+1)/2 + n + 2 numbers. The pivots may have either sign.
   std::vector<double> state() const;
   /// Throws std::invalid_argument unless the numbers are a state of this many unknowns.
   static LeastSquares from_state(int unknowns, std::span<const double> state);
@@ -66,7 +66,7 @@ class LeastSquares {
   Solution solve(double tolerance = default_rank_tolerance) const;
 
   static constexpr double default_rank_tolerance = 1e-10;
-  static constexpr int max_unknowns = 8192;
+  static constexpr int max_unknowns = 2048;
 
  private:
   std::size_t width() const { return static_cast<std::size_t>(unknowns_) + 1; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,17 +26,23 @@ struct ReflectanceTable {
 /// Throws std::invalid_argument unless sizes agree, wavelengths rise and are positive, and values are positive.
 void require_valid(const ReflectanceTable& table);
 
-/// Where the data were that a model was fitted to.
+/// Where the data were that a model was fitted to. Published coefficient files do not say it.
 struct Validity {
-  std::vector<double> wavelengths;  ///< micrometres, rising; empty: unknown
-  double theta_i_max = radians(90);
-  double theta_r_max = radians(90);
+  std::vector<double> wavelengths;    ///< micrometres, rising; empty: unknown
+  std::optional<double> theta_i_max;  ///< largest polar angles in radians; none: unknown
+  std::optional<double> theta_r_max;
 };
 
 /// Reasons for which a result lies outside the fitted range; a bit each.
-enum Outside : unsigned { inside = 0, outside_theta_i = 1, outside_theta_r = 2, outside_wavelength = 4 };
+enum Outside : unsigned {
+  inside = 0,
+  outside_theta_i = 1,
+  outside_theta_r = 2,
+  outside_wavelength = 4,
+  unknown_range = 8,  ///< it is not known whether an angle or the wavelength is inside
+};
 
-/// "ok", or the reasons joined by "+": "theta_i+wavelength".
+/// "ok", or the reasons joined by "+": "theta_i+wavelength"; "unknown" for unknown_range.
 std::string to_string(Outside outside);
 
 /// Modes that were fitted together, with their coefficients and what is known about them.
@@ -46,6 +53,15 @@ struct FittedBlock {
   int rank = 0;                      ///< of the fit; 0: unknown
   double condition = 0;              ///< of the fit; 0: unknown
 };
+
+/// Highest power of the wavelength that a model may have.
+inline constexpr int max_power = 9;
+
+/// Largest wavelength that a model takes, micrometres: beyond it λ⁹ would end in infinities.
+inline constexpr double max_wavelength = 1e6;
+
+/// Throws std::invalid_argument, with the wavelength in nm, unless 0 < wavelength ≤ max_wavelength.
+void require_wavelength(double wavelength);
 
 /// f11 = R(λ) Σ_p λ^p Σ a_p Y,   f_ij = f11 Σ_p λ^p Σ a_p Y, λ in micrometres (Eqs. 17–20). Plain data; fit() and
 /// load_model() make valid ones, prepare() checks.
@@ -151,10 +167,5 @@ double only_wavelength(const Model& model);
 
 /// Bound on |error| / |f11| of an evaluated element for fitted models up to orders 7, 4, away from zeros of f11.
 inline constexpr double evaluation_error = 1e-13;
-
-/// An isotropic model in the modes of germer2017: the published coefficient layout. Exact, since that family is
-/// evaluated at phi_i = 0 and turned. The covariance is not carried over. Returns germer2017 models unchanged. Throws
-/// std::invalid_argument for an anisotropic model.
-Model in_published_form(const Model& model);
 
 }  // namespace mmbrdf

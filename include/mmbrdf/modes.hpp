@@ -73,7 +73,7 @@ struct Orders {
 
 /// Every mode of a family up to the given orders, block by block, in the canonical order:
 ///   blocks   germer2017, anisotropic: 11 12 13 14 22 23 24 33 34 44;   isotropic: 11, g, 14, u and v, h, 44
-///   modes    by function, n, m, |k|, |l|, and k > 0 before k < 0
+///   modes    by function, n, m, |k|, |l|, then k > 0 before k < 0, then l > 0 before l < 0
 /// Throws std::invalid_argument unless 0 ≤ order ≤ max_order.
 std::vector<Block> blocks(Family family, const Orders& orders);
 
@@ -102,6 +102,8 @@ std::string to_string(const Mode& mode);
 std::string to_string(Family family);
 std::string to_string(Function function);
 std::string to_string(DiscMapping mapping);
+/// Of row and column, from 0, on or above the diagonal: m11 … m44. Throws std::invalid_argument for others.
+Function function_of(int row, int column);
 Family family_from(const std::string& name);             ///< throws std::invalid_argument for another name
 Function function_from(const std::string& name);         ///< the same
 DiscMapping disc_mapping_from(const std::string& name);  ///< the same

@@ -18,7 +18,8 @@ struct Node {
 std::vector<Node> gauss_legendre(int count);
 
 /// Directional-hemispherical reflectance for unpolarized light, ∫ f11 cos θ_r dΩ_r over the hemisphere, reflectance
-/// table included (theory 4.3). Dimensionless. Exact to dhr_error: the integral of each mode is known,
+/// table included (theory 4.3). Dimensionless. For a reflectance of about 1 exact to dhr_error: the integral of each
+/// mode is known,
 ///   ∫ R_n^0 cos θ dΩ = π (n = 0), −π/3 (n = 2), else 0 for lambert;   π (n = 0), else 0 for projected.
 /// The integral includes directions beyond the fitted range, where the model extrapolates.
 /// Throws std::invalid_argument for an invalid model, wavelength (micrometres) or direction.
