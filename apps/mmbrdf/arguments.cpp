@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arguments.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <map>
-
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
 
 namespace mmbrdf::program {
 
@@ -36,12 +31,15 @@ std::invalid_argument wrong(const std::string& text, const std::string& expected
   return std::invalid_argument("\"" + text + "\": expected " + expected);
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : ", ") + word;
+/// A,B, both finite.
+std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::pair<double, double> values;
+  if (parts.size() != 2 || !read(parts[0], values.first) || !read(parts[1], values.second) ||
+      !std::isfinite(values.first) || !std::isfinite(values.second)) {
+    return {};
   }
-  return text;
+  return values;
 }
 
 }  // namespace
@@ -71,13 +69,19 @@ unsigned long seed(const std::string& text) {
 }
 
 DirectionDegrees direction_degrees(const std::string& text) {
-  const std::vector<std::string> parts = split(text, ',');
-  DirectionDegrees direction;
-  if (parts.size() != 2 || !read(parts[0], direction.theta) || !read(parts[1], direction.phi) ||
-      !std::isfinite(direction.theta) || !std::isfinite(direction.phi)) {
+  const auto values = two_numbers(text);
+  if (!values) {
     throw wrong(text, "THETA,PHI in degrees");
   }
-  return direction;
+  return {values->first, values->second};
+}
+
+AnglesDegrees angles_degrees(const std::string& text) {
+  const auto values = two_numbers(text);
+  if (!values) {
+    throw wrong(text, "THETA_I,THETA_R in degrees");
+  }
+  return {values->first, values->second};
 }
 
 std::vector<double> numbers(const std::string& text) {
@@ -103,7 +107,8 @@ ReflectanceTable reflectance_from(const std::string& text) {
     const std::vector<std::string> pair = split(part, ':');
     double wavelength_nm = 0;
     double value = 0;
-    if (pair.size() != 2 || !read(pair[0], wavelength_nm) || !read(pair[1], value)) {
+    if (pair.size() != 2 || !read(pair[0], wavelength_nm) || !read(pair[1], value) || !std::isfinite(wavelength_nm) ||
+        !std::isfinite(value)) {
       throw wrong(part, "NM:REFLECTANCE, as in 532:0.984");
     }
     if (!nodes.emplace(wavelength_nm, value).second) {
@@ -154,7 +159,7 @@ Format format_from(const std::string& name) {
 
 double micrometres(double wavelength_nm) {
   if (!(wavelength_nm > 0)) {
-    throw std::invalid_argument("wavelength " + brief(wavelength_nm) + " nm: must be positive");
+    throw std::invalid_argument("wavelength " + shortest(wavelength_nm) + " nm: must be positive");
   }
   return wavelength_nm / 1000;
 }
@@ -181,29 +186,12 @@ std::string nanometre_list(const std::vector<double>& wavelengths) {
 
 Direction direction_from(const DirectionDegrees& degrees, const std::string& option) {
   if (std::abs(degrees.theta) > 90) {
-    throw std::invalid_argument(option + " " + brief(degrees.theta) + "," + brief(degrees.phi) +
+    throw std::invalid_argument(option + " " + shortest(degrees.theta) + "," + shortest(degrees.phi) +
                                 ": the polar angle is not in [-90, 90] degrees");
   }
   // Unfolded in degrees, where 180 is exact.
   const double opposite = degrees.phi + (degrees.phi > 0 ? -180 : 180);
   return {radians(std::abs(degrees.theta)), radians(degrees.theta < 0 ? opposite : degrees.phi)};
-}
-
-Model open_model(const std::string& name) {
-  const std::vector<std::string> built_in = materials();
-  if (std::find(built_in.begin(), built_in.end(), name) != built_in.end()) {
-    return material(name);
-  }
-  if (!std::filesystem::exists(name)) {
-    throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(built_in) + ")");
-  }
-  return load_model(name);
-}
-
-std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
-CLI::Option* add_model(CLI::App& app, std::string& target) {
-  return app.add_option("MODEL", target, "Built-in name, JSON model or coefficient CSV")->required()->option_text(" ");
 }
 
 }  // namespace mmbrdf::program

@@ -29,6 +29,13 @@ struct DirectionDegrees {
 };
 DirectionDegrees direction_degrees(const std::string& text);
 
+/// THETA_I,THETA_R in degrees, as typed: the largest polar angles.
+struct AnglesDegrees {
+  double theta_i = 0;
+  double theta_r = 0;
+};
+AnglesDegrees angles_degrees(const std::string& text);
+
 std::vector<double> numbers(const std::string& text);             ///< A[,B…]
 Orders orders_from(const std::string& text);                      ///< F11,OTHER
 ReflectanceTable reflectance_from(const std::string& text);       ///< NM:R[,NM:R…] in any order
@@ -49,12 +56,6 @@ std::string nanometre_list(const std::vector<double>& wavelengths);
 
 /// In radians, θ ≥ 0. `option` begins the message.
 Direction direction_from(const DirectionDegrees& degrees, const std::string& option);
-
-/// A built-in model, or one from a file.
-Model open_model(const std::string& name);
-
-/// The last part of a path.
-std::string base_name(const std::string& path);
 
 // Options whose value one of the functions above reads.
 
@@ -82,7 +83,5 @@ inline CLI::Option* add_text(CLI::App& app, const std::string& names, std::strin
                              const std::string& description) {
   return app.add_option(names, target, description)->option_text(shown);
 }
-
-CLI::Option* add_model(CLI::App& app, std::string& target);
 
 }  // namespace mmbrdf::program

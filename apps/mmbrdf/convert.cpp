@@ -8,9 +8,9 @@
 #include "arguments.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "files.hpp"
+#include "mmbrdf/conversion.hpp"
 #include "mmbrdf/dataset.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/io.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {
@@ -23,6 +23,7 @@ struct Options {
   std::optional<Orders> orders;
   std::optional<ReflectanceTable> reflectance;
   std::optional<std::vector<double>> wavelengths_nm;
+  std::optional<AnglesDegrees> angles;
 };
 
 Family family_to_convert_to(const std::string& name) {
@@ -43,7 +44,9 @@ struct Change {
 Change change(const Model& before, const Model& after) {
   constexpr int count = 2000;
   // Models that do not say where they are valid are compared up to 75 degrees, where published data end.
-  Change change{.theta_max = std::min({before.validity.theta_i_max, before.validity.theta_r_max, radians(75)})};
+  constexpr double most = radians(75);
+  Change change{.theta_max = std::min(
+                    {before.validity.theta_i_max.value_or(most), before.validity.theta_r_max.value_or(most), most})};
   const std::vector<double> wavelengths = known_wavelengths(before);
   for (const double wavelength : wavelengths) {
     const PreparedModel old_model = prepare(before, wavelength), new_model = prepare(after, wavelength);
@@ -79,28 +82,48 @@ Model in_basis(const Model& model, const Options& options) {
   return family == Family::germer2017 ? in_published_form(model) : model;
 }
 
-bool has_covariance(const Model& model) {
-  return std::any_of(model.blocks.begin(), model.blocks.end(),
-                     [](const FittedBlock& b) { return !b.covariance.empty(); });
+void record_wavelengths(Model& model, const std::vector<double>& wavelengths_nm) {
+  std::vector<double> wavelengths = micrometres(wavelengths_nm);
+  std::sort(wavelengths.begin(), wavelengths.end());
+  const std::vector<double>& old = model.validity.wavelengths;
+  if (!old.empty() && nanometre_list(old) != nanometre_list(wavelengths)) {
+    warn("--wavelength replaces the fitted wavelengths " + nanometre_list(old));
+  }
+  model.validity.wavelengths = wavelengths;
 }
 
-/// Of what is known about `model`, that for which a coefficient CSV has no place.
-void warn_of_what_a_csv_leaves_out(const Model& model, const Options& options) {
-  const std::string path = options.output;
-  if (!model.reflectance.values.empty()) {
-    warn(base_name(path) + " has no place for the reflectance that f11 is multiplied by. Keep it: --reflectance " +
-         reflectance_argument(model.reflectance));
+void record_angles(Model& model, const AnglesDegrees& angles) {
+  for (const double angle : {angles.theta_i, angles.theta_r}) {
+    if (!(angle >= 0 && angle <= 90)) {
+      throw std::invalid_argument("--angles " + shortest(angles.theta_i) + "," + shortest(angles.theta_r) +
+                                  ": a largest polar angle is not in [0, 90] degrees");
+    }
   }
-  std::string lost;
-  const auto lose = [&lost](bool there, const std::string& what) {
-    lost += !there ? "" : (lost.empty() ? "" : ", ") + what;
-  };
-  lose(!options.name.empty(), "the name");
-  lose(!model.validity.wavelengths.empty(), "the fitted wavelengths and angles");
-  lose(has_covariance(model), "the covariance");
-  lose(!model.provenance.empty(), "the provenance");
-  if (!lost.empty()) {
-    warn(base_name(path) + " has no place for: " + lost);
+  const Validity old = model.validity;
+  model.validity.theta_i_max = radians(angles.theta_i);
+  model.validity.theta_r_max = radians(angles.theta_r);
+  if (angles_line(old) != "not known" && angles_line(old) != angles_line(model.validity)) {
+    warn("--angles replaces the fitted angles " + angles_line(old));
+  }
+}
+
+void record_reflectance(Model& model, const ReflectanceTable& table) {
+  const std::string old = reflectance_argument(model.reflectance);
+  if (!old.empty() && old != reflectance_argument(table)) {
+    warn("--reflectance replaces the table there was: --reflectance " + old);
+  }
+  model.reflectance = table;
+}
+
+void record(Model& model, const Options& options) {
+  if (options.wavelengths_nm) {
+    record_wavelengths(model, *options.wavelengths_nm);
+  }
+  if (options.angles) {
+    record_angles(model, *options.angles);
+  }
+  if (options.reflectance) {
+    record_reflectance(model, *options.reflectance);
   }
 }
 
@@ -108,20 +131,15 @@ void convert(const Options& options, const CommandLine& line) {
   if (options.orders && options.family == Family::germer2017) {
     throw CLI::ValidationError("--orders", "goes with the isotropic basis only");
   }
+  require_model_kept(options.input, options.output);
   Model model = open_model(options.input);
-  if (options.wavelengths_nm) {
-    model.validity.wavelengths = micrometres(*options.wavelengths_nm);
-    std::sort(model.validity.wavelengths.begin(), model.validity.wavelengths.end());
-  }
-  if (options.reflectance) {
-    model.reflectance = *options.reflectance;
-  }
+  record(model, options);
   Model result = in_basis(model, options);
   result.name = options.name.empty() ? result.name : options.name;
   result.provenance["conversion"] = line.text({options.input, options.output}) + " (" + software() + ")";
-  save_model(options.output, result);
-  if (options.output.ends_with(".csv")) {
-    warn_of_what_a_csv_leaves_out(model, options);
+  save(result, options.output);
+  if (is_csv(options.output)) {
+    warn_of_what_is_left_out(model, options.output, !options.name.empty());
   } else if (has_covariance(model) && !has_covariance(result)) {
     warn("the covariance of the coefficients is not carried over");
   }
@@ -131,26 +149,30 @@ constexpr const char* footer =
     "OUT is JSON, or the published coefficient layout if it ends in .csv; isotropic models have that form too, "
     "exactly.\n"
     "germer2017 models become isotropic by projection: the nearest model, not the same one; how near is printed.\n"
-    "Coefficient files say neither at which wavelengths they hold nor by which reflectance f11 was divided: tell it.\n"
+    "Coefficient files say neither to which wavelengths and angles they were fitted nor by which reflectance f11 was\n"
+    "divided: tell it.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf convert ptfe ptfe.csv\n"
     "  mmbrdf convert PTFE.coeff.csv ptfe.json --basis isotropic --wavelength 351,532,633,1064 \\\n"
-    "      --reflectance 351:0.976,532:0.984,633:0.984,1064:0.983";
+    "      --angles 75,81.87 --reflectance 351:0.976,532:0.984,633:0.984,1064:0.983";
 
 }  // namespace
 
 Run convert_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
-  app.add_option("IN", o->input, "Built-in name, JSON model or coefficient CSV")->required()->option_text(" ");
-  app.add_option("OUT", o->output, "File to write")->required()->option_text(" ");
+  add_model(app, o->input, "IN");
+  add_output_file(app, "OUT", o->output, " ", "File to write")->required();
   add_option(app, "--basis", o->family, family_to_convert_to, "NAME", "isotropic or germer2017 [that of IN]");
   add_option(app, "--orders", o->orders, orders_from, "N,M",
              "Highest radial orders of the isotropic basis, of f11\nand of the other elements [those of IN]");
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
              "Record these as the fitted wavelengths, in nm");
+  add_option(app, "--angles", o->angles, angles_degrees, "THETA_I,THETA_R",
+             "Record these as the largest fitted polar angles, in\ndegrees");
   add_option(app, "--reflectance", o->reflectance, reflectance_from, "NM:R[,NM:R...]",
-             "Multiply f11 by these reflectances, each at a\nwavelength in nm, linear between them");
+             "Multiply f11 by these reflectances, each at a\nwavelength in nm, linear between them, in place of the\n"
+             "table of IN");
   add_text(app, "--name", o->name, "NAME", "Name of the model [that of IN]");
   app.footer(footer);
   return [o, line] { convert(*o, line); };

@@ -37,10 +37,6 @@ std::string by_lines(const nlohmann::ordered_json& json) {
   return (table ? "[" : "{") + text + (table ? "\n  ]" : "\n  }");
 }
 
-std::string counted(int count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 bool wavelength_unknown(const Model& model) {
   return model.validity.wavelengths.empty() && model.reflectance.wavelengths.empty();
 }
@@ -76,6 +72,38 @@ std::vector<double> known_wavelengths(const Model& model) {
     return model.reflectance.wavelengths;
   }
   return model.powers == 0 ? std::vector<double>{1} : std::vector<double>{};
+}
+
+std::string angles_line(const Validity& validity) {
+  if (!validity.theta_i_max && !validity.theta_r_max) {
+    return "not known";
+  }
+  const auto limit = [](const char* name, const std::optional<double>& most) {
+    return name + (most ? format(" <= %.4g", degrees(*most)) : std::string(" not known"));
+  };
+  return limit("theta_i", validity.theta_i_max) + ", " + limit("theta_r", validity.theta_r_max) + " degrees";
+}
+
+std::string fitted_range(const Validity& validity) {
+  std::vector<std::string> parts;
+  if (validity.theta_i_max || validity.theta_r_max) {
+    parts.push_back(angles_line(validity));
+  }
+  if (!validity.wavelengths.empty()) {
+    parts.push_back(nanometre_list(validity.wavelengths));
+  }
+  return parts.empty() ? "not known" : parts.size() == 1 ? parts[0] : parts[0] + " at " + parts[1];
+}
+
+bool leaves_known_range(Outside outside) { return (outside & ~static_cast<unsigned>(unknown_range)) != 0; }
+
+std::string unknown_range_line(const std::string& model, const Validity& validity) {
+  const bool angles = validity.theta_i_max && validity.theta_r_max, wavelengths = !validity.wavelengths.empty();
+  if (angles && wavelengths) {
+    return "";
+  }
+  const std::string what = angles ? "wavelengths" : wavelengths ? "angles" : "wavelengths and angles";
+  return model + " does not say to which " + what + " it was fitted; mmbrdf convert can record them";
 }
 
 std::string normal_reflectance_line(const Model& model) {

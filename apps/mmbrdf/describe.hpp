@@ -20,6 +20,18 @@ nlohmann::ordered_json basis_json(const Model& model);
 /// models that need none and know none, some one. Empty if nothing is known.
 std::vector<double> known_wavelengths(const Model& model);
 
+/// "theta_i <= 75, theta_r <= 81.87 degrees", or "not known"
+std::string angles_line(const Validity& validity);
+
+/// "theta_i <= 75, theta_r <= 81.87 degrees at 351, 532 nm", or what of it is known
+std::string fitted_range(const Validity& validity);
+
+/// Whether an angle or the wavelength is outside, and not only unknown.
+bool leaves_known_range(Outside outside);
+
+/// What the model called `model` does not say about its range. Empty if it says all.
+std::string unknown_range_line(const std::string& model, const Validity& validity);
+
 /// Directional-hemispherical reflectance at normal incidence: "0.97515 at 351 nm, 0.98416 at 532 nm"
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);

@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "evaluate_file.hpp"
+#include "files.hpp"
 #include "mmbrdf/model.hpp"
 #include "output.hpp"
 
@@ -97,7 +98,8 @@ void print_json(const Answer& a) {
     json["f11"] = a.mueller(0, 0);
     json["f11_unit"] = "sr^-1";
   }
-  const Mueller m = a.normalized ? normalized(a.mueller) : a.mueller;
+  Mueller m = a.mueller;
+  m(0, 0) = a.normalized ? 1 : m(0, 0);
   for (std::size_t row = 0; row < 4; ++row) {
     json["mueller"].push_back(std::vector<double>(&m.elements[4 * row], &m.elements[4 * row] + 4));
   }
@@ -117,21 +119,26 @@ double wavelength_of(const Model& model, const Options& options) {
   }
 }
 
-void warn_if_outside(Outside outside, const Validity& validity) {
-  if (outside == inside) {
-    return;
+void warn_if_outside(const Answer& answer, const Validity& validity) {
+  if (leaves_known_range(answer.outside)) {
+    warn("outside the fitted range (" + to_string(answer.outside) + "): fitted are " + fitted_range(validity));
   }
-  std::string text = "outside the fitted range (" + to_string(outside) +
-                     "): fitted are theta_i <= " + format("%.4g", degrees(validity.theta_i_max)) +
-                     " and theta_r <= " + format("%.4g", degrees(validity.theta_r_max)) + " degrees";
-  if (!validity.wavelengths.empty()) {
-    text += " at " + nanometre_list(validity.wavelengths);
+  if (answer.outside & unknown_range) {
+    warn(unknown_range_line(answer.model, validity));
   }
-  warn(text);
+}
+
+Model model_of(const Options& options) {
+  Model model = open_model(options.model);
+  if (options.as_printed && model.family != Family::germer2017) {
+    note("--as-printed changes nothing: " + base_name(options.model) + " is of the basis " + to_string(model.family) +
+         ", not germer2017");
+  }
+  return model;
 }
 
 void evaluate_one(const Options& options) {
-  const Model model = open_model(options.model);
+  const Model model = model_of(options);
   const double wavelength = wavelength_of(model, options);
   const bool known = options.wavelength_nm || !model.validity.wavelengths.empty() || !model.reflectance.values.empty();
   const Geometry geometry{direction_from(*options.incident, "--incident"),
@@ -147,9 +154,9 @@ void evaluate_one(const Options& options) {
                       .as_printed = options.as_printed,
                       .mueller = options.normalized ? normalized_beside_f11(f) : f,
                       .outside = prepared.outside(geometry)};
+  warn_if_outside(answer, model.validity);
   const Format form = options.format.value_or(Format::text);
   (form == Format::text ? print_text : form == Format::csv ? print_csv : print_json)(answer);
-  warn_if_outside(answer.outside, model.validity);
 }
 
 void evaluate(const Options& options) {
@@ -165,12 +172,15 @@ void evaluate(const Options& options) {
   if (options.format && *options.format != Format::csv) {
     throw CLI::ValidationError("--format", "only csv goes with --geometries");
   }
-  const Model model = open_model(options.model);
+  require_model_kept(options.model, options.output);
+  require_kept(options.geometries, options.output, "geometries");
+  const Model model = model_of(options);
   double wavelength = 0;
   if (options.wavelength_nm) {
     wavelength = micrometres(*options.wavelength_nm);
   }
-  evaluate_file(model, {.input = options.geometries,
+  evaluate_file(model, {.model = base_name(options.model),
+                        .input = options.geometries,
                         .output = options.output,
                         .wavelength = wavelength,
                         .frame = options.frame,
@@ -182,11 +192,11 @@ constexpr const char* footer =
     "The frame names the axes of the Stokes components: xy (those at the surface normal, carried along the meridian),\n"
     "sp (s and p of each beam), scattering_plane (perpendicular and parallel to the plane of both beams). S2 is\n"
     "y - x, s - p or perpendicular - parallel, S4 is left - right. A negative polar angle means the opposite azimuth:\n"
-    "-45,0 is 45,180. The validity is ok, or what lies outside the fitted range.\n"
+    "-45,0 is 45,180. The validity is ok, what lies outside the fitted range, or unknown.\n"
     "\n"
     "FILE.csv has a header line with wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg or the names of the\n"
-    "published data; other columns are kept, lines that begin with # are not. Any number of rows takes the same "
-    "memory.\n"
+    "published data; other columns are kept, those named as one of the output as input_NAME, lines that begin with\n"
+    "# are not. Any number of rows takes the same memory.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf evaluate ptfe --wavelength 532 --incident 45,0 --reflected 30,180 --frame sp\n"
@@ -203,10 +213,10 @@ Run evaluate_command(CLI::App& app, const CommandLine&) {
                               "Direction to the source, in degrees");
   auto* reflected = add_option(app, "-r,--reflected", o->reflected, direction_degrees, "THETA,PHI",
                                "Direction to the detector, in degrees");
-  auto* geometries = add_text(app, "-g,--geometries", o->geometries, "FILE.csv",
+  auto* geometries = add_file(app, "-g,--geometries", o->geometries, "FILE.csv",
                               "Evaluate at each row of a file; - is standard input");
   geometries->excludes(incident)->excludes(reflected);
-  add_text(app, "-o,--output", o->output, "OUT.csv", "Where the rows go [standard output]")->needs(geometries);
+  add_file(app, "-o,--output", o->output, "OUT.csv", "Where the rows go; - is standard output [-]")->needs(geometries);
   add_option(app, "--frame", o->frame, frame_from, "FRAME", "xy, sp or scattering_plane [xy]");
   app.add_flag("--normalized", o->normalized, "f11 in sr^-1, and all others divided by it (m12 ... m44)");
   app.add_flag("--as-printed", o->as_printed,

@@ -4,15 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <vector>
 
+#include "describe.hpp"
+#include "files.hpp"
 #include "mmbrdf/io.hpp"
 #include "output.hpp"
 
@@ -89,14 +87,27 @@ double own_wavelength(const Model& model) {
 
 std::string header(const CsvReader& reader, bool normalized) {
   const std::string added = element_columns(normalized) + ",validity";
+  const std::vector<std::string>& columns = reader.columns();
   std::string text;
-  for (const std::string& column : reader.columns()) {
-    if ((added + ",").find("," + column + ",") != std::string::npos) {
-      throw reader.error("column " + column + " is there already, and would be written again");
+  for (const std::string& column : columns) {
+    const bool taken = !column.empty() && (added + ",").find("," + column + ",") != std::string::npos;
+    const std::string name = (taken ? "input_" : "") + column;
+    if (taken && std::find(columns.begin(), columns.end(), name) != columns.end()) {
+      throw reader.error("columns " + column + " and " + name + " are there already: " + column +
+                         " would be written again");
     }
-    text += (text.empty() ? "" : ",") + column;
+    text += (&column == &columns.front() ? "" : ",") + name;
   }
   return text + added + "\n";
+}
+
+bool has_wavelengths(const CsvReader& reader) {
+  try {
+    GeometryColumns{reader};
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
 }
 
 class FileEvaluator {
@@ -106,7 +117,12 @@ class FileEvaluator {
         reader_(reader),
         columns_(reader, what.wavelength > 0 ? what.wavelength : own_wavelength(model)),
         header_(header(reader, what.normalized)),
-        models_(prepare(model, 1, what.rotation)) {}
+        models_(prepare(model, 1, what.rotation)),
+        unknown_(unknown_range_line(what.model, model.validity)) {
+    if (what.wavelength > 0 && has_wavelengths(reader)) {
+      warn("--wavelength is not used: the rows have their own");
+    }
+  }
 
   /// The rest of the file.
   void write(std::ostream& out) {
@@ -124,8 +140,11 @@ class FileEvaluator {
   void report() const {
     progress_.end();
     if (outside_ > 0) {
-      warn(std::to_string(outside_) + " of " + std::to_string(progress_.rows()) +
-           " rows lie outside the fitted range: see column validity");
+      warn(std::to_string(outside_) + " of " + counted(progress_.rows(), "row") + (outside_ == 1 ? " lies" : " lie") +
+           " outside the fitted range: see column validity");
+    }
+    if (!unknown_.empty()) {
+      warn(unknown_);
     }
   }
 
@@ -141,7 +160,7 @@ class FileEvaluator {
     text += ',';
     text += to_string(outside);
     text += '\n';
-    outside_ += outside == inside ? 0 : 1;
+    outside_ += leaves_known_range(outside) ? 1 : 0;
   }
 
   Mueller evaluated(const PreparedModel& model, const Geometry& geometry) const {
@@ -149,7 +168,7 @@ class FileEvaluator {
       const Mueller f = model.evaluate(geometry, what_.frame);
       return what_.normalized ? normalized_beside_f11(f) : f;
     } catch (const std::invalid_argument& error) {
-      throw reader_.error(error.what());
+      throw reader_.error(plain_message(error));
     }
   }
 
@@ -167,13 +186,14 @@ class FileEvaluator {
   std::string header_;
   RecentWavelengths models_;
   Progress progress_;
+  std::string unknown_;  // what the model does not say about its range
   long outside_ = 0;
 };
 
 void evaluate_stream(const Model& model, const FileEvaluation& what, std::istream& in, const std::string& name) {
   CsvReader reader(in, name);
   FileEvaluator evaluator(model, what, reader);
-  if (what.output.empty()) {
+  if (is_standard_output(what.output)) {
     evaluator.write(std::cout);
   } else {
     write_file(what.output, [&](std::ostream& out) { evaluator.write(out); });
@@ -184,17 +204,7 @@ void evaluate_stream(const Model& model, const FileEvaluation& what, std::istrea
 }  // namespace
 
 void evaluate_file(const Model& model, const FileEvaluation& what) {
-  if (what.input == "-") {
-    return evaluate_stream(model, what, std::cin, "standard input");
-  }
-  if (std::filesystem::is_directory(what.input)) {
-    throw std::runtime_error(what.input + ": is a folder, not a file");
-  }
-  std::ifstream file(what.input, std::ios::binary);
-  if (!file) {
-    throw std::runtime_error(what.input + ": cannot open: " + std::strerror(errno));
-  }
-  evaluate_stream(model, what, file, what.input);
+  read_input(what.input, [&](std::istream& in, const std::string& name) { evaluate_stream(model, what, in, name); });
 }
 
 }  // namespace mmbrdf::program

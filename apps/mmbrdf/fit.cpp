@@ -3,12 +3,17 @@
 
 #include "mmbrdf/fit.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <iostream>
+#include <functional>
 #include <memory>
+#include <set>
+#include <span>
 
 #include "arguments.hpp"
 #include "command.hpp"
+#include "files.hpp"
 #include "fit_report.hpp"
 #include "mmbrdf/io.hpp"
 #include "output.hpp"
@@ -35,25 +40,38 @@ Weights weights_from(const std::string& name) {
 
 std::string to_string(Weights weights) { return weights == Weights::none ? "none" : "speckle"; }
 
-std::vector<Sample> only_at(const std::vector<double>& wavelengths_nm, const std::vector<Sample>& samples,
-                            const std::string& name) {
-  const std::vector<double> wanted = micrometres(wavelengths_nm);
-  try {
-    return at_wavelengths(samples, wanted);
-  } catch (const std::invalid_argument&) {
-    throw std::runtime_error(name + ": has samples at " + nanometre_list(wavelengths(samples)) + ", not at all of " +
-                             nanometre_list(wanted));
-  }
-}
-
 std::string data_name(const Options& options) {
   return options.data == "-" ? "standard input" : base_name(options.data);
 }
 
-std::vector<Sample> samples_of(const Options& options) {
-  const bool from_file = options.data != "-";
-  std::vector<Sample> samples = from_file ? read_samples(options.data) : read_samples(std::cin, data_name(options));
-  return options.wavelengths_nm ? only_at(*options.wavelengths_nm, samples, data_name(options)) : samples;
+/// Hands over the samples of the wavelengths asked for, a few thousand at a time.
+void read_some(const Options& options, const std::function<void(std::span<const Sample>)>& use) {
+  constexpr std::size_t some = 4096;
+  const std::vector<double> wanted = micrometres(options.wavelengths_nm.value_or(std::vector<double>{}));
+  const auto near = [](double a, double b) { return std::abs(a - b) <= wavelength_resolution; };
+  std::set<double> there;
+  std::vector<Sample> samples;
+  read_input(options.data, [&](std::istream& in, const std::string& name) {
+    SampleReader reader(in, name);
+    for (Sample sample; reader.next(sample);) {
+      there.insert(sample.wavelength);
+      const auto is_it = [&](double wavelength) { return near(wavelength, sample.wavelength); };
+      if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) {
+        samples.push_back(sample);
+      }
+      if (samples.size() == some) {
+        use(samples);
+        samples.clear();
+      }
+    }
+  });
+  use(samples);
+  for (const double wavelength : wanted) {
+    if (std::none_of(there.begin(), there.end(), [&](double one) { return near(one, wavelength); })) {
+      throw std::runtime_error(data_name(options) + ": has samples at " + nanometre_list({there.begin(), there.end()}) +
+                               ", not at all of " + nanometre_list(wanted));
+    }
+  }
 }
 
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
@@ -62,14 +80,11 @@ void require_valid(const Options& options) {
   if (options.fit.reflectance) {
     mmbrdf::require_valid(*options.fit.reflectance);
   }
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.data, options.output, ignored)) {
-    throw std::invalid_argument(options.output + ": would overwrite the data");
-  }
+  require_kept(options.data, options.output, "data");
 }
 
 /// Says who made the model, from what and how.
-void sign(Model& model, const Options& options, std::size_t rows, const CommandLine& line) {
+void sign(Model& model, const Options& options, long rows, const CommandLine& line) {
   const std::filesystem::path origin = options.output.empty() ? options.data : options.output;
   model.name = options.name.empty() ? origin.stem().string() : options.name;
   model.provenance["data"] = data_name(options);
@@ -82,11 +97,18 @@ void sign(Model& model, const Options& options, std::size_t rows, const CommandL
   }
 }
 
-void save(const Model& model, const std::string& path) {
-  save_model(path, model);
-  if (path.ends_with(".csv") && !model.reflectance.values.empty()) {
-    warn(base_name(path) + " has no place for the reflectance by which f11 was divided. Keep it: --reflectance " +
-         reflectance_argument(model.reflectance));
+void save_or_warn(const Model& model, const Options& options) {
+  if (options.output.empty()) {
+    for (const auto& [text, name] : {std::pair(options.name, "--name"), {options.attribution, "--attribution"}}) {
+      if (!text.empty()) {
+        warn(std::string(name) + " is not used without --output");
+      }
+    }
+    return;
+  }
+  save(model, options.output);
+  if (is_csv(options.output)) {
+    warn_of_what_is_left_out(model, options.output, !options.name.empty());
   }
 }
 
@@ -101,31 +123,38 @@ void note_free_combinations(const FitResult& result) {
     }
   }
   if (free > 0) {
-    note("the data leave " + std::to_string(free) + " of " + std::to_string(coefficient_count(result.model)) +
-         " combinations of coefficients free (" + blocks + "); the solution is the one of smallest norm");
+    note("the data leave " + std::to_string(free) + " of " + counted(coefficient_count(result.model), "combination") +
+         " of coefficients free (" + blocks + "); the solution is the one of smallest norm");
   }
 }
 
-FitResult fitted(const std::vector<Sample>& samples, const Options& options) {
+/// Only speckle weights, which need a first fit, hold all samples in memory.
+FitResult fitted(const Options& options, long& rows) {
+  FitAccumulator accumulator(options.basis);
+  std::vector<Sample> all;
+  read_some(options, [&](std::span<const Sample> samples) {
+    rows += static_cast<long>(samples.size());
+    if (options.weights == Weights::none) {
+      accumulator.add(samples);
+    } else {
+      all.insert(all.end(), samples.begin(), samples.end());
+    }
+  });
   try {
-    return fit(samples, options.basis, options.fit, options.weights);
+    return options.weights == Weights::none ? accumulator.solve(options.fit)
+                                            : fit(all, options.basis, options.fit, options.weights);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(data_name(options) + ": " + error.what());
+    throw std::runtime_error(data_name(options) + ": " + plain_message(error));
   }
 }
 
 void fit_data(const Options& options, const CommandLine& line) {
   require_valid(options);
-  const std::vector<Sample> samples = samples_of(options);
-  FitResult result = fitted(samples, options);
-  sign(result.model, options, samples.size(), line);
-  if (!options.output.empty()) {
-    save(result.model, options.output);
-  }
-  print({.data = data_name(options),
-         .weights = to_string(options.weights),
-         .rows = static_cast<long>(samples.size()),
-         .result = result},
+  long rows = 0;
+  FitResult result = fitted(options, rows);
+  sign(result.model, options, rows, line);
+  save_or_warn(result.model, options);
+  print({.data = data_name(options), .weights = to_string(options.weights), .rows = rows, .result = result},
         options.format);
   note_free_combinations(result);
 }
@@ -137,7 +166,9 @@ constexpr const char* footer =
     "rms is the root mean square of measured - model, for f11 in sr^-1 after division by the reflectance, for the\n"
     "other elements without unit. chi^2 is the weighted sum of squares. Elements that reciprocity or the basis ties\n"
     "together are fitted together, as a block. With several wavelengths, f11 is divided by each one's own reflectance\n"
-    "at normal incidence, unless --reflectance gives it; the model keeps that table.\n"
+    "at normal incidence, unless --reflectance gives it; the model keeps that table. Any number of rows takes the "
+    "same\n"
+    "memory, but for --weights speckle.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf fit data.csv -o model.json\n"
@@ -167,9 +198,9 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
 
 Run fit_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
-  app.add_option("DATA.csv", o->data, "Samples; - is standard input")->required()->option_text(" ");
-  add_text(app, "-o,--output", o->output, "MODEL",
-           "Write the model: JSON, or published coefficients if it ends in .csv");
+  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input")->required();
+  add_output_file(app, "-o,--output", o->output, "MODEL",
+                  "Write the model: JSON, or published coefficients if it ends in .csv");
   add_basis_options(app, o);
   add_data_options(app, o);
   add_text(app, "--name", o->name, "NAME", "Name of the model [file name]");

@@ -12,11 +12,7 @@ namespace mmbrdf::program {
 
 namespace {
 
-std::string element_name(std::size_t element) {
-  return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
-}
-
-/// Block that element number `element` belongs to.
+/// Block that element number `element` belongs to; the number of blocks for an element without modes.
 std::size_t block_of(const Model& model, std::size_t element) {
   const std::pair<int, int> wanted(static_cast<int>(element) / 4, static_cast<int>(element) % 4);
   std::size_t block = 0;
@@ -40,12 +36,14 @@ long polarization_rows(const FitResult& result) {
 
 void print_text(const FitReport& report) {
   const Model& model = report.result.model;
-  std::cout << report.data << ": " << report.rows << " rows at " << nanometre_list(model.validity.wavelengths) << '\n'
+  std::cout << report.data << ": " << counted(report.rows, "row") << " at "
+            << nanometre_list(model.validity.wavelengths) << '\n'
             << "basis " << basis_line(model) << ", weights " << report.weights
             << "\n\nelement     rows          rms        chi^2\n";
   for (std::size_t element = 0; element < 16; ++element) {
     const ElementFit& fit = report.result.elements[element];
-    std::cout << format("%-7s %8ld %12.6g %12.6g\n", element_name(element).c_str(), fit.rows, fit.rms, fit.chi_squared);
+    std::cout << format("%-7s %8ld %12.6g %12.6g", element_name(element).c_str(), fit.rows, fit.rms, fit.chi_squared)
+              << (block_of(model, element) < model.blocks.size() ? "\n" : "  no modes\n");
   }
   std::cout << "\nblock                coefficients   rank   condition\n";
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
@@ -63,12 +61,16 @@ void print_csv(const FitReport& report) {
   std::cout << "element,rows,rms,chi_squared,block,coefficients,rank,condition\n";
   for (std::size_t element = 0; element < 16; ++element) {
     const ElementFit& fit = report.result.elements[element];
+    std::cout << element_name(element) << ',' << fit.rows << ',' << exact(fit.rms) << ',' << exact(fit.chi_squared);
     const std::size_t b = block_of(report.result.model, element);
+    if (b == report.result.solutions.size()) {
+      std::cout << ",no modes,0,0,\n";
+      continue;
+    }
     const Solution& solution = report.result.solutions[b];
     std::string block = report.result.model.blocks[b].block.name;
     std::replace(block.begin(), block.end(), ',', ' ');
-    std::cout << element_name(element) << ',' << fit.rows << ',' << exact(fit.rms) << ',' << exact(fit.chi_squared)
-              << ',' << block << ',' << solution.x.size() << ',' << solution.rank << ',' << exact(solution.condition())
+    std::cout << ',' << block << ',' << solution.x.size() << ',' << solution.rank << ',' << exact(solution.condition())
               << '\n';
   }
   std::cout << "polarization," << polarization_rows(report.result) << ',' << exact(polarization_rms(report.result))

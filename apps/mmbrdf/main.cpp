@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <string>
 
 #include "command.hpp"
@@ -50,6 +51,17 @@ int wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
   return 2;
 }
 
+/// Without the program's name, backwards as CLI11 wants them. "help COMMAND" is "COMMAND --help".
+std::vector<std::string> words_to_parse(const CommandLine& line) {
+  std::vector<std::string> words = line.words;
+  words.erase(words.begin());
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.push_back("--help");
+  }
+  return {words.rbegin(), words.rend()};
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Mueller-matrix BRDFs: fit them to measurements, evaluate them anywhere.", "mmbrdf"};
   app.set_version_flag("--version", software(), "Print the version");
@@ -68,7 +80,7 @@ int run(int argc, char** argv) {
     subcommand->parse_complete_callback([&chosen, run = command.declare(*subcommand, line)] { chosen = run; });
   }
   try {
-    app.parse(argc, argv);
+    app.parse(words_to_parse(line));
     chosen();
   } catch (const CLI::CallForHelp&) {
     std::cout << app.help();
@@ -118,8 +130,11 @@ int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
   try {
     return mmbrdf::program::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "mmbrdf: out of memory\n";
+    return 1;
   } catch (const std::exception& error) {
-    std::cerr << "mmbrdf: " << error.what() << '\n';
+    std::cerr << "mmbrdf: " << mmbrdf::program::plain_message(error) << '\n';
     return 1;
   }
 }

@@ -9,6 +9,7 @@
 #include "arguments.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "files.hpp"
 #include "mmbrdf/materials.hpp"
 #include "output.hpp"
 
@@ -59,8 +60,7 @@ void print_text(const Model& model) {
   print_line("name", model.name);
   print_line("basis", basis_line(model));
   print_line("wavelengths", validity.wavelengths.empty() ? "not known" : nanometre_list(validity.wavelengths));
-  print_line("angles", format("theta_i <= %.4g, theta_r <= %.4g degrees", degrees(validity.theta_i_max),
-                              degrees(validity.theta_r_max)));
+  print_line("angles", angles_line(validity));
   print_line("reflectance", model.reflectance.values.empty()
                                 ? "none: f11 is that of the coefficients"
                                 : "f11 is multiplied by " + reflectance_argument(model.reflectance));
@@ -88,11 +88,15 @@ nlohmann::ordered_json blocks_json(const Model& model) {
   return json;
 }
 
+nlohmann::ordered_json degrees_json(const std::optional<double>& angle) {
+  return angle ? nlohmann::ordered_json(degrees(*angle)) : nlohmann::ordered_json(nullptr);
+}
+
 void print_json(const Model& model) {
   nlohmann::ordered_json json{{"name", model.name}};
   json.update(basis_json(model));
-  json["theta_i_max_deg"] = degrees(model.validity.theta_i_max);
-  json["theta_r_max_deg"] = degrees(model.validity.theta_r_max);
+  json["theta_i_max_deg"] = degrees_json(model.validity.theta_i_max);
+  json["theta_r_max_deg"] = degrees_json(model.validity.theta_r_max);
   json["reflectance"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < model.reflectance.values.size(); ++i) {
     json["reflectance"].push_back(

@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstring>
 #include <iostream>
-#include <stdexcept>
 
 namespace mmbrdf::program {
 
@@ -21,9 +20,9 @@ void flush_output() {
   }
 }
 
-void warn(const std::string& message) { std::cerr << "mmbrdf: warning: " << message << '\n'; }
+void warn(const std::string& message) { std::cerr << "mmbrdf: warning: " + message + '\n'; }
 
-void note(const std::string& message) { std::cerr << "mmbrdf: note: " << message << '\n'; }
+void note(const std::string& message) { std::cerr << "mmbrdf: note: " + message + '\n'; }
 
 std::string format(const char* pattern, ...) {
   std::array<char, 512> buffer{};
@@ -56,10 +55,36 @@ std::string shortest(double value) {
 
 std::string brief(double value) { return format("%.10g", value); }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : ", ") + word;
+  }
+  return text;
+}
+
+std::string counted(long count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string plain_message(const std::exception& error) {
+  const std::string text = error.what();
+  for (const std::string name : {"fit", "simulate", "evaluate", "normalized", "to_coefficients_csv", "to_json"}) {
+    if (text.starts_with(name + ": ")) {
+      return text.substr(name.size() + 2);
+    }
+  }
+  return text;
+}
+
+std::string element_name(std::size_t element) {
+  return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
+}
+
 std::string element_columns(bool normalized) {
   std::string text;
-  for (int element = 0; element < 16; ++element) {
-    text += format(",%c%d%d", normalized && element > 0 ? 'm' : 'f', element / 4 + 1, element % 4 + 1);
+  for (std::size_t element = 0; element < 16; ++element) {
+    text += (normalized && element > 0 ? ",m" : ",f") + element_name(element);
   }
   return text;
 }

@@ -2,8 +2,10 @@
 // Results on standard output, talk on standard error.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mmbrdf/mueller.hpp"
 
@@ -21,6 +23,15 @@ void note(const std::string& message);
 /// As printf.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
+/// "a, b, c"
+std::string joined(const std::vector<std::string>& words);
+
+/// "1 row", "2 rows"
+std::string counted(long count, const std::string& what);
+
+/// What an error says, without the name of the library's function that begins some messages.
+std::string plain_message(const std::exception& error);
+
 /// Appends 17 significant digits: reading them gives the same number.
 void append_exact(std::string& text, double value);
 std::string exact(double value);
@@ -30,6 +41,9 @@ std::string shortest(double value);
 
 /// Up to 10 significant digits, no more than needed: 532, 81.87 …
 std::string brief(double value);
+
+/// Of element number 0 … 15 in row-major order: "11" … "44".
+std::string element_name(std::size_t element);
 
 /// ",f11,f12,…,f44", or of normalised elements ",f11,m12,…,m44".
 std::string element_columns(bool normalized);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf simulate
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
 #include "arguments.hpp"
 #include "command.hpp"
+#include "describe.hpp"
+#include "files.hpp"
 #include "mmbrdf/dataset.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/simulation.hpp"
@@ -49,7 +52,11 @@ double speckle_from(const std::string& text) {
   if (!text.starts_with(prefix)) {
     throw std::invalid_argument("\"" + text + "\": expected speckle:C or none");
   }
-  return number(text.substr(prefix.size()));
+  const double value = number(text.substr(prefix.size()));
+  if (value < 0) {
+    throw std::invalid_argument("\"" + text + "\": expected 0 or more");
+  }
+  return value;
 }
 
 std::vector<double> wavelengths_of(const Model& model, const Options& options) {
@@ -62,16 +69,41 @@ std::vector<double> wavelengths_of(const Model& model, const Options& options) {
   return model.validity.wavelengths;
 }
 
-void simulate_data(const Options& options) {
-  const Model model = open_model(options.model);
-  const std::vector<double> wavelengths = wavelengths_of(model, options);
+void warn_if_outside(const Model& model, const std::vector<Sample>& samples, const std::string& name) {
+  const auto leaves = [&](const Sample& s) {
+    return leaves_known_range(outside(model.validity, s.wavelength, s.geometry));
+  };
+  const auto count = std::count_if(samples.begin(), samples.end(), leaves);
+  if (count > 0) {
+    warn(std::to_string(count) + " of " + counted(static_cast<long>(samples.size()), "sample") +
+         (count == 1 ? " lies" : " lie") + " outside the fitted range: fitted are " + fitted_range(model.validity));
+  }
+  const std::string unknown = unknown_range_line(name, model.validity);
+  if (!unknown.empty()) {
+    note(unknown);
+  }
+}
+
+std::vector<Sample> simulated(const Model& model, const std::vector<double>& wavelengths, const Options& options) {
   const std::vector<Geometry> geometries =
       options.grid->random > 0 ? random_geometries(options.grid->random, options.seed) : germer2017_grid();
-  const auto samples = simulate(model, wavelengths, geometries, options.speckle, options.seed);
-  if (options.output.empty())
+  try {
+    return simulate(model, wavelengths, geometries, options.speckle, options.seed);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
+  }
+}
+
+void simulate_data(const Options& options) {
+  require_model_kept(options.model, options.output);
+  const Model model = open_model(options.model);
+  const std::vector<Sample> samples = simulated(model, wavelengths_of(model, options), options);
+  if (is_standard_output(options.output)) {
     write_samples(std::cout, samples);
-  else
+  } else {
     write_samples(options.output, samples);
+  }
+  warn_if_outside(model, samples, base_name(options.model));
 }
 
 constexpr const char* footer =
@@ -96,7 +128,7 @@ Run simulate_command(CLI::App& app, const CommandLine&) {
              "Wavelengths in nm [those the model was fitted to]");
   add_option(app, "--noise", o->speckle, speckle_from, "NOISE", "speckle:C or none [none]");
   add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the random ones [0]");
-  add_text(app, "-o,--output", o->output, "DATA.csv", "Where the samples go [standard output]");
+  add_file(app, "-o,--output", o->output, "DATA.csv", "Where the samples go; - is standard output [-]");
   app.footer(footer);
   return [o] { simulate_data(*o); };
 }

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "arguments.hpp"
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/materials.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+bool is_built_in(const std::string& name) {
+  const std::vector<std::string> names = materials();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// A truncated coefficient file is a valid one, of fewer modes.
+void warn_of_missing_elements(const Model& model) {
+  std::array<bool, 16> there{};
+  for (const FittedBlock& fitted : model.blocks) {
+    for (const auto& [row, column] : fitted.block.elements) {
+      there[static_cast<std::size_t>(4 * row + column)] = true;
+    }
+  }
+  std::vector<std::string> missing;
+  for (std::size_t element = 0; element < 16; ++element) {
+    if (!there[element]) {
+      missing.push_back(element_name(element));
+    }
+  }
+  if (missing.size() == 15) {
+    warn("no modes of elements other than 11: they are 0");
+  } else if (!missing.empty()) {
+    warn("no modes of element" + std::string(missing.size() == 1 ? " " : "s ") + joined(missing) +
+         (missing.size() == 1 ? ": it is 0" : ": they are 0"));
+  }
+}
+
+std::string file_name(const std::string& text) {
+  if (text.empty()) {
+    throw std::invalid_argument("\"\": expected the name of a file");
+  }
+  return text;
+}
+
+std::string output_file_name(const std::string& text) {
+  if (text == "-") {
+    throw std::invalid_argument("\"-\": expected the name of a file; models do not go to standard output");
+  }
+  return file_name(text);
+}
+
+std::string model_name(const std::string& text) {
+  if (text.empty()) {
+    throw std::invalid_argument("\"\": expected a built-in name or a file");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+bool is_csv(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".csv";
+}
+
+Model open_model(const std::string& name) {
+  if (!is_built_in(name) && !std::filesystem::exists(name)) {
+    throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(materials()) + ")");
+  }
+  Model model = is_built_in(name) ? material(name) : load_model(name);
+  warn_of_missing_elements(model);
+  return model;
+}
+
+void require_kept(const std::string& input, const std::string& output, const std::string& what) {
+  const std::string source = input == "-" ? "/dev/stdin" : input;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(output, ignored) && std::filesystem::equivalent(source, output, ignored)) {
+    throw std::invalid_argument(output + ": would overwrite the " + what);
+  }
+}
+
+void require_model_kept(const std::string& model, const std::string& output) {
+  if (!is_built_in(model)) {
+    require_kept(model == "-" ? "./-" : model, output, "model");  // a model is never standard input
+  }
+}
+
+void save(const Model& model, const std::string& path) {
+  try {
+    save_model(path, model);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + plain_message(error));
+  }
+  if (is_built_in(path)) {
+    warn("a built-in model has the name " + path + " and comes first; the file is ./" + path);
+  }
+}
+
+void read_input(const std::string& path, const std::function<void(std::istream&, const std::string&)>& read) {
+  if (path == "-") {
+    return read(std::cin, "standard input");
+  }
+  std::ifstream file = open_input(path);
+  read(file, path);
+}
+
+bool has_covariance(const Model& model) {
+  return std::any_of(model.blocks.begin(), model.blocks.end(),
+                     [](const FittedBlock& b) { return !b.covariance.empty(); });
+}
+
+void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named) {
+  const Validity& validity = model.validity;
+  std::vector<std::string> lost;
+  const auto lose = [&lost](bool there, const std::string& what) {
+    if (there) {
+      lost.push_back(what);
+    }
+  };
+  lose(named, "the name");
+  lose(!validity.wavelengths.empty(), "the fitted wavelengths");
+  lose(validity.theta_i_max || validity.theta_r_max, "the fitted angles");
+  lose(has_covariance(model), "the covariance");
+  lose(model.provenance.contains("attribution"), "the attribution");
+  lose(!model.provenance.empty(), "the provenance");
+  lose(!model.reflectance.values.empty(), "the reflectance that f11 is multiplied by (keep it: --reflectance " +
+                                              reflectance_argument(model.reflectance) + ")");
+  if (!lost.empty()) {
+    warn(base_name(path) + " has no place for: " + joined(lost));
+  }
+}
+
+CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                      const std::string& description) {
+  return add_option(app, names, target, file_name, shown, description);
+}
+
+CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                             const std::string& description) {
+  return add_option(app, names, target, output_file_name, shown, description);
+}
+
+bool is_standard_output(const std::string& output) { return output.empty() || output == "-"; }
+
+CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name) {
+  return add_option(app, name, target, model_name, " ", "Built-in name, JSON model or coefficient CSV")->required();
+}
+
+}  // namespace mmbrdf::program

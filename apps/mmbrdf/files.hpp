@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The files that the program reads and writes, and what it says about them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <istream>
+#include <string>
+
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf::program {
+
+/// The last part of a path.
+std::string base_name(const std::string& path);
+
+/// Whether a model is written there in the published coefficient layout.
+bool is_csv(const std::string& path);
+
+/// A built-in model, or one from a file. Warns of elements without modes.
+Model open_model(const std::string& name);
+
+/// Calls `read` with a file, or with standard input for "-", and its name for messages.
+void read_input(const std::string& path, const std::function<void(std::istream&, const std::string&)>& read);
+
+/// Throws std::invalid_argument if writing `output` would overwrite `input`, under whatever names and links. "-" is
+/// standard input. `what` names the input in the message.
+void require_kept(const std::string& input, const std::string& output, const std::string& what);
+
+/// The same for a model, which may be a built-in one: those are no files.
+void require_model_kept(const std::string& model, const std::string& output);
+
+/// Writes a model; warns if its path is the name of a built-in one. Errors name the path.
+void save(const Model& model, const std::string& path);
+
+bool has_covariance(const Model& model);
+
+/// Warns, in one line, of all that is known about `model` and has no place in the coefficient layout of `path`.
+/// `named`: the name was given by hand.
+void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named);
+
+// Options that are files. An empty name is wrong usage.
+
+CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                      const std::string& description);
+
+/// The same, where "-" is wrong usage, too: standard output is for something else.
+CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                             const std::string& description);
+
+/// "-" is standard output.
+bool is_standard_output(const std::string& output);
+
+CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name = "MODEL");
+
+}  // namespace mmbrdf::program
