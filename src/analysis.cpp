@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/analysis.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "numbers.hpp"
+
+//   σ_i     Pauli matrices, σ_0 = 1, in the order of Stokes components
+//   T       coherency matrix ¼ Σ M_ij σ_i ⊗ conj σ_j; λ_q, v_q its eigenvalues and eigenvectors
+//   p_q     λ_q / tr T
+//   x 2^e   numbers are computed from M · 2^−e with its largest element in [½, 1), so that no square overflows
+
+namespace mmbrdf {
+namespace {
+
+using Complex = std::complex<double>;
+using Matrix4c = Eigen::Matrix4cd;
+
+constexpr double largest_double = std::numeric_limits<double>::max();
+
+struct Scaled {
+  Mueller m;
+  int exponent = 0;
+};
+
+/// Throws std::invalid_argument if an element is not finite.
+Scaled scaled(const Mueller& m, const char* what) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 16; ++i) {
+    const double element = m.elements[i];
+    if (!std::isfinite(element))
+      throw std::invalid_argument(std::string(what) + ": M" + std::to_string(i / 4 + 1) + std::to_string(i % 4 + 1) +
+                                  " = " + shortest(element) + ", must be finite");
+    largest = std::max(largest, std::abs(element));
+  }
+  Scaled result{m, 0};
+  std::frexp(largest, &result.exponent);
+  for (double& element : result.m.elements) element = std::ldexp(element, -result.exponent);
+  return result;
+}
+
+/// The matrix of the same, with M11 > 0. Not below the smallest normal number: a quotient of any element by it is
+/// finite.
+Mueller scaled_with_intensity(const Mueller& m, const char* what) {
+  Mueller result = scaled(m, what).m;
+  if (!(m(0, 0) > 0))
+    throw std::invalid_argument(std::string(what) + ": M11 = " + shortest(m(0, 0)) + ", must be positive");
+  result(0, 0) = std::max(result(0, 0), std::numeric_limits<double>::min());
+  return result;
+}
+
+double bounded(double x) { return std::clamp(x, -largest_double, largest_double); }
+
+/// a / b for b > 0.
+double ratio(double a, double b) { return bounded(a / b); }
+
+double length(const std::array<double, 3>& v) { return bounded(std::hypot(v[0], v[1], v[2])); }
+
+/// σ_i(a, b).
+Complex pauli(int i, int a, int b) {
+  constexpr Complex one = 1, imaginary{0, 1};
+  if (i < 2) return a != b ? 0.0 : (i == 1 && a == 1 ? -one : one);
+  if (a == b) return 0;
+  return i == 2 ? one : (a == 0 ? -imaginary : imaginary);
+}
+
+/// Row and column of T are (a, c) and (b, d), each pair counted 00, 01, 10, 11.
+Matrix4c coherency_matrix(const Mueller& m) {
+  Matrix4c t = Matrix4c::Zero();
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+          t(row, column) += m(i, j) / 4 * pauli(i, row / 2, column / 2) * std::conj(pauli(j, row % 2, column % 2));
+  return t;
+}
+
+Mueller mueller_matrix(const Matrix4c& t) {
+  Mueller m;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+          m(i, j) += (t(row, column) * pauli(i, column / 2, row / 2) * std::conj(pauli(j, column % 2, row % 2))).real();
+  return m;
+}
+
+std::array<double, 4> eigenvalues(const Mueller& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix4c> solver(coherency_matrix(m), Eigen::EigenvaluesOnly);
+  return {solver.eigenvalues()[0], solver.eigenvalues()[1], solver.eigenvalues()[2], solver.eigenvalues()[3]};
+}
+
+bool realizable_to_rounding(double smallest_eigenvalue, double m11) {
+  return smallest_eigenvalue >= -realizability_tolerance * m11;
+}
+
+/// The nearest numbers ≥ 0 with the given sum ≥ 0 to falling numbers: max(λ − τ, 0) with one τ for all.
+std::array<double, 4> on_simplex(const std::array<double, 4>& falling, double sum) {
+  double largest = sum, differences = 0;  // λ_0 − τ with one positive number; Σ (λ − λ_0). λ − τ itself would cancel
+  for (std::size_t q = 1; q < 4; ++q) {
+    differences += falling[q] - falling[0];
+    const double candidate = (sum - differences) / static_cast<double>(q + 1);
+    if (candidate + (falling[q] - falling[0]) <= 0) break;
+    largest = candidate;
+  }
+  std::array<double, 4> result;
+  for (std::size_t q = 0; q < 4; ++q) result[q] = std::max(largest + (falling[q] - falling[0]), 0.0);
+  return result;
+}
+
+/// Eigenvalues of T / M11, falling, of the nearest realizable matrix.
+std::array<double, 4> probabilities(const Mueller& m) {
+  std::array<double, 4> falling = eigenvalues(m);
+  std::reverse(falling.begin(), falling.end());
+  std::array<double, 4> p = on_simplex(falling, m(0, 0));
+  for (double& value : p) value /= m(0, 0);
+  return p;
+}
+
+CloudeDecomposition cloude(const Mueller& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix4c> solver(coherency_matrix(m));
+  CloudeDecomposition result;
+  for (int q = 0; q < 4; ++q) {
+    const auto place = static_cast<std::size_t>(q);
+    const Eigen::Vector4cd v = solver.eigenvectors().col(3 - q);
+    result.weights[place] = solver.eigenvalues()[3 - q];
+    result.components[place] = normalized(mueller_matrix(v * v.adjoint()));
+  }
+  return result;
+}
+
+void require_light(const Stokes& light) {
+  const bool finite = std::all_of(light.begin(), light.end(), [](double s) { return std::isfinite(s); });
+  const double polarized =
+      finite && light[0] > 0 ? length({light[1] / light[0], light[2] / light[0], light[3] / light[0]}) : largest_double;
+  if (polarized <= 1 + stokes_tolerance) return;
+  throw std::invalid_argument("degree_of_polarization: light (" + shortest(light[0]) + ", " + shortest(light[1]) +
+                              ", " + shortest(light[2]) + ", " + shortest(light[3]) +
+                              ") cannot exist: S1 must be positive and at least the length of the rest");
+}
+
+}  // namespace
+
+double depolarization(const Mueller& m) {
+  const Mueller x = scaled_with_intensity(m, "depolarization");
+  double sum = 0;
+  for (std::size_t i = 1; i < 16; ++i) sum += x.elements[i] * x.elements[i];
+  return std::sqrt(sum / 3) / x(0, 0);
+}
+
+std::array<double, 3> diattenuation_vector(const Mueller& m) {
+  scaled_with_intensity(m, "diattenuation");
+  return {ratio(m(0, 1), m(0, 0)), ratio(m(0, 2), m(0, 0)), ratio(m(0, 3), m(0, 0))};
+}
+
+double diattenuation(const Mueller& m) { return length(diattenuation_vector(m)); }
+
+std::array<double, 3> polarizance_vector(const Mueller& m) {
+  scaled_with_intensity(m, "polarizance");
+  return {ratio(m(1, 0), m(0, 0)), ratio(m(2, 0), m(0, 0)), ratio(m(3, 0), m(0, 0))};
+}
+
+double polarizance(const Mueller& m) { return length(polarizance_vector(m)); }
+
+double degree_of_polarization(const Stokes& light) {
+  require_light(light);
+  return std::min(length({light[1] / light[0], light[2] / light[0], light[3] / light[0]}), 1.0);
+}
+
+double degree_of_polarization(const Mueller& m, const Stokes& incident) {
+  require_light(incident);
+  const Mueller x = scaled(m, "degree_of_polarization").m;
+  const Stokes s{1, incident[1] / incident[0], incident[2] / incident[0], incident[3] / incident[0]};
+  const Stokes out = x * s;  // elements of x are at most 1
+  const double polarized = length({out[1], out[2], out[3]});
+  constexpr double no_light = 1e-14;
+  if (std::abs(out[0]) <= no_light && polarized <= no_light) return 0;
+  if (!(out[0] > 0))
+    throw std::invalid_argument("degree_of_polarization: the matrix makes an intensity of " + shortest(out[0]) +
+                                " times its largest element; it is not realizable");
+  return ratio(polarized, out[0]);
+}
+
+PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp) {
+  const auto [x, exponent] = scaled(m_sp, "co_and_cross_polarized");
+  const auto f = [&x = x, e = exponent](double a, double b) {
+    return bounded(std::ldexp((x(0, 0) + a * x(0, 1) + b * x(1, 0) + a * b * x(1, 1)) / 2, e));
+  };
+  return {f(1, 1), f(1, -1), f(-1, 1), f(-1, -1)};
+}
+
+Coherency coherency(const Mueller& m) {
+  const auto [x, exponent] = scaled(m, "coherency");
+  const Matrix4c t = coherency_matrix(x);
+  Coherency result;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      result[static_cast<std::size_t>(4 * row + column)] = {bounded(std::ldexp(t(row, column).real(), exponent)),
+                                                            bounded(std::ldexp(t(row, column).imag(), exponent))};
+  return result;
+}
+
+Mueller from_coherency(const Coherency& t) {
+  Matrix4c matrix;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) {
+      const Complex element = t[static_cast<std::size_t>(4 * row + column)];
+      if (!std::isfinite(element.real()) || !std::isfinite(element.imag()))
+        throw std::invalid_argument("from_coherency: element " + std::to_string(row + 1) + std::to_string(column + 1) +
+                                    " is not finite");
+      matrix(row, column) = element / 4.0;
+    }
+  Mueller m = mueller_matrix(matrix);
+  for (double& element : m.elements) element = bounded(4 * bounded(element));
+  return m;
+}
+
+std::array<double, 4> coherency_eigenvalues(const Mueller& m) {
+  const auto [x, exponent] = scaled(m, "coherency_eigenvalues");
+  std::array<double, 4> result = eigenvalues(x);
+  for (double& value : result) value = bounded(std::ldexp(value, exponent));
+  return result;
+}
+
+double realizability_margin(const Mueller& m) {
+  const Mueller x = scaled_with_intensity(m, "realizability_margin");
+  return eigenvalues(x)[0] / x(0, 0);
+}
+
+bool realizable(const Mueller& m) {
+  const Mueller x = scaled(m, "realizable").m;
+  if (x == Mueller{}) return true;
+  return x(0, 0) > 0 && realizable_to_rounding(eigenvalues(x)[0], x(0, 0));
+}
+
+double purity(const Mueller& m) {
+  const double d = depolarization(m);
+  return bounded((1 + 3 * d * d) / 4);
+}
+
+double entropy(const Mueller& m) {
+  double sum = 0;
+  for (const double p : probabilities(scaled_with_intensity(m, "entropy")))
+    if (p > 0) sum -= p * std::log2(p) / 2;
+  return std::clamp(sum, 0.0, 1.0);
+}
+
+CloudeDecomposition cloude_decomposition(const Mueller& m) {
+  const auto [x, exponent] = scaled(m, "cloude_decomposition");
+  CloudeDecomposition result = cloude(x);
+  for (double& weight : result.weights) weight = bounded(std::ldexp(weight, exponent));
+  return result;
+}
+
+Projection nearest_realizable(const Mueller& m) {
+  const auto [x, exponent] = scaled(m, "nearest_realizable");
+  const double m11 = x(0, 0);
+  if (m11 < 0) throw std::invalid_argument("nearest_realizable: M11 = " + shortest(m(0, 0)) + ", must not be negative");
+  const CloudeDecomposition parts = cloude(x);
+  if (m11 > 0 && realizable_to_rounding(parts.weights[3], m11)) return {m, 0};
+  const std::array<double, 4> weights = on_simplex(parts.weights, m11);
+  Mueller nearest;
+  for (std::size_t q = 0; q < 4; ++q) nearest = nearest + weights[q] * parts.components[q];
+  double squares = 0;
+  for (std::size_t i = 0; i < 16; ++i) squares += std::pow(nearest.elements[i] - x.elements[i], 2);
+  for (double& element : nearest.elements) element = std::ldexp(element, exponent);
+  nearest(0, 0) = m(0, 0);
+  return {nearest, bounded(std::ldexp(std::sqrt(squares), exponent))};
+}
+
+}  // namespace mmbrdf
