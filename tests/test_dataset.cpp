@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "cases.hpp"
 #include "published.hpp"
 
 using namespace mmbrdf;
@@ -23,15 +24,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 Sample sample_at(double wavelength, double f11 = 0.3) { return {wavelength, {{0.1, 0}, {0.2, 1}}, f11, identity()}; }
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 /// Angle between the directions to the source and to the detector, in degrees.
 double degrees_from_retro(const Geometry& g) {

@@ -12,6 +12,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "cases.hpp"
 #include "mmbrdf/conversion.hpp"
 #include "mmbrdf/fit.hpp"
 #include "mmbrdf/io.hpp"
@@ -80,15 +81,6 @@ struct PairFact {
   int row, column;
   double rms;
 };
-
-std::string message_of(const auto& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 // ---- the published data
 // -------------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "cases.hpp"
 #include "published.hpp"
 
 using namespace mmbrdf;
@@ -32,8 +33,6 @@ double largest(const Mueller& m) {
   for (double element : m.elements) result = std::max(result, std::abs(element));
   return result;
 }
-
-double between(double low, double high) { return low + (high - low) * *rc::gen::inRange(0, 1000001) * 1e-6; }
 
 Direction any_direction() { return {between(0, pi / 2), between(-pi, pi)}; }
 Geometry any_geometry() { return {any_direction(), any_direction()}; }
@@ -105,15 +104,6 @@ Mueller by_vectors(const Mueller& m, const Geometry& g, Frame from, Frame to) {
   const Beams beams(g);
   return rotator_between(axes(beams, beams.k_out, from), axes(beams, beams.k_out, to)) * m *
          transpose(rotator_between(axes(beams, beams.k_in, from), axes(beams, beams.k_in, to)));
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 }  // namespace

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "cases.hpp"
+
 using namespace mmbrdf;
 
 namespace {
@@ -125,15 +127,6 @@ double residual_norm(const Problem& problem, const Numbers& x) {
 }
 
 double dot(const Numbers& a, const Numbers& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 }  // namespace
 

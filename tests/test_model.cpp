@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases.hpp"
 #include "mmbrdf/conversion.hpp"
 #include "random_model.hpp"
 
@@ -68,10 +69,6 @@ double deviation(const Mueller& a, const Mueller& b) {
 double deviation_of_m11(const Mueller& a, const Mueller& b) { return largest(a - b) / std::abs(b(0, 0)); }
 
 // inRange() alone would begin with numbers near `low` only.
-double between(double low, double high) {
-  return low + (high - low) * *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(0, 1000001)) * 1e-6;
-}
-
 double any_theta() {
   const int kind = *rc::gen::inRange(0, 10);
   return kind == 8 ? 0 : kind == 9 ? radians(90) : between(0, pi / 2);
@@ -141,15 +138,6 @@ Mueller sum_in_extended_precision(const Model& model, double wavelength, const G
   const Long f11 = sums[0] * model.reflectance.at(wavelength);
   for (std::size_t e = 0; e < 16; ++e) result.elements[e] = static_cast<double>(e == 0 ? f11 : f11 * sums[e]);
   return result;
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 /// f11 = Σ_p values[p] λ^p sr⁻¹ at every geometry, and nothing else.

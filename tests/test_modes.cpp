@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases.hpp"
 #include "published.hpp"
 
 using namespace mmbrdf;
@@ -30,9 +31,6 @@ constexpr double pi = std::numbers::pi;
 constexpr std::array every_family{Family::isotropic, Family::germer2017, Family::anisotropic};
 constexpr std::array every_function{m11, m12, m13, m14, m22, m23, m24, m33, m34, m44, g, h, u, v};
 
-double between(double low, double high) {  // inRange() alone would begin with numbers near `low` only
-  return low + (high - low) * *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(0, 1000001)) * 1e-6;
-}
 Direction any_direction() { return {between(0, pi / 2), between(-pi, pi)}; }
 
 std::vector<Mode> modes_of(const std::vector<Block>& blocks) {
@@ -192,15 +190,6 @@ double overlap(const std::vector<Term>& a, const std::vector<Term>& b, int row, 
           s.reflected == t.reflected)
         sum += s.weight * t.weight;
   return sum;
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 std::string refusal(const Mode& mode, Family family) {

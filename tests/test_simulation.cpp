@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "cases.hpp"
+
 using namespace mmbrdf;
 
 namespace {
@@ -34,15 +36,6 @@ const std::vector<double> two_wavelengths{0.6, 0.5};
 
 bool equal(const Sample& a, const Sample& b) {
   return a.wavelength == b.wavelength && a.geometry == b.geometry && a.f11 == b.f11 && a.normalized == b.normalized;
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 /// What noise did to one element, in units of its standard deviation, at many repetitions of a geometry.

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "cases.hpp"
+
 using namespace mmbrdf;
 
 namespace {
@@ -93,15 +95,6 @@ double largest_difference_from_diagonal(const std::vector<double>& matrix, doubl
     for (std::size_t b = 0; b < size; ++b)
       result = std::max(result, std::abs(matrix[a * size + b] - (a == b ? diagonal : 0)));
   return result;
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 }  // namespace
