@@ -8,17 +8,13 @@
 #include <string>
 
 namespace mmbrdf {
-namespace {
 
-/// ∫ K_n^0 cos θ dΩ over the hemisphere; the other K integrate to 0 (theory 4.3).
 double projected_integral(int n, DiscMapping mapping) {
   const double radial_integral = n == 0                                      ? std::numbers::pi
                                  : n == 2 && mapping == DiscMapping::lambert ? -std::numbers::pi / 3
                                                                              : 0;
   return std::sqrt((n + 1) / (2 * std::numbers::pi)) * radial_integral;
 }
-
-}  // namespace
 
 std::vector<Node> gauss_legendre(int count) {
   if (count < 1) throw std::invalid_argument("gauss_legendre: " + std::to_string(count) + " nodes");

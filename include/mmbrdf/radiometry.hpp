@@ -17,6 +17,9 @@ struct Node {
 /// Throws std::invalid_argument unless count ≥ 1.
 std::vector<Node> gauss_legendre(int count);
 
+/// ∫ K_n^0 cos θ dΩ over the hemisphere; all other K integrate to 0.
+double projected_integral(int n, DiscMapping mapping);
+
 /// Directional-hemispherical reflectance for unpolarized light, ∫ f11 cos θ_r dΩ_r over the hemisphere, reflectance
 /// table included (theory 4.3). Dimensionless. For a reflectance of about 1 exact to dhr_error: the integral of each
 /// mode is known,

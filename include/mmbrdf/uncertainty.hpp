@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Standard uncertainties of what a model predicts: the covariance of its coefficients, propagated in first order (GUM;
+/// theory 4.2). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
+/// noise. What all data share (scale, angles, the sample) is not in them.
+#pragma once
+
+#include <memory>
+
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf {
+
+/// Covariances of the sixteen elements of one matrix, in row-major order: symmetric, 16 × 16.
+struct MuellerCovariance {
+  std::array<double, 256> values{};
+  double operator()(std::size_t element, std::size_t other) const { return values[16 * element + other]; }
+  double& operator()(std::size_t element, std::size_t other) { return values[16 * element + other]; }
+};
+
+/// Square roots of the diagonal.
+Mueller standard_uncertainty(const MuellerCovariance& covariance);
+
+/// The covariance of a model's coefficients at one wavelength. May be used in many threads at once.
+class PreparedUncertainty {
+ public:
+  /// Of the Mueller BRDF in sr⁻¹, as PreparedModel::evaluate gives it. Blocks are fitted apart, so for F = f11 m
+  ///   u²(F) = m² u²(f11) + f11² u²(m);   elements of one block, and all through f11, are correlated.
+  /// Throws std::invalid_argument for an invalid geometry.
+  MuellerCovariance evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
+
+  /// The same of f11 in sr⁻¹ (element 11) and of the other elements divided by it.
+  MuellerCovariance normalized(const Geometry& geometry, Frame frame = Frame::xy) const;
+
+  /// Whether the data of the fit determine every element there. Where they do not, the uncertainties above are those of
+  /// the part that is determined: too small. Theory 4.2: the part of a prediction that lies in the combinations which
+  /// the data leave free is at most 1e-8 of it.
+  bool estimable(const Geometry& geometry) const;
+
+  /// Of the directional-hemispherical reflectance for unpolarized light.
+  double directional_hemispherical_reflectance(const Direction& incident) const;
+
+ private:
+  friend PreparedUncertainty prepare_uncertainty(const Model&, double, Rotation);
+  struct Blocks;
+  PreparedUncertainty(PreparedModel model, std::shared_ptr<const Blocks> blocks);
+
+  PreparedModel model_;
+  std::shared_ptr<const Blocks> blocks_;
+};
+
+/// Throws std::invalid_argument for an invalid model or wavelength (micrometres), or a block whose covariance is not
+/// known.
+PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
+
+}  // namespace mmbrdf

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "cases.hpp"
+#include "mmbrdf/conversion.hpp"
+#include "mmbrdf/fit.hpp"
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/materials.hpp"
+#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "published.hpp"
+
+namespace mmbrdf {
+namespace {
+
+constexpr std::array every_frame{Frame::xy, Frame::sp, Frame::scattering_plane};
+
+/// A small model of two powers with independent coefficients, each with its own variance.
+Model with_independent_coefficients(Family family) {
+  Model model;
+  model.family = family;
+  model.powers = 1;
+  model.reflectance = {{0.4, 0.8}, {0.9, 0.7}};
+  for (const Block& block : blocks(family, {3, 2})) {
+    const std::size_t size = 2 * block.modes.size();
+    FittedBlock fitted{block, {}, std::vector<double>(size * size), static_cast<int>(size), 1};
+    for (std::size_t i = 0; i < size; ++i) {
+      fitted.coefficients.push_back(0.05 * std::sin(1.0 + 1.7 * static_cast<double>(i)));
+      fitted.covariance[i * size + i] = 1 + 0.5 * std::cos(static_cast<double>(i));
+    }
+    if (block.name == "11") fitted.coefficients[0] = 2;
+    model.blocks.push_back(fitted);
+  }
+  return model;
+}
+
+/// Σ variance × (∂M/∂a)(∂M/∂a)ᵀ with central differences, which are exact for what is linear or bilinear in a.
+MuellerCovariance by_differences(const Model& model, const auto& predicted) {
+  MuellerCovariance result;
+  constexpr double step = 0.01;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b)
+    for (std::size_t i = 0; i < model.blocks[b].coefficients.size(); ++i) {
+      Model up = model, down = model;
+      up.blocks[b].coefficients[i] += step;
+      down.blocks[b].coefficients[i] -= step;
+      const Mueller slope = (1 / (2 * step)) * (predicted(up) - predicted(down));
+      const std::size_t size = model.blocks[b].coefficients.size();
+      for (std::size_t e = 0; e < 16; ++e)
+        for (std::size_t other = 0; other < 16; ++other)
+          result(e, other) += slope.elements[e] * slope.elements[other] * model.blocks[b].covariance[i * size + i];
+    }
+  return result;
+}
+
+void expect_equal(const MuellerCovariance& found, const MuellerCovariance& expected) {
+  const double scale = *std::max_element(expected.values.begin(), expected.values.end());
+  for (std::size_t i = 0; i < 256; ++i)  // differences of numbers of order 1, divided by 0.02
+    EXPECT_NEAR(found.values[i], expected.values[i], 1e-11 * scale) << i;
+}
+
+TEST(Uncertainty, IsTheCovarianceOfTheCoefficientsThroughTheDerivativesOfThePrediction) {
+  const Geometry geometry{{0.9, 0.4}, {0.6, 2.1}};
+  for (const Family family : {Family::isotropic, Family::germer2017, Family::anisotropic}) {
+    const Model model = with_independent_coefficients(family);
+    const PreparedUncertainty u = prepare_uncertainty(model, 0.5);
+    for (const Frame frame : every_frame) {
+      const auto absolute = [&](const Model& m) { return prepare(m, 0.5).evaluate(geometry, frame); };
+      const auto relative = [&](const Model& m) {
+        const Mueller f = absolute(m);
+        Mueller result = normalized(f);
+        result(0, 0) = f(0, 0);
+        return result;
+      };
+      expect_equal(u.evaluate(geometry, frame), by_differences(model, absolute));
+      expect_equal(u.normalized(geometry, frame), by_differences(model, relative));
+    }
+  }
+}
+
+TEST(Uncertainty, OfTheReflectanceIsThatOfItsIntegral) {
+  const Model model = with_independent_coefficients(Family::isotropic);
+  const Direction incident{0.7, 0.3};
+  const auto reflectance = [&](const Model& m) {
+    return diagonal(directional_hemispherical_reflectance(m, 0.5, incident), 0, 0, 0);
+  };
+  EXPECT_NEAR(prepare_uncertainty(model, 0.5).directional_hemispherical_reflectance(incident),
+              std::sqrt(by_differences(model, reflectance)(0, 0)), 1e-12);
+}
+
+/// One repetition: what a fit to new noise predicts, and how sure it says to be.
+struct Prediction {
+  Mueller value, uncertainty;
+};
+
+// 200 repetitions with noise of the speckle law, fitted with the weights that belong to it. The ratio of observed and
+// predicted standard deviation scatters by 0.05 for one element at one geometry, and by less for the mean of ten.
+TEST(Uncertainty, PredictsTheScatterOfRepeatedMeasurementsAndContainsTheTruth) {
+  constexpr int repetitions = 200;
+  constexpr double speckle = 0.01;
+  const Model truth = material("ptfe-532");
+  const auto grid = germer2017_grid();
+  const auto asked = random_geometries(10, 3, radians(70));
+  const PreparedModel exact = prepare(truth, 0.532);
+  const double true_reflectance = directional_hemispherical_reflectance(truth, 0.532, {0, 0});
+  std::vector<double> f11_weights, weights;
+  std::array<double, 17> squares{}, predicted{}, inside_interval{};
+  for (int seed = 1; seed <= repetitions; ++seed) {
+    const auto samples = simulate(truth, std::array{0.532}, grid, speckle, static_cast<unsigned long>(seed));
+    if (weights.empty()) {
+      f11_weights = weights = speckle_weights(samples);
+      for (std::size_t s = 0; s < grid.size(); ++s) f11_weights[s] /= std::pow(exact.f11(grid[s]), 2);
+    }
+    FitAccumulator accumulator{Basis{}};
+    accumulator.add(samples, weights, f11_weights);
+    const Model model = accumulator.solve().model;
+    const PreparedModel prepared = prepare(model, 0.532);
+    const PreparedUncertainty u = prepare_uncertainty(model, 0.532);
+    const auto count = [&](std::size_t which, double error, double uncertainty) {
+      squares[which] += error * error;
+      predicted[which] += uncertainty * uncertainty;
+      inside_interval[which] += std::abs(error) <= 1.96 * uncertainty ? 1 : 0;
+    };
+    for (const Geometry& geometry : asked) {
+      const Mueller error = prepared.evaluate(geometry, Frame::sp) - exact.evaluate(geometry, Frame::sp);
+      const Mueller uncertainty = standard_uncertainty(u.evaluate(geometry, Frame::sp));
+      for (std::size_t e = 0; e < 16; ++e) count(e, error.elements[e], uncertainty.elements[e]);
+    }
+    count(16, directional_hemispherical_reflectance(model, 0.532, {0, 0}) - true_reflectance,
+          u.directional_hemispherical_reflectance({0, 0}));
+  }
+  double all_inside = 0;
+  for (std::size_t which = 0; which < 17; ++which) {
+    EXPECT_NEAR(std::sqrt(squares[which] / predicted[which]), 1, 0.1) << which;
+    if (which < 16) all_inside += inside_interval[which] / (16.0 * 10 * repetitions);
+  }
+  EXPECT_NEAR(all_inside, 0.95, 0.02);
+  EXPECT_NEAR(inside_interval[16] / repetitions, 0.95, 0.04);  // 200 yes or no: 0.015 of standard deviation
+}
+
+// Theory 4.3: statistical u(DHR(0)) .0004 at 532 nm and .0007 at 1064 nm.
+TEST(Uncertainty, OfTheReflectanceOfPtfeIsThatOfTheTheory) {
+  EXPECT_NEAR(prepare_uncertainty(material("ptfe-532"), 0.532).directional_hemispherical_reflectance({0, 0}), .0004,
+              5e-5);
+  EXPECT_NEAR(prepare_uncertainty(material("ptfe-1064"), 1.064).directional_hemispherical_reflectance({0, 0}), .0007,
+              5e-5);
+}
+
+// Theory 0.3 and 4.2: the data have one plane of incidence, and the published sets at other azimuths say what they do
+// not.
+TEST(Uncertainty, OfThePublishedSetsAsPrintedIsNotEstimableAwayFromThePlaneOfTheData) {
+  const auto samples = simulate(material("ptfe-532"), std::array{0.532}, germer2017_grid(), 0.01, 1);
+  const Model model = fit(samples, {Family::germer2017, {7, 4}}).model;
+  const Geometry in_plane{{0.5, 0}, {0.6, 2}}, turned{{0.5, 1}, {0.6, 3}};
+  const PreparedUncertainty covariant = prepare_uncertainty(model, 0.532);
+  const PreparedUncertainty as_printed = prepare_uncertainty(model, 0.532, Rotation::as_printed);
+  EXPECT_TRUE(covariant.estimable(in_plane));
+  EXPECT_TRUE(covariant.estimable(turned));
+  EXPECT_TRUE(as_printed.estimable(in_plane));
+  EXPECT_FALSE(as_printed.estimable(turned));
+  EXPECT_TRUE(prepare_uncertainty(material("ptfe"), 0.7).estimable(turned));
+}
+
+TEST(Uncertainty, NeedsACovarianceAndAValidQuestion) {
+  const Model without = in_published_form(material("ptfe-532"));
+  EXPECT_EQ(message_of([&] { prepare_uncertainty(without, 0.532); }), "the covariance of block 11 is not known");
+  const PreparedUncertainty u = prepare_uncertainty(material("ptfe-532"), 0.532);
+  EXPECT_THROW(u.evaluate({{radians(95), 0}, {}}), std::invalid_argument);
+  EXPECT_THROW(u.estimable({{0, 0}, {radians(95), 0}}), std::invalid_argument);
+  EXPECT_THROW(u.directional_hemispherical_reflectance({radians(95), 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mmbrdf
