@@ -99,7 +99,7 @@ double zernike(int n, int k, const Direction& direction, DiscMapping mapping) {
                                 " degrees, must be in 0…90");
   const double rho = std::min(1.0, disc_radius(direction.theta, mapping));  // √2 sin 45° may be rounded to above 1
   const double radius = radial(n, k, rho);                                  // checks n
-  return norm(n, k) * radius * (k < 0 ? std::sin(-k * direction.phi) : std::cos(k * direction.phi));
+  return norm(n, k) * radius * (k < 0 ? std::sin(-1.0 * k * direction.phi) : std::cos(k * direction.phi));
 }
 
 void zernike_table(int order, const DiscPoint& point, double* values) {
