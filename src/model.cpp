@@ -163,6 +163,8 @@ void require_valid(const Model& model) {
     if (fitted.coefficients.size() != count)
       throw std::invalid_argument(where + std::to_string(fitted.coefficients.size()) + " coefficients, expected " +
                                   std::to_string(count));
+    if (fitted.rank < 0 || static_cast<std::size_t>(fitted.rank) > count)
+      throw std::invalid_argument(where + "rank " + std::to_string(fitted.rank) + " of " + std::to_string(count));
     if (!fitted.covariance.empty() && fitted.covariance.size() != count * count)
       throw std::invalid_argument(where + "covariance of " + std::to_string(fitted.covariance.size()) +
                                   " numbers, expected " + std::to_string(count * count));

@@ -2,9 +2,11 @@
 #include "mmbrdf/uncertainty.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mmbrdf/radiometry.hpp"
@@ -36,6 +38,7 @@ struct BlockAt {
   };
   std::vector<std::size_t> elements;
   std::vector<std::vector<ModeTerm>> terms;  // for each of these elements
+  VectorXd coefficients;                     // a(λ)
   MatrixXd covariance;                       // V(λ)
   MatrixXd free;                             // combinations that the data leave free, folded at λ: modes × number
   double lengthening = 1;                    // of a row over the modes to the row over all powers
@@ -47,12 +50,13 @@ struct BlockAt {
   }
 };
 
-/// Eigenvectors of the covariance that the fit left at zero. The covariance of a solution of minimum norm has exactly
-/// as many as coefficients less rank.
+/// Eigenvectors of the covariance with eigenvalue 0: as many as coefficients less rank, for a solution of minimum norm.
 MatrixXd free_combinations(const FittedBlock& fitted) {
-  const Index size = index(fitted.coefficients.size()), free = fitted.rank > 0 ? size - fitted.rank : 0;
+  const Index size = index(fitted.coefficients.size()), free = size - fitted.rank;
   if (free == 0) return MatrixXd(size, 0);
   const Eigen::Map<const MatrixXd> covariance(fitted.covariance.data(), size, size);
+  if (fitted.rank == 0 && !covariance.isZero(0))
+    throw std::invalid_argument("the rank of block " + fitted.block.name + " is not known");
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance).eigenvectors().leftCols(free);
 }
 
@@ -68,8 +72,11 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   }
   const double scale = fitted.block.name == "11" ? model.reflectance.at(wavelength) : 1;
   BlockAt result;
+  result.coefficients = scale * fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
   result.covariance =
       scale * scale * fold.transpose() * Eigen::Map<const MatrixXd>(fitted.covariance.data(), size, size) * fold;
+  if (!result.coefficients.allFinite() || !result.covariance.allFinite())
+    throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = std::sqrt(squares);
   result.terms.resize(fitted.block.elements.size());
@@ -119,32 +126,34 @@ struct PreparedUncertainty::Blocks {
 
 Mueller standard_uncertainty(const MuellerCovariance& covariance) {
   Mueller result;
-  for (std::size_t e = 0; e < 16; ++e) result.elements[e] = std::sqrt(std::max(0.0, covariance(e, e)));
+  for (std::size_t e = 0; e < 16; ++e) result.elements[e] = std::sqrt(std::max(covariance(e, e), 0.0));
   return result;
 }
 
-PreparedUncertainty::PreparedUncertainty(PreparedModel model, std::shared_ptr<const Blocks> blocks)
-    : model_(std::move(model)), blocks_(std::move(blocks)) {}
+PreparedUncertainty::PreparedUncertainty(std::shared_ptr<const Blocks> blocks) : blocks_(std::move(blocks)) {}
 
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation) {
-  PreparedModel prepared = prepare(model, wavelength, rotation);
+  require_valid(model);
+  require_wavelength(wavelength);
   auto blocks = std::make_shared<PreparedUncertainty::Blocks>();
   const Orders highest = orders(model);
   blocks->order = std::max(highest.f11, highest.other);
   blocks->mapping = model.mapping;
   blocks->turns = model.family == Family::germer2017 && rotation == Rotation::covariant;
   for (const FittedBlock& fitted : model.blocks) blocks->list.push_back(block_at(fitted, model, wavelength));
-  return PreparedUncertainty(std::move(prepared), std::move(blocks));
+  return PreparedUncertainty(std::move(blocks));
 }
 
-MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
+PreparedUncertainty::Estimate PreparedUncertainty::estimate(const Geometry& geometry, Frame frame) const {
   require_valid(geometry, "uncertainty");
   const auto [k_i, k_r] = blocks_->tables(geometry);
+  Mueller m;
   MuellerCovariance c;
   for (const BlockAt& block : blocks_->list) {
     std::vector<VectorXd> rows;
     for (std::size_t e = 0; e < block.elements.size(); ++e) rows.push_back(block.row(e, k_i, k_r));
     for (std::size_t e = 0; e < rows.size(); ++e) {
+      m.elements[block.elements[e]] = rows[e].dot(block.coefficients);
       const VectorXd product = block.covariance * rows[e];
       for (std::size_t other = 0; other <= e; ++other)
         c(block.elements[e], block.elements[other]) = c(block.elements[other], block.elements[e]) =
@@ -153,19 +162,23 @@ MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Fram
   }
   const Mueller turn = rotator(blocks_->turns ? -geometry.incident.phi : 0);
   const FrameAngles angles = angles_to_xy(geometry, frame);
-  return mapped(c, rotator(-angles.scattered) * turn, turn * rotator(angles.incident));
+  const Mueller left = rotator(-angles.scattered) * turn, right = turn * rotator(angles.incident);
+  return {left * m * right, mapped(c, left, right)};
+}
+
+MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
+  return estimate(geometry, frame).covariance;
 }
 
 MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame frame) const {
-  const MuellerCovariance c = normalized(geometry, frame);
-  const Mueller f = model_.evaluate(geometry, frame);
-  const double f11 = f(0, 0);
+  auto [m, c] = estimate(geometry, frame);
+  const double f11 = m(0, 0);
+  m(0, 0) = 1;
   MuellerCovariance result;  // F_e = f11 m_e, and F_11 = f11: dF_e = m_e df11 + f11 dm_e
   for (std::size_t e = 0; e < 16; ++e)
     for (std::size_t other = 0; other < 16; ++other) {
-      const double m_e = f.elements[e] / f11, m_other = f.elements[other] / f11;
       const double direct = e == 0 || other == 0 ? 0 : f11 * f11 * c(e, other);
-      result(e, other) = m_e * m_other * c(0, 0) + direct;
+      result(e, other) = m.elements[e] * m.elements[other] * c(0, 0) + direct;
     }
   return result;
 }
@@ -189,7 +202,7 @@ double PreparedUncertainty::directional_hemispherical_reflectance(const Directio
     integrals[static_cast<std::size_t>(zernike_index(n, 0))] = projected_integral(n, blocks_->mapping);
   const BlockAt& f11 = blocks_->list.front();
   const VectorXd g = f11.row(0, k_i, integrals);
-  return std::sqrt(std::max(0.0, g.dot(f11.covariance * g)));
+  return std::sqrt(std::max(g.dot(f11.covariance * g), 0.0));
 }
 
 }  // namespace mmbrdf

@@ -23,8 +23,12 @@ namespace {
 
 constexpr std::array every_frame{Frame::xy, Frame::sp, Frame::scattering_plane};
 
-/// A small model of two powers with independent coefficients, each with its own variance.
-Model with_independent_coefficients(Family family) {
+/// The common part of the errors of the coefficients below.
+double common(std::size_t i) { return 0.3 * std::sin(2.0 * static_cast<double>(i)); }
+double own_variance(std::size_t i) { return 1 + 0.5 * std::cos(static_cast<double>(i)); }
+
+/// A small model of two powers. The covariance of a block is diag(own_variance) + common commonᵀ.
+Model with_correlated_coefficients(Family family) {
   Model model;
   model.family = family;
   model.powers = 1;
@@ -34,7 +38,8 @@ Model with_independent_coefficients(Family family) {
     FittedBlock fitted{block, {}, std::vector<double>(size * size), static_cast<int>(size), 1};
     for (std::size_t i = 0; i < size; ++i) {
       fitted.coefficients.push_back(0.05 * std::sin(1.0 + 1.7 * static_cast<double>(i)));
-      fitted.covariance[i * size + i] = 1 + 0.5 * std::cos(static_cast<double>(i));
+      for (std::size_t j = 0; j < size; ++j)
+        fitted.covariance[i * size + j] = common(i) * common(j) + (i == j ? own_variance(i) : 0);
     }
     if (block.name == "11") fitted.coefficients[0] = 2;
     model.blocks.push_back(fitted);
@@ -42,21 +47,28 @@ Model with_independent_coefficients(Family family) {
   return model;
 }
 
-/// Σ variance × (∂M/∂a)(∂M/∂a)ᵀ with central differences, which are exact for what is linear or bilinear in a.
+void add_square(MuellerCovariance& sum, const Mueller& slope, double variance) {
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t other = 0; other < 16; ++other)
+      sum(e, other) += variance * slope.elements[e] * slope.elements[other];
+}
+
+/// ∂M/∂a V (∂M/∂a)ᵀ with central differences, which are exact for what is linear or bilinear in a.
 MuellerCovariance by_differences(const Model& model, const auto& predicted) {
   MuellerCovariance result;
   constexpr double step = 0.01;
-  for (std::size_t b = 0; b < model.blocks.size(); ++b)
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    Mueller together;
     for (std::size_t i = 0; i < model.blocks[b].coefficients.size(); ++i) {
       Model up = model, down = model;
       up.blocks[b].coefficients[i] += step;
       down.blocks[b].coefficients[i] -= step;
       const Mueller slope = (1 / (2 * step)) * (predicted(up) - predicted(down));
-      const std::size_t size = model.blocks[b].coefficients.size();
-      for (std::size_t e = 0; e < 16; ++e)
-        for (std::size_t other = 0; other < 16; ++other)
-          result(e, other) += slope.elements[e] * slope.elements[other] * model.blocks[b].covariance[i * size + i];
+      add_square(result, slope, own_variance(i));
+      together = together + common(i) * slope;
     }
+    add_square(result, together, 1);
+  }
   return result;
 }
 
@@ -69,7 +81,7 @@ void expect_equal(const MuellerCovariance& found, const MuellerCovariance& expec
 TEST(Uncertainty, IsTheCovarianceOfTheCoefficientsThroughTheDerivativesOfThePrediction) {
   const Geometry geometry{{0.9, 0.4}, {0.6, 2.1}};
   for (const Family family : {Family::isotropic, Family::germer2017, Family::anisotropic}) {
-    const Model model = with_independent_coefficients(family);
+    const Model model = with_correlated_coefficients(family);
     const PreparedUncertainty u = prepare_uncertainty(model, 0.5);
     for (const Frame frame : every_frame) {
       const auto absolute = [&](const Model& m) { return prepare(m, 0.5).evaluate(geometry, frame); };
@@ -86,7 +98,7 @@ TEST(Uncertainty, IsTheCovarianceOfTheCoefficientsThroughTheDerivativesOfThePred
 }
 
 TEST(Uncertainty, OfTheReflectanceIsThatOfItsIntegral) {
-  const Model model = with_independent_coefficients(Family::isotropic);
+  const Model model = with_correlated_coefficients(Family::isotropic);
   const Direction incident{0.7, 0.3};
   const auto reflectance = [&](const Model& m) {
     return diagonal(directional_hemispherical_reflectance(m, 0.5, incident), 0, 0, 0);
@@ -158,7 +170,7 @@ TEST(Uncertainty, OfTheReflectanceOfPtfeIsThatOfTheTheory) {
 TEST(Uncertainty, OfThePublishedSetsAsPrintedIsNotEstimableAwayFromThePlaneOfTheData) {
   const auto samples = simulate(material("ptfe-532"), std::array{0.532}, germer2017_grid(), 0.01, 1);
   const Model model = fit(samples, {Family::germer2017, {7, 4}}).model;
-  const Geometry in_plane{{0.5, 0}, {0.6, 2}}, turned{{0.5, 1}, {0.6, 3}};
+  const Geometry in_plane{{0.5, 0}, {0.6, 2}}, turned{{0.7, 1}, {0.3, 2.3}};
   const PreparedUncertainty covariant = prepare_uncertainty(model, 0.532);
   const PreparedUncertainty as_printed = prepare_uncertainty(model, 0.532, Rotation::as_printed);
   EXPECT_TRUE(covariant.estimable(in_plane));
@@ -168,9 +180,44 @@ TEST(Uncertainty, OfThePublishedSetsAsPrintedIsNotEstimableAwayFromThePlaneOfThe
   EXPECT_TRUE(prepare_uncertainty(material("ptfe"), 0.7).estimable(turned));
 }
 
+TEST(Uncertainty, WithPowersOfTheWavelengthIsEstimableWhereItIsWithout) {
+  const auto samples = simulate(material("ptfe"), std::array{0.532, 0.633}, germer2017_grid(), 0.01, 1);
+  const Model model = fit(samples, {Family::germer2017, {7, 4}}).model;
+  ASSERT_EQ(model.powers, 1);
+  const Geometry turned{{0.7, 1}, {0.3, 2.3}};
+  EXPECT_TRUE(prepare_uncertainty(model, 0.6).estimable(turned));
+  EXPECT_FALSE(prepare_uncertainty(model, 0.6, Rotation::as_printed).estimable(turned));
+}
+
+// At normal incidence 14 and 41 have no modes left: rank 0, and a covariance of zeros.
+TEST(Uncertainty, OfWhatTheDataSayNothingAboutIsNotEstimable) {
+  auto samples = simulate(material("ptfe-532"), std::array{0.532}, germer2017_grid(), 0.01, 1);
+  std::erase_if(samples, [](const Sample& s) { return s.geometry.incident.theta > 0; });
+  FitOptions options;
+  options.minimum_norm = true;
+  Model model = fit(samples, {Family::isotropic, {0, 2}}, options).model;
+  std::erase_if(model.blocks, [](const FittedBlock& b) { return b.block.name != "11" && b.block.name != "14,41"; });
+  ASSERT_EQ(model.blocks[1].rank, 0);
+  EXPECT_FALSE(prepare_uncertainty(model, 0.532).estimable({{0.7, 0}, {0.5, 1}}));
+}
+
+TEST(Uncertainty, IsFiniteWhereF11IsZeroAndNotHiddenWhereItIsNoNumber) {
+  Model model = with_correlated_coefficients(Family::isotropic);
+  std::fill(model.blocks[0].coefficients.begin(), model.blocks[0].coefficients.end(), 0.0);
+  const Mueller u = standard_uncertainty(prepare_uncertainty(model, 0.5).evaluate({{0.5, 0}, {0.4, 1}}));
+  for (const double element : u.elements) EXPECT_TRUE(element > 0 && std::isfinite(element));
+  MuellerCovariance undefined;
+  undefined(3, 3) = std::nan("");
+  EXPECT_TRUE(std::isnan(standard_uncertainty(undefined).elements[3]));
+}
+
 TEST(Uncertainty, NeedsACovarianceAndAValidQuestion) {
   const Model without = in_published_form(material("ptfe-532"));
   EXPECT_EQ(message_of([&] { prepare_uncertainty(without, 0.532); }), "the covariance of block 11 is not known");
+  Model unknown_rank = material("ptfe-532");
+  unknown_rank.blocks[1].rank = 0;
+  EXPECT_EQ(message_of([&] { prepare_uncertainty(unknown_rank, 0.532); }),
+            "the rank of block 12,13,21,31 is not known");
   const PreparedUncertainty u = prepare_uncertainty(material("ptfe-532"), 0.532);
   EXPECT_THROW(u.evaluate({{radians(95), 0}, {}}), std::invalid_argument);
   EXPECT_THROW(u.estimable({{0, 0}, {radians(95), 0}}), std::invalid_argument);
