@@ -3,7 +3,7 @@
 /// theory 4.2). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
 /// noise. What all data share (scale, angles, the sample) is not in them, and the reflectance table counts as exact:
 /// where the fit took it from the same data, as it does by default for several wavelengths, u(f11) and u(DHR) are too
-/// small, the latter by a factor of up to 1.7 as seen in simulated measurements of `ptfe`.
+/// small. Give the fit a table to avoid that.
 #pragma once
 
 #include <memory>
