@@ -79,6 +79,7 @@ Model in_published_form(const Model& model) {
       }
   Model result = model;
   result.family = Family::germer2017;
+  result.reflectance = {model.reflectance.wavelengths, model.reflectance.values};
   result.blocks.clear();
   for (Block& block : blocks(Family::germer2017, modes)) {
     FittedBlock fitted{std::move(block), {}, {}, 0, 0};
@@ -136,13 +137,13 @@ Model projected_on_isotropic(const Model& model, const Orders& orders) {
   for (const double wavelength : wavelengths_for(model)) {
     const PreparedModel prepared = prepare(bare, wavelength);
     std::vector<Sample> samples;
-    std::vector<double> weights;
+    std::vector<Mueller> weights;
     for (const auto& [geometry, weight] : nodes) {
       const Mueller m = prepared.evaluate(geometry);
       samples.push_back({wavelength, geometry, m(0, 0), normalized(m)});
-      weights.push_back(weight);
+      weights.emplace_back().elements.fill(weight);
     }
-    accumulator.add(samples, weights, weights);
+    accumulator.add(samples, weights);
   }
   Model result = accumulator.solve({model.powers, ReflectanceTable{}, false}).model;
   for (FittedBlock& fitted : result.blocks) {
@@ -151,7 +152,7 @@ Model projected_on_isotropic(const Model& model, const Orders& orders) {
     fitted.condition = 0;
   }
   result.name = model.name;
-  result.reflectance = model.reflectance;
+  result.reflectance = {model.reflectance.wavelengths, model.reflectance.values};
   result.validity = model.validity;
   result.provenance = model.provenance;
   return result;

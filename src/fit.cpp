@@ -16,8 +16,6 @@
 namespace mmbrdf {
 namespace {
 
-using Table = std::array<double, zernike_count(max_order)>;
-
 constexpr std::size_t samples_at_once = 128;
 constexpr double involved = 1e-6;       // least part of a free combination for which a mode is named
 constexpr std::size_t most_named = 24;  // modes in a message of one line
@@ -72,6 +70,16 @@ void require_determined(const std::string& complaints) {
                                 "; choose lower orders, or ask for the solution of minimum norm");
 }
 
+void require_weights(std::span<const Mueller> weights, std::size_t samples) {
+  if (!weights.empty() && weights.size() != samples)
+    throw std::invalid_argument("fit: " + std::to_string(weights.size()) + " weights for " + std::to_string(samples) +
+                                " samples");
+  for (std::size_t s = 0; s < weights.size(); ++s)
+    for (const double weight : weights[s].elements)
+      if (!(weight >= 0) || !std::isfinite(weight))
+        throw std::invalid_argument("fit: weight " + shortest(weight) + " of sample " + std::to_string(s + 1));
+}
+
 }  // namespace
 
 double polarization_rms(const FitResult& result) {
@@ -107,23 +115,15 @@ FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
   return fresh;
 }
 
-void FitAccumulator::add(std::span<const Sample> samples, std::span<const double> weights,
-                         std::span<const double> f11_weights) {
+void FitAccumulator::add(std::span<const Sample> samples, std::span<const Mueller> weights) {
   require_valid(samples);
-  for (const std::span<const double>& list : {weights, f11_weights}) {
-    if (!list.empty() && list.size() != samples.size())
-      throw std::invalid_argument("fit: " + std::to_string(list.size()) + " weights for " +
-                                  std::to_string(samples.size()) + " samples");
-    for (std::size_t s = 0; s < list.size(); ++s)
-      if (!(list[s] >= 0) || !std::isfinite(list[s]))
-        throw std::invalid_argument("fit: weight " + shortest(list[s]) + " of sample " + std::to_string(s + 1));
-  }
+  require_weights(weights, samples.size());
   std::map<AtWavelength*, std::vector<std::size_t>> groups;
   for (std::size_t s = 0; s < samples.size(); ++s) groups[&slot(samples[s].wavelength)].push_back(s);
   for (auto& [at, members] : groups)
     for (std::size_t first = 0; first < members.size(); first += samples_at_once)
       add_some(*at, samples, std::span(members).subspan(first, std::min(samples_at_once, members.size() - first)),
-               weights, f11_weights);
+               weights);
   for (const Sample& sample : samples) {
     theta_i_max_ = std::max(theta_i_max_, sample.geometry.incident.theta);
     theta_r_max_ = std::max(theta_r_max_, sample.geometry.reflected.theta);
@@ -132,14 +132,15 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const double
 }
 
 void FitAccumulator::add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
-                              std::span<const double> weights, std::span<const double> f11_weights) {
+                              std::span<const Mueller> weights) {
   std::vector<Sample> used;
-  std::vector<Table> k_i(members.size()), k_r(members.size());
   const int order = std::max(basis_.orders.f11, basis_.orders.other);
+  const std::size_t functions = size(zernike_count(order));
+  std::vector<double> k_i(members.size() * functions), k_r(members.size() * functions);
   for (std::size_t s = 0; s < members.size(); ++s) {
-    used.push_back(basis_.family == Family::germer2017 ? at_zero_azimuth(samples[members[s]]) : samples[members[s]]);
-    zernike_table(order, disc_point(used[s].geometry.incident, basis_.mapping), k_i[s].data());
-    zernike_table(order, disc_point(used[s].geometry.reflected, basis_.mapping), k_r[s].data());
+    used.push_back(turns() ? at_zero_azimuth(samples[members[s]]) : samples[members[s]]);
+    zernike_table(order, disc_point(used[s].geometry.incident, basis_.mapping), &k_i[s * functions]);
+    zernike_table(order, disc_point(used[s].geometry.reflected, basis_.mapping), &k_r[s * functions]);
   }
   std::vector<double> rows, values, row_weights;
   for (std::size_t e = 0; e < 16; ++e) {
@@ -147,15 +148,14 @@ void FitAccumulator::add_some(AtWavelength& at, std::span<const Sample> samples,
     rows.assign(members.size() * columns, 0);
     values.clear();
     row_weights.clear();
-    const std::span<const double> list = e == 0 ? f11_weights : weights;
     for (std::size_t s = 0; s < members.size(); ++s) {
       for (const ColumnTerm& t : terms_[e])
-        rows[s * columns + t.column] += t.weight * k_i[s][t.incident] * k_r[s][t.reflected];
+        rows[s * columns + t.column] += t.weight * k_i[s * functions + t.incident] * k_r[s * functions + t.reflected];
       values.push_back(e == 0 ? used[s].f11 : used[s].normalized.elements[e]);
-      row_weights.push_back(list.empty() ? 1 : list[members[s]]);
+      row_weights.push_back(weights.empty() ? 1 : weights[members[s]].elements[e]);
       at.weight[e] += row_weights.back();
     }
-    at.elements[e].add(rows, values, list.empty() ? std::span<const double>{} : row_weights);
+    at.elements[e].add(rows, values, weights.empty() ? std::span<const double>{} : row_weights);
   }
 }
 
@@ -185,9 +185,16 @@ LeastSquares FitAccumulator::over_wavelengths(std::size_t element, int powers,
   return result;
 }
 
+bool FitAccumulator::turns() const {
+  return basis_.family == Family::germer2017 && basis_.rotation == Rotation::covariant;
+}
+
+bool FitAccumulator::takes_own_reflectance(const FitOptions& options) const {
+  return !options.reflectance && wavelengths_.size() > 1;
+}
+
 ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) const {
   ReflectanceTable table;
-  if (wavelengths_.size() < 2) return table;
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance);
     if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
@@ -226,6 +233,12 @@ int FitAccumulator::chosen_powers(const FitOptions& options) const {
 }
 
 FitResult FitAccumulator::solve(const FitOptions& options) const {
+  if (options.covariance == Covariance::sandwich)
+    throw std::invalid_argument("fit: a sandwich covariance needs the samples again, and an accumulator keeps none");
+  return solved(options);
+}
+
+FitResult FitAccumulator::solved(const FitOptions& options) const {
   if (samples_ == 0) throw std::invalid_argument("fit: no samples");
   const int powers = chosen_powers(options);
   std::string complaints;
@@ -236,7 +249,8 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
   model.powers = powers;
   model.validity = {{}, theta_i_max_, theta_r_max_};
   for (const auto& [wavelength, at] : wavelengths_) model.validity.wavelengths.push_back(wavelength);
-  model.reflectance = options.reflectance ? *options.reflectance : own_reflectance(options);
+  if (takes_own_reflectance(options)) model.reflectance = own_reflectance(options);
+  if (options.reflectance) model.reflectance = {options.reflectance->wavelengths, options.reflectance->values};
   require_valid(model.reflectance);
   require_covered(model.reflectance);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -260,6 +274,8 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
   for (std::size_t e = 0; e < 16; ++e)
     if (block_of_[e] < 0)  // no mode: the model's element is 0
       result.elements[e] = element_fit(e, over_wavelengths(e, 0, model.reflectance), std::array{0.0});
+  if (takes_own_reflectance(options) && result.solutions.front().degrees_of_freedom() > 0)
+    add_own_reflectance_covariance(result, options.rank_tolerance, nullptr);
   return result;
 }
 
@@ -282,20 +298,7 @@ ElementFit FitAccumulator::element_fit(std::size_t element, const LeastSquares& 
   return fit;
 }
 
-// ---- samples in memory
-// ------------------------------------------------------------------------------------------------
-
-std::vector<double> speckle_weights(std::span<const Sample> samples) {
-  std::vector<double> weights;
-  for (const Sample& sample : samples) {
-    const double cos_i = std::cos(sample.geometry.incident.theta), cos_r = std::cos(sample.geometry.reflected.theta);
-    if (!(cos_i > 1e-12))
-      throw std::invalid_argument("speckle weights: sample " + std::to_string(weights.size() + 1) +
-                                  " has theta_i = 90 degrees");
-    weights.push_back(std::max(0.0, cos_r / cos_i));
-  }
-  return weights;
-}
+// ---- samples in memory ----------------------------------------------------------------------------------------------
 
 namespace {
 
@@ -315,33 +318,57 @@ class PreparedAt {
   std::map<double, PreparedModel> prepared_;
 };
 
-/// Speckle weights of f11 / reflectance, whose noise is relative to the value that a first fit gives.
-std::vector<double> relative_weights(const Model& first, std::span<const Sample> samples, std::vector<double> weights) {
-  PreparedAt prepared(first, Rotation::covariant);
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    const double wavelength = samples[s].wavelength;
-    const double f11 = prepared(wavelength).f11(samples[s].geometry) / first.reflectance.at(wavelength);
-    if (!(f11 > 0))
-      throw std::invalid_argument("speckle weights: f11 of the unweighted fit is " + shortest(f11) + " at sample " +
-                                  std::to_string(s + 1));
-    weights[s] /= f11 * f11;
-  }
-  return weights;
+Mueller ones() {
+  Mueller result;
+  result.elements.fill(1);
+  return result;
 }
 
 }  // namespace
 
+std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model) {
+  std::vector<Mueller> weights;
+  PreparedAt prepared(model, Rotation::covariant);
+  for (const Sample& sample : samples) {
+    const auto refuse = [&](const std::string& reason) {
+      throw std::invalid_argument("speckle weights: sample " + std::to_string(weights.size() + 1) + reason);
+    };
+    const double cos_i = std::cos(sample.geometry.incident.theta), cos_r = std::cos(sample.geometry.reflected.theta);
+    if (!(cos_i > 1e-12)) refuse(" has theta_i = 90 degrees");
+    const double f11 = prepared(sample.wavelength).f11(sample.geometry) / model.reflectance.at(sample.wavelength);
+    if (!(f11 > 0)) refuse(" is where f11 of the unweighted fit is " + shortest(f11));
+    Mueller weight;
+    weight.elements.fill(std::max(0.0, cos_r / cos_i));
+    weight(0, 0) /= f11 * f11;
+    weights.push_back(weight);
+  }
+  return weights;
+}
+
 FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
   FitAccumulator accumulator(basis);
   accumulator.add(samples);
-  FitResult result = accumulator.solve(options);
+  FitResult result = accumulator.solved(options);
+  std::vector<Mueller> list;
   if (weights == Weights::speckle) {
-    const std::vector<double> relative = speckle_weights(samples);
-    FitAccumulator weighted(basis);
-    weighted.add(samples, relative, relative_weights(result.model, samples, relative));
-    result = weighted.solve(options);
+    list = speckle_weights(samples, result.model);
+    accumulator = FitAccumulator(basis);
+    accumulator.add(samples, list);
+    result = accumulator.solved(options);
   }
-  result.residuals = residuals(result.model, samples);
+  result.residuals = residuals(result.model, samples, basis.rotation);
+  if (options.covariance == Covariance::sandwich) {
+    list.resize(samples.size(), ones());
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      const double phi_i = samples[s].geometry.incident.phi;
+      Mueller r = accumulator.turns() ? turned(result.residuals[s], -phi_i) : result.residuals[s];
+      r(0, 0) /= result.model.reflectance.at(samples[s].wavelength);
+      for (std::size_t e = 0; e < 16; ++e) list[s].elements[e] *= list[s].elements[e] * r.elements[e] * r.elements[e];
+    }
+    FitAccumulator squares(basis);
+    squares.add(samples, list);
+    accumulator.use_sandwich(result, options, squares);
+  }
   return result;
 }
 

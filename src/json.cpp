@@ -140,10 +140,19 @@ Validity read_validity(const Field& field) {
   return validity;
 }
 
-ReflectanceTable read_reflectance(const Field& field) {
-  field.require_no_other_than({"wavelengths_um", "values"});
+ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficients) {
+  field.require_no_other_than({"wavelengths_um", "values", "covariance", "covariance_with_f11"});
   ReflectanceTable table{field["wavelengths_um"].numbers(), field["values"].numbers()};
   if (table.wavelengths.empty()) field["wavelengths_um"].refuse("must not be empty");
+  if (field.has("covariance")) {
+    const std::size_t count = table.values.size();
+    table.covariance = read_covariance(field["covariance"], count);
+    table.covariance_with_f11 = field["covariance_with_f11"].numbers();
+    require_count(field["covariance_with_f11"], table.covariance_with_f11.size(), count * f11_coefficients,
+                  std::to_string(f11_coefficients) + " for each value");
+  } else if (field.has("covariance_with_f11")) {
+    field["covariance_with_f11"].refuse("there is no covariance of the values beside it");
+  }
   checked(field, [&] { require_valid(table); });
   return table;
 }
@@ -173,7 +182,8 @@ Model read_model(const Field& root) {
   if (root["orders"].numbers() != std::vector<double>{double(found.f11), double(found.other)})
     root["orders"].refuse("must be [" + std::to_string(found.f11) + ", " + std::to_string(found.other) +
                           "], the highest orders among the modes");
-  if (root.has("reflectance")) model.reflectance = read_reflectance(root["reflectance"]);
+  if (root.has("reflectance"))
+    model.reflectance = read_reflectance(root["reflectance"], model.blocks.front().coefficients.size());
   model.validity = read_validity(root["validity"]);
   model.provenance = root["provenance"].texts();
   checked(root, [&] { require_valid(model); });
@@ -263,19 +273,30 @@ void require_finite(const std::vector<double>& values, const std::string& what) 
     throw std::invalid_argument("to_json: " + what + " must be finite");
 }
 
+/// Of a square matrix, row by row with the diagonal.
+std::vector<double> lower_triangle(const std::vector<double>& square, std::size_t size) {
+  std::vector<double> triangle;
+  for (std::size_t row = 0; row < size; ++row)
+    triangle.insert(triangle.end(), &square[row * size], &square[row * size] + row + 1);
+  return triangle;
+}
+
+ordered_json reflectance_json(const ReflectanceTable& table) {
+  ordered_json result = {{"wavelengths_um", table.wavelengths}, {"values", table.values}};
+  if (!table.covariance.empty()) {
+    result["covariance"] = lower_triangle(table.covariance, table.values.size());
+    result["covariance_with_f11"] = table.covariance_with_f11;
+  }
+  return result;
+}
+
 ordered_json block_json(const FittedBlock& fitted) {
   require_finite({fitted.condition}, "condition of block " + fitted.block.name);
   ordered_json result = {{"elements", fitted.block.name}, {"modes", ordered_json::array()}};
   for (const auto& [function, n, m, k, l] : fitted.block.modes)
     result["modes"].push_back({to_string(function), n, m, k, l});
   result["coefficients"] = fitted.coefficients;
-  const std::size_t size = fitted.coefficients.size();
-  if (!fitted.covariance.empty()) {
-    std::vector<double> triangle;
-    for (std::size_t row = 0; row < size; ++row)
-      triangle.insert(triangle.end(), &fitted.covariance[row * size], &fitted.covariance[row * size] + row + 1);
-    result["covariance"] = triangle;
-  }
+  if (!fitted.covariance.empty()) result["covariance"] = lower_triangle(fitted.covariance, fitted.coefficients.size());
   if (fitted.rank > 0) result["rank"] = fitted.rank;
   if (fitted.condition > 0) result["condition"] = fitted.condition;
   return result;
@@ -300,8 +321,7 @@ ordered_json model_json(const Model& model) {
   root["validity"] = {{"wavelengths_um", model.validity.wavelengths},
                       {"theta_i_max_deg", angle_json(model.validity.theta_i_max)},
                       {"theta_r_max_deg", angle_json(model.validity.theta_r_max)}};
-  if (!model.reflectance.wavelengths.empty())
-    root["reflectance"] = {{"wavelengths_um", model.reflectance.wavelengths}, {"values", model.reflectance.values}};
+  if (!model.reflectance.wavelengths.empty()) root["reflectance"] = reflectance_json(model.reflectance);
   root["provenance"] = model.provenance;
   root["blocks"] = ordered_json::array();
   for (const FittedBlock& fitted : model.blocks) root["blocks"].push_back(block_json(fitted));

@@ -156,6 +156,20 @@ double LeastSquares::residual_norm(std::span<const double> x) const {
   return VectorXd(triangle.triangularView<Eigen::Upper>() * extended).stableNorm();
 }
 
+std::vector<double> LeastSquares::normal_matrix() const {
+  const Eigen::Map<const MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
+  const MatrixXd r = triangle.topLeftCorner(unknowns_, unknowns_).triangularView<Eigen::Upper>();
+  const MatrixXd product = r.transpose() * r;
+  return {product.data(), product.data() + product.size()};
+}
+
+std::vector<double> LeastSquares::normal_vector() const {
+  const Eigen::Map<const MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
+  const VectorXd product = triangle.topLeftCorner(unknowns_, unknowns_).triangularView<Eigen::Upper>().transpose() *
+                           triangle.col(unknowns_).head(unknowns_);
+  return {product.data(), product.data() + product.size()};
+}
+
 std::vector<double> LeastSquares::state() const {
   std::vector<double> result;
   result.reserve(width() * (width() + 1) / 2 + 1);

@@ -88,14 +88,26 @@ void require_wavelength(double wavelength) {
     throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is more than a metre");
 }
 
+std::vector<double> ReflectanceTable::weights(double wavelength) const {
+  std::vector<double> result(values.size());
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
+  if (values.empty()) return result;
+  if (above == wavelengths.begin() || above == wavelengths.end()) {
+    result[above == wavelengths.begin() ? 0 : values.size() - 1] = 1;
+    return result;
+  }
+  result[i] = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  result[i - 1] = 1 - result[i];
+  return result;
+}
+
 double ReflectanceTable::at(double wavelength) const {
   if (values.empty()) return 1;
-  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
-  if (above == wavelengths.begin()) return values.front();
-  if (above == wavelengths.end()) return values.back();
-  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
-  const double t = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
-  return t == 0 ? values[i - 1] : (1 - t) * values[i - 1] + t * values[i];
+  double sum = 0;
+  const std::vector<double> weight = weights(wavelength);
+  for (std::size_t i = 0; i < values.size(); ++i) sum += weight[i] * values[i];
+  return sum;
 }
 
 void require_valid(const ReflectanceTable& table) {
@@ -110,6 +122,15 @@ void require_valid(const ReflectanceTable& table) {
     if (!(table.values[i] > 0) || !std::isfinite(table.values[i]))
       throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not positive");
   }
+  const std::size_t count = table.values.size();
+  if (!table.covariance.empty() && table.covariance.size() != count * count)
+    throw std::invalid_argument("reflectance table: covariance of " + std::to_string(table.covariance.size()) +
+                                " numbers, expected " + std::to_string(count * count));
+  if (table.covariance.empty() && !table.covariance_with_f11.empty())
+    throw std::invalid_argument("reflectance table: a covariance with the coefficients, but none of its own");
+  for (const auto& list : {table.covariance, table.covariance_with_f11})
+    if (!std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }))
+      throw std::invalid_argument("reflectance table: a covariance is not finite");
 }
 
 std::string to_string(Outside outside) {
@@ -174,6 +195,13 @@ void require_valid(const Model& model) {
       throw std::invalid_argument(where + "a number is not finite");
   }
   require_valid(model.reflectance);
+  const std::size_t with_f11 = model.reflectance.covariance.empty()
+                                   ? 0
+                                   : model.reflectance.values.size() * model.blocks.front().coefficients.size();
+  if (model.reflectance.covariance_with_f11.size() != with_f11)
+    throw std::invalid_argument("reflectance table: covariance with the coefficients of " +
+                                std::to_string(model.reflectance.covariance_with_f11.size()) + " numbers, expected " +
+                                std::to_string(with_f11));
   require_valid(model.validity);
 }
 

@@ -38,25 +38,32 @@ std::vector<Node> gauss_legendre(int count) {
   return nodes;
 }
 
+std::vector<double> directional_hemispherical_slopes(const Block& f11, Family family, DiscMapping mapping,
+                                                     const Direction& incident) {
+  require_valid(Geometry{incident, {}}, "directional_hemispherical_reflectance");
+  std::array<double, zernike_count(max_order)> k_i;
+  zernike_table(orders({f11}).f11, disc_point(incident, mapping), k_i.data());
+  std::vector<double> slopes;
+  for (const Mode& mode : f11.modes) {
+    double slope = 0;
+    for (const Term& term : terms(mode, family))
+      for (const int n : {0, 2})  // all others integrate to 0
+        if (term.reflected == zernike_index(n, 0))
+          slope += term.weight * k_i[static_cast<std::size_t>(term.incident)] * projected_integral(n, mapping);
+    slopes.push_back(slope);
+  }
+  return slopes;
+}
+
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident) {
   require_valid(model);
-  require_valid(Geometry{incident, {}}, "directional_hemispherical_reflectance");
   require_wavelength(wavelength);
   const FittedBlock& f11 = model.blocks.front();
-  std::array<double, zernike_count(max_order)> k_i;
-  zernike_table(orders(model).f11, disc_point(incident, model.mapping), k_i.data());
-  const std::array<std::pair<int, double>, 2> integrals{{{zernike_index(0, 0), projected_integral(0, model.mapping)},
-                                                         {zernike_index(2, 0), projected_integral(2, model.mapping)}}};
+  const std::vector<double> slopes = directional_hemispherical_slopes(f11.block, model.family, model.mapping, incident);
   double sum = 0, power = 1;
-  std::size_t next = 0;
+  auto coefficient = f11.coefficients.begin();
   for (int p = 0; p <= model.powers; ++p, power *= wavelength)
-    for (const Mode& mode : f11.block.modes) {
-      const double coefficient = power * f11.coefficients[next++];
-      for (const Term& term : terms(mode, model.family))
-        for (const auto& [index, integral] : integrals)
-          if (term.reflected == index)
-            sum += coefficient * term.weight * k_i[static_cast<std::size_t>(term.incident)] * integral;
-    }
+    for (const double slope : slopes) sum += power * *coefficient++ * slope;
   return model.reflectance.at(wavelength) * sum;
 }
 

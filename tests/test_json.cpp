@@ -36,7 +36,9 @@ Model any_model(Family family = Family::isotropic, unsigned seed = 1) {
     fitted.block = std::move(block);
     model.blocks.push_back(std::move(fitted));
   }
-  model.reflectance = {{0.351, 0.532}, {0.976, 0.984}};
+  model.reflectance = {{0.351, 0.532}, {0.976, 0.984}, {4, -0.1, -0.1, 9}};
+  for (std::size_t i = 0; i < 2 * model.blocks[0].coefficients.size(); ++i)
+    model.reflectance.covariance_with_f11.push_back(number());
   model.validity = {{0.351, 1.0 / 3, 0.532}, radians(75), 1.4289};
   model.provenance = {{"data", "measured on a Monday"}, {"command", "mmbrdf fit \"d.csv\""}};
   std::sort(model.validity.wavelengths.begin(), model.validity.wavelengths.end());
@@ -60,6 +62,8 @@ void expect_same(const Model& a, const Model& b) {
   }
   EXPECT_EQ(a.reflectance.wavelengths, b.reflectance.wavelengths);
   EXPECT_EQ(a.reflectance.values, b.reflectance.values);
+  EXPECT_EQ(a.reflectance.covariance, b.reflectance.covariance);
+  EXPECT_EQ(a.reflectance.covariance_with_f11, b.reflectance.covariance_with_f11);
   EXPECT_EQ(a.validity.wavelengths, b.validity.wavelengths);
   ASSERT_EQ(a.validity.theta_i_max.has_value(), b.validity.theta_i_max.has_value());
   ASSERT_EQ(a.validity.theta_r_max.has_value(), b.validity.theta_r_max.has_value());
@@ -218,6 +222,12 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
       {"\"values\": [0.9]", "\"values\": [0.9, 1]", "m.json: reflectance: "},
       {"\"values\": [0.9]", "\"values\": [-0.9]", "m.json: reflectance: "},
       {"\"reflectance\"", "\"reflectence\"", "m.json: reflectence: unknown field"},
+      {"\"values\": [0.9]", "\"values\": [0.9], \"covariance\": [1, 2], \"covariance_with_f11\": [0]",
+       "m.json: reflectance.covariance: 2 numbers in place of 1"},
+      {"\"values\": [0.9]", "\"values\": [0.9], \"covariance\": [1], \"covariance_with_f11\": [0, 1]",
+       "m.json: reflectance.covariance_with_f11: 2 numbers in place of 1"},
+      {"\"values\": [0.9]", "\"values\": [0.9], \"covariance_with_f11\": [0]",
+       "m.json: reflectance.covariance_with_f11: there is no covariance"},
       {"\"rank\"", "\"ranc\"", "m.json: blocks[0].ranc: unknown field"},
       {"\"provenance\": {}", "\"provenance\": {\"data\": 1}", "m.json: provenance.data: must be a string, not 1"},
       {"\"name\": \"small\"", "\"name\": \"small\", \"name\": \"other\"", "m.json: the field 'name' is there twice"},

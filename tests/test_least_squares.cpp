@@ -186,6 +186,15 @@ RC_GTEST_PROP(LeastSquares, KnowsTheResidualNormOfItsSolutionAndOfAnyOtherX, ())
 
 // Läuchli: AᵀA is [1+ε² 1 1; …], which is the singular matrix of ones in double precision. The condition of A, 1.7e9,
 // times 1.1e-16 is an error of 2e-7.
+TEST(LeastSquares, GivesTheNormalEquationsOfItsRows) {
+  LeastSquares all(2);
+  all.add(Numbers{1, 2, 3, 5}, Numbers{1, -1}, Numbers{1, 4});
+  const Numbers matrix = all.normal_matrix(), right = all.normal_vector();
+  const Numbers expected_matrix{37, 62, 62, 104}, expected_right{-11, -18};  // Σ w x xᵀ and Σ w x y
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(matrix[i], expected_matrix[i], 1e-12);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(right[i], expected_right[i], 1e-12);
+}
+
 TEST(LeastSquares, SolvesALaeuchliMatrixWhoseNormalEquationsAreSingular) {
   const double eps = 1e-9;
   ASSERT_EQ(1 + eps * eps, 1);

@@ -10,7 +10,8 @@
 /// That holds for independent errors whose variances are as 1/W. Speckle noise grows towards grazing angles: use
 /// Weights::speckle for it. It does not hold where the model misses structure that the sample has; then s² contains the
 /// misfit, but correlated. Blocks are fitted apart from each other, so coefficients of different blocks are
-/// uncorrelated.
+/// uncorrelated. A reflectance that comes from the data themselves has errors of its own, which also enter the
+/// coefficients of f11: the model keeps the covariance of both.
 ///
 /// WARNING: the published index sets (germer2017) are not determined by data with one azimuth of the source. Their
 /// solution is the one of minimum norm, as in the published files, and combinations that the data say nothing about
@@ -29,11 +30,14 @@
 
 namespace mmbrdf {
 
-/// What is fitted: which modes. Samples for germer2017 are turned to phi_i = 0 first, as its models are evaluated.
+/// What is fitted: which modes, and how azimuths enter. Samples for germer2017 are turned to phi_i = 0 first, as its
+/// models are evaluated, unless rotation is as_printed: then they are fitted at the azimuths they have, to compare with
+/// what the paper did, and the model must be evaluated so.
 struct Basis {
   Family family = Family::isotropic;
   Orders orders;
   DiscMapping mapping = DiscMapping::lambert;
+  Rotation rotation = Rotation::covariant;
   friend bool operator==(const Basis&, const Basis&) = default;
 };
 
@@ -41,6 +45,12 @@ enum class Weights {
   none,  ///< every row counts the same
   speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1).
             ///< f11 is then fitted twice: the first, unweighted fit tells what σ is relative to.
+};
+
+enum class Covariance {
+  residuals,  ///< s² (Xᵀ W X)⁺: right if the weights are as 1/variance
+  sandwich,  ///< (Xᵀ W X)⁺ Xᵀ W diag(r²) W X (Xᵀ W X)⁺ × rows / (rows − rank): for residuals that are not as uniform as
+             ///< the weights say. Errors of different elements count as independent. White 1980.
 };
 
 struct FitOptions {
@@ -52,6 +62,7 @@ struct FitOptions {
   /// Singular values below this part of the largest count as 0: 1e-8 to 1e-13 all give the published files, and the
   /// published grid, whose incidence at 0.001 degrees is as good as 0, is found not to determine order 11.
   double rank_tolerance = 1e-8;
+  Covariance covariance = Covariance::residuals;  ///< sandwich needs the samples again: only in fit()
 };
 
 /// How well one matrix element is fitted. An element without modes is 0 in the model, and its samples are the
@@ -80,10 +91,10 @@ class FitAccumulator {
   /// Throws std::invalid_argument for orders that are out of range or need more than LeastSquares::max_unknowns.
   explicit FitAccumulator(const Basis& basis);
 
-  /// Weights, one for each sample, are for m_ij; f11_weights for f11 / reflectance. Empty means 1.
-  /// Throws std::invalid_argument for an invalid sample, before anything is added.
-  void add(std::span<const Sample> samples, std::span<const double> weights = {},
-           std::span<const double> f11_weights = {});
+  /// Weights, one matrix for each sample: element 11 is the weight of f11 / reflectance, the others those of m_ij (of
+  /// the turned m_ij where samples are turned). Empty means 1. Throws std::invalid_argument for an invalid sample or
+  /// weight, before anything is added.
+  void add(std::span<const Sample> samples, std::span<const Mueller> weights = {});
 
   /// As if all of other's samples had been added here. Throws std::invalid_argument for another basis.
   void merge(const FitAccumulator& other);
@@ -91,8 +102,8 @@ class FitAccumulator {
   long samples() const { return samples_; }
 
   /// Throws std::invalid_argument if there are no samples, if the powers need more wavelengths than there are, if a
-  /// reflectance table does not reach a wavelength, or if the samples do not determine the model and minimum_norm
-  /// is off: the message says how many combinations of which modes are free.
+  /// reflectance table does not reach a wavelength, if the samples do not determine the model and minimum_norm
+  /// is off: the message says how many combinations of which modes are free; or for a sandwich covariance.
   FitResult solve(const FitOptions& options = {}) const;
 
  private:
@@ -109,7 +120,14 @@ class FitAccumulator {
 
   AtWavelength& slot(double wavelength);
   void add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
-                std::span<const double> weights, std::span<const double> f11_weights);
+                std::span<const Mueller> weights);
+  friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);
+  FitResult solved(const FitOptions& options) const;
+  void add_own_reflectance_covariance(FitResult& result, double rank_tolerance, const FitAccumulator* squares) const;
+  void use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const;
+  static double small_sample_factor(const Solution& solution);
+  bool takes_own_reflectance(const FitOptions& options) const;
+  bool turns() const;
   bool accepts_minimum_norm(const FitOptions& options) const;
   int chosen_powers(const FitOptions& options) const;
   ReflectanceTable own_reflectance(const FitOptions& options) const;
@@ -130,9 +148,10 @@ class FitAccumulator {
 FitResult fit(std::span<const Sample> samples, const Basis& basis = {}, const FitOptions& options = {},
               Weights weights = Weights::none);
 
-/// Relative weights of the speckle law for m_ij: cos θr / cos θi. Throws std::invalid_argument, with the sample's
-/// number, where θi is 90 degrees.
-std::vector<double> speckle_weights(std::span<const Sample> samples);
+/// Relative weights of the speckle law, as FitAccumulator::add takes them: w = cos θr / cos θi for m_ij, and for f11 /
+/// reflectance w / (f11 / reflectance)² with the f11 of `model`, to which its noise is relative. Throws
+/// std::invalid_argument, with the sample's number, where θi is 90 degrees or f11 of the model is not positive.
+std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model);
 
 /// Measured − model for each sample, as in FitResult.
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,

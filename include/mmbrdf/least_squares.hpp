@@ -52,6 +52,10 @@ class LeastSquares {
   /// ‖A x − b‖ for any x of the right size.
   double residual_norm(std::span<const double> x) const;
 
+  /// Aᵀ A, n × n, and Aᵀ b. For covariances: to solve with them would square the condition number.
+  std::vector<double> normal_matrix() const;
+  std::vector<double> normal_vector() const;
+
   int unknowns() const { return unknowns_; }
   long rows() const { return rows_; }
 

@@ -18,12 +18,16 @@ namespace mmbrdf {
 /// Directional-hemispherical reflectance by wavelength, linear between the nodes, constant beyond them. It multiplies
 /// f11 of models that were fitted to several wavelengths. Empty: factor 1.
 struct ReflectanceTable {
-  std::vector<double> wavelengths;  ///< micrometres, rising
-  std::vector<double> values;
+  std::vector<double> wavelengths{};          ///< micrometres, rising
+  std::vector<double> values{};               ///< one for each
+  std::vector<double> covariance{};           ///< of the values, square and row-major; empty: they count as exact
+  std::vector<double> covariance_with_f11{};  ///< of each value (row) with each coefficient of block 11; empty with it
   double at(double wavelength) const;
+  std::vector<double> weights(double wavelength) const;  ///< at(wavelength) = Σ weights × values
 };
 
-/// Throws std::invalid_argument unless sizes agree, wavelengths rise and are positive, and values are positive.
+/// Throws std::invalid_argument unless sizes agree, wavelengths rise and are positive, values are positive and
+/// covariances finite.
 void require_valid(const ReflectanceTable& table);
 
 /// Where the data were that a model was fitted to. Published coefficient files do not say it.

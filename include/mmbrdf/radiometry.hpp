@@ -20,6 +20,12 @@ std::vector<Node> gauss_legendre(int count);
 /// ∫ K_n^0 cos θ dΩ over the hemisphere; all other K integrate to 0.
 double projected_integral(int n, DiscMapping mapping);
 
+/// Slopes of the directional-hemispherical reflectance over the coefficients of the modes of element 11, for one power
+/// of the wavelength and without reflectance table: it is linear in them. Throws std::invalid_argument for an invalid
+/// direction, or modes that are not of the family.
+std::vector<double> directional_hemispherical_slopes(const Block& f11, Family family, DiscMapping mapping,
+                                                     const Direction& incident);
+
 /// Directional-hemispherical reflectance for unpolarized light, ∫ f11 cos θ_r dΩ_r over the hemisphere, reflectance
 /// table included (theory 4.3). Dimensionless. For a reflectance of about 1 exact to dhr_error: the integral of each
 /// mode is known,

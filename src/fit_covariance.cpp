@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Core>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "mmbrdf/fit.hpp"
+#include "mmbrdf/radiometry.hpp"
+
+// Covariances of a fit that are not s² (XᵀWX)⁺.
+//
+//   X, W, y   rows, weights and values at one wavelength, τ = XᵀW y; f11 is divided by the reflectance R
+//   Λ         repeats a row over the powers of the wavelength: (1, λ, λ², …) ⊗ row
+//   G         (Σ Λ XᵀWX Λᵀ)⁺ of the fit over all wavelengths, a = G Σ Λ τ
+//   P, d      (XᵀWX)⁺ of f11 at one wavelength alone; its reflectance is R = dᵀ P XᵀW (R y)
+//   C         covariance of τ at one wavelength: s² XᵀWX, or Σ w² r² x xᵀ from the residuals r ("sandwich")
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Index index(std::size_t n) { return static_cast<Index>(n); }
+
+/// Symmetric or square matrices in row-major order.
+MatrixXd square(const std::vector<double>& values, Index size) {
+  return Eigen::Map<const MatrixXd>(values.data(), size, size).transpose();
+}
+
+VectorXd vector(const std::vector<double>& values) {
+  return Eigen::Map<const VectorXd>(values.data(), index(values.size()));
+}
+
+std::vector<double> row_major(const MatrixXd& m) {
+  const MatrixXd transposed = m.transpose();
+  return {transposed.data(), transposed.data() + transposed.size()};
+}
+
+/// (1, λ, λ², …) ⊗ 1
+MatrixXd repetition(Index modes, int powers, double wavelength) {
+  MatrixXd result(modes * (powers + 1), modes);
+  double power = 1;
+  for (int p = 0; p <= powers; ++p, power *= wavelength)
+    result.middleRows(p * modes, modes) = power * MatrixXd::Identity(modes, modes);
+  return result;
+}
+
+}  // namespace
+
+/// With a reflectance from the data themselves an error ε of τ changes both R, by R dᵀP ε, and what y is divided by:
+///   dR = R dᵀP ε,     da = G Λ (ε − τ dR / R).
+void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double rank_tolerance,
+                                                    const FitAccumulator* squares) const {
+  Model& model = result.model;
+  const Solution& f11 = result.solutions.front();
+  const Index modes = index(blocks_.front().modes.size()), size = index(f11.x.size()),
+              count = index(wavelengths_.size());
+  const MatrixXd g = square(f11.inverse, size);
+  const VectorXd d = vector(directional_hemispherical_slopes(blocks_.front(), basis_.family, basis_.mapping, {}));
+  MatrixXd covariance = MatrixXd::Zero(size + count, size + count);  // of a, then of R
+  Index k = 0;
+  for (const auto& [wavelength, at] : wavelengths_) {
+    const LeastSquares& rows = at.elements.front();
+    const double reflectance = model.reflectance.values[static_cast<std::size_t>(k)];
+    const VectorXd tau = vector(rows.normal_vector()) / reflectance;
+    const VectorXd q = square(rows.solve(rank_tolerance).inverse, modes) * d;
+    const MatrixXd c = squares ? square(squares->wavelengths_.at(wavelength).elements.front().normal_matrix(), modes)
+                               : MatrixXd(f11.variance() * square(rows.normal_matrix(), modes));
+    MatrixXd slopes = MatrixXd::Zero(size + count, modes);
+    slopes.topRows(size) =
+        g * repetition(modes, model.powers, wavelength) * (MatrixXd::Identity(modes, modes) - tau * q.transpose());
+    slopes.row(size + k) = reflectance * q.transpose();
+    covariance += slopes * c * slopes.transpose();
+    ++k;
+  }
+  if (squares) covariance *= small_sample_factor(f11);
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+  model.blocks.front().covariance = row_major(covariance.topLeftCorner(size, size));
+  model.reflectance.covariance = row_major(covariance.bottomRightCorner(count, count));
+  model.reflectance.covariance_with_f11 = row_major(covariance.bottomLeftCorner(count, size));
+}
+
+/// G (Σ w² r² x xᵀ) G over the rows of each block; `squares` holds the rows with weights w² r².
+void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const {
+  Model& model = result.model;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Solution& solution = result.solutions[b];
+    if (solution.degrees_of_freedom() <= 0) continue;
+    const Index size = index(solution.x.size());
+    MatrixXd middle = MatrixXd::Zero(size, size);
+    for (const auto& [row, column] : blocks_[b].elements)
+      middle += square(
+          squares.over_wavelengths(static_cast<std::size_t>(4 * row + column), model.powers, {}).normal_matrix(), size);
+    const MatrixXd g = square(solution.inverse, size);
+    const MatrixXd half = g * middle * g * small_sample_factor(solution);
+    model.blocks[b].covariance = row_major(0.5 * (half + half.transpose()));
+  }
+  if (takes_own_reflectance(options)) add_own_reflectance_covariance(result, options.rank_tolerance, &squares);
+}
+
+double FitAccumulator::small_sample_factor(const Solution& solution) {
+  return static_cast<double>(solution.rows) / static_cast<double>(solution.degrees_of_freedom());
+}
+
+}  // namespace mmbrdf
