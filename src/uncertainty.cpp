@@ -4,18 +4,21 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mmbrdf/radiometry.hpp"
+#include "numbers.hpp"
 
-// A prediction is linear in the coefficients of each block: element e is g_e · a(λ), with a(λ) = Σ_p λ^p a_p. So
+// Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
 //   cov(e, e') = g_eᵀ V(λ) g_e',     V(λ)_qq' = Σ_pp' λ^{p+p'} V_pq,p'q'
 //
-// within a block, and 0 between blocks. A change of frame, and the turning of published models, are M → L M R.
+// within a block, and 0 between blocks. Where R has a covariance it is one more parameter of block 11, with the slope
+// g_11 · a(λ). A change of frame, and the turning of published models, are M → L M R.
 
 namespace mmbrdf {
 namespace {
@@ -39,14 +42,28 @@ struct BlockAt {
   std::vector<std::size_t> elements;
   std::vector<std::vector<ModeTerm>> terms;  // for each of these elements
   VectorXd coefficients;                     // a(λ)
-  MatrixXd covariance;                       // V(λ)
+  MatrixXd covariance;                       // V(λ), of all parameters
   MatrixXd free;                             // combinations that the data leave free, folded at λ: modes × number
   double lengthening = 1;                    // of a row over the modes to the row over all powers
+  double reflectance = 1;                    // R(λ), of block 11
+  Index first = 0;                           // of its parameters among those of all blocks
 
+  Index modes() const { return coefficients.size(); }
+  bool knows_reflectance() const { return covariance.rows() > modes(); }
+
+  /// g_e
   VectorXd row(std::size_t element, const Table& k_i, const Table& k_r) const {
-    VectorXd g = VectorXd::Zero(covariance.rows());
+    VectorXd g = VectorXd::Zero(modes());
     for (const ModeTerm& t : terms[element]) g(t.mode) += t.weight * k_i[t.incident] * k_r[t.reflected];
     return g;
+  }
+
+  /// Slopes of R g · a over the parameters.
+  VectorXd slopes(const VectorXd& g) const {
+    VectorXd result(covariance.rows());
+    result.head(modes()) = reflectance * g;
+    if (knows_reflectance()) result(modes()) = g.dot(coefficients);
+    return result;
   }
 };
 
@@ -60,6 +77,34 @@ MatrixXd free_combinations(const FittedBlock& fitted) {
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance).eigenvectors().leftCols(free);
 }
 
+/// Covariance of a(λ), and of R(λ) behind it where that is block 11 and R has a covariance.
+MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, const ReflectanceTable& table,
+                           double wavelength) {
+  const Index size = fold.rows(), modes = fold.cols();
+  const MatrixXd own = fold.transpose() * Eigen::Map<const MatrixXd>(fitted.covariance.data(), size, size) * fold;
+  if (fitted.block.name != "11" || table.covariance.empty()) return own;
+  const std::vector<double> weights = table.weights(wavelength);
+  const Index count = index(weights.size());
+  const Eigen::Map<const VectorXd> w(weights.data(), count);
+  const Eigen::Map<const MatrixXd> with_f11(table.covariance_with_f11.data(), size, count);  // row-major, transposed
+  MatrixXd result(modes + 1, modes + 1);
+  result.topLeftCorner(modes, modes) = own;
+  result.col(modes).head(modes) = fold.transpose() * with_f11 * w;
+  result.row(modes).head(modes) = result.col(modes).head(modes).transpose();
+  result(modes, modes) = w.dot(Eigen::Map<const MatrixXd>(table.covariance.data(), count, count) * w);
+  return result;
+}
+
+void require_covariance(const MatrixXd& covariance, const std::string& block) {
+  const VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
+  const double lowest = eigenvalues(0), highest = std::max(eigenvalues(eigenvalues.size() - 1), 0.0);
+  if (lowest < -covariance_tolerance * highest)
+    throw std::invalid_argument("the covariance of block " + block +
+                                " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
+                                shortest(highest));
+}
+
 BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelength) {
   if (fitted.covariance.empty())
     throw std::invalid_argument("the covariance of block " + fitted.block.name + " is not known");
@@ -70,13 +115,13 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
     fold.middleRows(p * modes, modes).diagonal().setConstant(power);
     squares += power * power;
   }
-  const double scale = fitted.block.name == "11" ? model.reflectance.at(wavelength) : 1;
   BlockAt result;
-  result.coefficients = scale * fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
-  result.covariance =
-      scale * scale * fold.transpose() * Eigen::Map<const MatrixXd>(fitted.covariance.data(), size, size) * fold;
+  if (fitted.block.name == "11") result.reflectance = model.reflectance.at(wavelength);
+  result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
+  result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
+  require_covariance(result.covariance, fitted.block.name);
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = std::sqrt(squares);
   result.terms.resize(fitted.block.elements.size());
@@ -110,6 +155,7 @@ MuellerCovariance mapped(const MuellerCovariance& c, const Mueller& left, const 
 
 struct PreparedUncertainty::Blocks {
   std::vector<BlockAt> list;
+  Index parameters = 0;
   int order = 0;
   DiscMapping mapping = DiscMapping::lambert;
   bool turns = false;
@@ -121,6 +167,55 @@ struct PreparedUncertainty::Blocks {
     zernike_table(order, disc_point(Direction{i.theta, i.phi - turn}, mapping), result.first.data());
     zernike_table(order, disc_point(Direction{r.theta, r.phi - turn}, mapping), result.second.data());
     return result;
+  }
+
+  /// L and R of M → L M R that brings what the modes give into a frame.
+  std::pair<Mueller, Mueller> to_frame(const Geometry& geometry, Frame frame) const {
+    const Mueller turn = rotator(turns ? -geometry.incident.phi : 0);
+    const FrameAngles angles = angles_to_xy(geometry, frame);
+    return {rotator(-angles.scattered) * turn, turn * rotator(angles.incident)};
+  }
+};
+
+/// f11 and the normalised elements at a geometry, as the modes give them, with their slopes over the parameters of the
+/// block of each.
+struct PreparedUncertainty::Slopes {
+  Mueller m;
+  std::array<VectorXd, 16> slopes;  // empty for elements without modes
+  std::array<const BlockAt*, 16> block{};
+
+  Slopes(const Blocks& blocks, const Geometry& geometry) {
+    require_valid(geometry, "uncertainty");
+    const auto [k_i, k_r] = blocks.tables(geometry);
+    for (const BlockAt& b : blocks.list)
+      for (std::size_t e = 0; e < b.elements.size(); ++e) {
+        const VectorXd g = b.row(e, k_i, k_r);
+        m.elements[b.elements[e]] = b.reflectance * g.dot(b.coefficients);
+        slopes[b.elements[e]] = b.slopes(g);
+        block[b.elements[e]] = &b;
+      }
+  }
+
+  MuellerCovariance covariance() const {
+    MuellerCovariance c;
+    for (std::size_t e = 0; e < 16; ++e) {
+      if (!block[e]) continue;
+      const VectorXd product = block[e]->covariance * slopes[e];
+      for (std::size_t other = 0; other <= e; ++other)
+        if (block[other] == block[e]) c(e, other) = c(other, e) = slopes[other].dot(product);
+    }
+    return c;
+  }
+
+  /// Adds weight × the slopes of F = f11 m, F_11 = f11: dF_e = m_e df11 + f11 dm_e.
+  void add_to(MatrixXd& gradient, double weight) const {
+    const Index first = block[0]->first, size = slopes[0].size();
+    for (std::size_t e = 0; e < 16; ++e) {
+      auto row = gradient.row(index(e));
+      row.segment(first, size) += weight * (e == 0 ? 1 : m.elements[e]) * slopes[0].transpose();
+      if (e > 0 && block[e])
+        row.segment(block[e]->first, slopes[e].size()) += weight * m.elements[0] * slopes[e].transpose();
+    }
   }
 };
 
@@ -140,46 +235,82 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, R
   blocks->order = std::max(highest.f11, highest.other);
   blocks->mapping = model.mapping;
   blocks->turns = model.family == Family::germer2017 && rotation == Rotation::covariant;
-  for (const FittedBlock& fitted : model.blocks) blocks->list.push_back(block_at(fitted, model, wavelength));
+  for (const FittedBlock& fitted : model.blocks) {
+    blocks->list.push_back(block_at(fitted, model, wavelength));
+    blocks->list.back().first = blocks->parameters;
+    blocks->parameters += blocks->list.back().covariance.rows();
+  }
   return PreparedUncertainty(std::move(blocks));
 }
 
-PreparedUncertainty::Estimate PreparedUncertainty::estimate(const Geometry& geometry, Frame frame) const {
-  require_valid(geometry, "uncertainty");
-  const auto [k_i, k_r] = blocks_->tables(geometry);
-  Mueller m;
-  MuellerCovariance c;
-  for (const BlockAt& block : blocks_->list) {
-    std::vector<VectorXd> rows;
-    for (std::size_t e = 0; e < block.elements.size(); ++e) rows.push_back(block.row(e, k_i, k_r));
-    for (std::size_t e = 0; e < rows.size(); ++e) {
-      m.elements[block.elements[e]] = rows[e].dot(block.coefficients);
-      const VectorXd product = block.covariance * rows[e];
-      for (std::size_t other = 0; other <= e; ++other)
-        c(block.elements[e], block.elements[other]) = c(block.elements[other], block.elements[e]) =
-            rows[other].dot(product);
-    }
-  }
-  const Mueller turn = rotator(blocks_->turns ? -geometry.incident.phi : 0);
-  const FrameAngles angles = angles_to_xy(geometry, frame);
-  const Mueller left = rotator(-angles.scattered) * turn, right = turn * rotator(angles.incident);
-  return {left * m * right, mapped(c, left, right)};
-}
-
 MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
-  return estimate(geometry, frame).covariance;
+  const MuellerCovariance c = Slopes(*blocks_, geometry).covariance();
+  const auto [left, right] = blocks_->to_frame(geometry, frame);
+  return mapped(c, left, right);
 }
 
 MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame frame) const {
-  auto [m, c] = estimate(geometry, frame);
-  const double f11 = m(0, 0);
-  m(0, 0) = 1;
+  const Slopes at(*blocks_, geometry);
+  const MuellerCovariance c = at.covariance();
+  Mueller m = at.m;
+  const double f11 = std::exchange(m(0, 0), 1);
   MuellerCovariance result;  // F_e = f11 m_e, and F_11 = f11: dF_e = m_e df11 + f11 dm_e
   for (std::size_t e = 0; e < 16; ++e)
     for (std::size_t other = 0; other < 16; ++other) {
       const double direct = e == 0 || other == 0 ? 0 : f11 * f11 * c(e, other);
       result(e, other) = m.elements[e] * m.elements[other] * c(0, 0) + direct;
     }
+  const auto [left, right] = blocks_->to_frame(geometry, frame);
+  return mapped(result, left, right);
+}
+
+std::size_t PreparedUncertainty::parameters() const { return static_cast<std::size_t>(blocks_->parameters); }
+
+MuellerGradient PreparedUncertainty::gradient(const Geometry& geometry, Frame frame) const {
+  const WeightedGeometry one{geometry, 1};
+  return gradient({&one, 1}, frame);
+}
+
+MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> geometries, Frame frame) const {
+  const bool mixes = blocks_->turns || frame != Frame::xy;
+  MatrixXd sum = MatrixXd::Zero(16, blocks_->parameters), one = sum;
+  for (const auto& [geometry, weight] : geometries) {
+    const Slopes at(*blocks_, geometry);
+    if (!mixes) {
+      at.add_to(sum, weight);
+      continue;
+    }
+    one.setZero();
+    at.add_to(one, weight);
+    const auto [left, right] = blocks_->to_frame(geometry, frame);
+    for (Index q = 0; q < one.cols(); ++q) {
+      Mueller column;
+      std::copy_n(one.col(q).data(), 16, column.elements.begin());
+      column = left * column * right;
+      for (Index e = 0; e < 16; ++e) sum(e, q) += column.elements[static_cast<std::size_t>(e)];
+    }
+  }
+  MuellerGradient result;
+  for (Index e = 0; e < 16; ++e)
+    for (Index q = 0; q < sum.cols(); ++q) result.values.push_back(sum(e, q));
+  return result;
+}
+
+MuellerCovariance PreparedUncertainty::covariance(const MuellerGradient& a, const MuellerGradient& b) const {
+  for (const MuellerGradient& gradient : {std::cref(a), std::cref(b)})
+    if (gradient.values.size() != 16 * parameters())
+      throw std::invalid_argument("uncertainty: a gradient of " + std::to_string(gradient.values.size()) +
+                                  " numbers, expected " + std::to_string(16 * parameters()));
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> slopes_a(a.values.data(), 16, blocks_->parameters),
+      slopes_b(b.values.data(), 16, blocks_->parameters);
+  MuellerCovariance result;
+  Eigen::Map<RowMajor> sum(result.values.data(), 16, 16);
+  for (const BlockAt& block : blocks_->list) {
+    const Index size = block.covariance.rows();
+    sum +=
+        slopes_a.middleCols(block.first, size) * block.covariance * slopes_b.middleCols(block.first, size).transpose();
+  }
   return result;
 }
 
@@ -201,8 +332,8 @@ double PreparedUncertainty::directional_hemispherical_reflectance(const Directio
   for (const int n : {0, 2})
     integrals[static_cast<std::size_t>(zernike_index(n, 0))] = projected_integral(n, blocks_->mapping);
   const BlockAt& f11 = blocks_->list.front();
-  const VectorXd g = f11.row(0, k_i, integrals);
-  return std::sqrt(std::max(g.dot(f11.covariance * g), 0.0));
+  const VectorXd slopes = f11.slopes(f11.row(0, k_i, integrals));
+  return std::sqrt(std::max(slopes.dot(f11.covariance * slopes), 0.0));
 }
 
 }  // namespace mmbrdf

@@ -43,6 +43,12 @@ struct Geometry {
   friend bool operator==(const Geometry&, const Geometry&) = default;
 };
 
+/// A term of a weighted sum over geometries, such as a quadrature.
+struct WeightedGeometry {
+  Geometry geometry;
+  double weight = 0;
+};
+
 /// Throws std::invalid_argument, naming the angle in degrees, unless both polar angles are in [0, π/2] and all four
 /// angles are finite. `what` begins the message.
 void require_valid(const Geometry& geometry, const char* what);

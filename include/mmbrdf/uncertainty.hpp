@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Standard uncertainties of what a model predicts: the covariance of its coefficients, propagated in first order (GUM;
 /// theory 4.2). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
-/// noise. What all data share (scale, angles, the sample) is not in them, and the reflectance table counts as exact:
-/// where the fit took it from the same data, as it does by default for several wavelengths, u(f11) and u(DHR) are too
-/// small. Give the fit a table to avoid that.
+/// noise. What all data share (scale, angles, the sample) is not in them. A reflectance table that the fit took from
+/// its data has a covariance and counts; one that was given to it counts as exact.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "mmbrdf/model.hpp"
 
@@ -22,6 +24,12 @@ struct MuellerCovariance {
 /// Square roots of the diagonal.
 Mueller standard_uncertainty(const MuellerCovariance& covariance);
 
+/// Slopes of the sixteen elements of a matrix over the parameters of a model at one wavelength: 16 × parameters,
+/// row-major, an element in each row. Sums of matrices have the sums of their gradients.
+struct MuellerGradient {
+  std::vector<double> values;
+};
+
 /// The covariance of a model's coefficients at one wavelength. May be used in many threads at once.
 class PreparedUncertainty {
  public:
@@ -32,6 +40,19 @@ class PreparedUncertainty {
 
   /// The same of f11 in sr⁻¹ (element 11) and of the other elements divided by it.
   MuellerCovariance normalized(const Geometry& geometry, Frame frame = Frame::xy) const;
+
+  /// Slopes of the Mueller BRDF in sr⁻¹, and of a weighted sum of it over geometries, such as the mean over an
+  /// aperture. The parameters are the coefficients at this wavelength, block after block; behind those of block 11
+  /// comes the reflectance there, if the table has a covariance. Throws std::invalid_argument for an invalid geometry.
+  MuellerGradient gradient(const Geometry& geometry, Frame frame = Frame::xy) const;
+  MuellerGradient gradient(std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy) const;
+
+  /// cov(a_e, b_e') of two matrices with these gradients, of this model at this wavelength: what else would share no
+  /// parameters. covariance(gradient(g), gradient(g)) is evaluate(g) but for rounding. Throws std::invalid_argument for
+  /// gradients of another size.
+  MuellerCovariance covariance(const MuellerGradient& a, const MuellerGradient& b) const;
+
+  std::size_t parameters() const;
 
   /// Whether the data of the fit determine every element there. Where they do not, the uncertainties above are those of
   /// the part that is determined: too small. The rows of the elements over the coefficients may lie in the combinations
@@ -46,18 +67,17 @@ class PreparedUncertainty {
  private:
   friend PreparedUncertainty prepare_uncertainty(const Model&, double, Rotation);
   struct Blocks;
-  struct Estimate {
-    Mueller normalized;  // element 11 is f11 in sr⁻¹
-    MuellerCovariance covariance;
-  };
+  struct Slopes;
   explicit PreparedUncertainty(std::shared_ptr<const Blocks> blocks);
-  Estimate estimate(const Geometry& geometry, Frame frame) const;
 
   std::shared_ptr<const Blocks> blocks_;
 };
 
 /// Throws std::invalid_argument for an invalid model or wavelength (micrometres), a block whose covariance or rank is
-/// not known, or numbers that overflow at this wavelength.
+/// not known, a covariance with an eigenvalue below −covariance_tolerance times its largest, or numbers that overflow
+/// at this wavelength.
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
+
+inline constexpr double covariance_tolerance = 1e-9;
 
 }  // namespace mmbrdf
