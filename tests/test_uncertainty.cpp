@@ -252,7 +252,7 @@ TEST(Uncertainty, OfTheSandwichIsRightWhereTheResidualsAreNotUniform) {
       const Model model = fit(samples, basis, options).model;
       const Mueller error = prepare(model, 0.532).evaluate(grazing) - exact.evaluate(grazing);
       const Mueller u = standard_uncertainty(prepare_uncertainty(model, 0.532).evaluate(grazing));
-      for (const std::size_t e : {5, 10, 15})
+      for (const std::size_t e : {5u, 10u, 15u})
         ratios[kind == Covariance::sandwich].add(error.elements[e], u.elements[e]);
     }
   }
