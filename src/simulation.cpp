@@ -5,16 +5,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/noise.hpp"
 #include "numbers.hpp"
 #include "random.hpp"
 
 namespace mmbrdf {
 namespace {
-
-/// Standard deviation of the speckle noise at a geometry (theory 4.1).
-double deviation(double speckle, const Geometry& g) {
-  return speckle * std::sqrt(std::cos(g.incident.theta) / std::cos(g.reflected.theta));
-}
 
 void require_no_grazing_detector(std::span<const Geometry> geometries) {
   for (const Geometry& g : geometries)
@@ -47,6 +43,7 @@ std::vector<Sample> simulate(const Model& model, std::span<const double> wavelen
   for (const Geometry& geometry : geometries) require_valid(geometry, "simulate");
   if (speckle > 0) require_no_grazing_detector(geometries);
 
+  const NoiseLaw law{.scale = speckle, .incident_exponent = 1, .reflected_exponent = 1};
   std::mt19937_64 engine(~seed);  // not the stream from which random_geometries() makes directions with the same seed
   std::vector<Sample> samples;
   samples.reserve(wavelengths.size() * geometries.size());
@@ -54,7 +51,7 @@ std::vector<Sample> simulate(const Model& model, std::span<const double> wavelen
     const PreparedModel prepared = prepare(model, wavelength);
     for (const Geometry& geometry : geometries) {
       samples.push_back(exact_sample(prepared, geometry));
-      if (speckle > 0) add_noise(samples.back(), deviation(speckle, geometry), engine);
+      if (speckle > 0) add_noise(samples.back(), standard_deviation(law, geometry), engine);
     }
   }
   return samples;
