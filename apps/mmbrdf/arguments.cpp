@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arguments.hpp"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -92,6 +93,29 @@ std::vector<double> numbers(const std::string& text) {
   return values;
 }
 
+std::vector<double> range_from(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ':');
+  std::array<double, 3> bounds{};
+  bool good = parts.size() == bounds.size();
+  for (std::size_t i = 0; good && i < bounds.size(); ++i) {
+    good = read(parts[i], bounds[i]) && std::isfinite(bounds[i]);
+  }
+  const auto [from, to, step] = bounds;
+  if (!good || !(step > 0) || to < from) {
+    throw wrong(text, "FROM:TO:STEP with a positive step, as in -60:60:1");
+  }
+  constexpr double most = 100000, rounding = 1e-9;  // 0:1:0.1 has 11 values
+  const double steps = std::floor((to - from) / step + rounding);
+  if (!(steps < most)) {
+    throw wrong(text, "at most 100000 values");
+  }
+  std::vector<double> values;
+  for (double i = 0; i <= steps; ++i) {
+    values.push_back(from + i * step);
+  }
+  return values;
+}
+
 Orders orders_from(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   Orders orders;
@@ -130,6 +154,30 @@ std::string reflectance_argument(const ReflectanceTable& table) {
   }
   return text;
 }
+
+Grid grid_from(const std::string& text) {
+  if (text == "germer2017") {
+    return {};
+  }
+  const std::string prefix = "random:";
+  if (!text.starts_with(prefix)) {
+    throw std::invalid_argument("\"" + text + "\": expected germer2017 or random:N");
+  }
+  const int count = whole_number(text.substr(prefix.size()));
+  if (count == 0) {
+    throw std::invalid_argument("\"" + text + "\": expected at least 1");
+  }
+  return {count};
+}
+
+Weights weights_from(const std::string& name) {
+  if (name != "none" && name != "speckle") {
+    throw std::invalid_argument("\"" + name + "\": expected none or speckle");
+  }
+  return name == "none" ? Weights::none : Weights::speckle;
+}
+
+std::string to_string(Weights weights) { return weights == Weights::none ? "none" : "speckle"; }
 
 Frame frame_from(const std::string& name) {
   for (const Frame frame : {Frame::xy, Frame::sp, Frame::scattering_plane}) {
@@ -184,6 +232,10 @@ std::string nanometre_list(const std::vector<double>& wavelengths) {
   return joined(words) + " nm";
 }
 
+std::vector<Geometry> geometries(const Grid& grid, unsigned long seed) {
+  return grid.random > 0 ? random_geometries(grid.random, seed) : germer2017_grid();
+}
+
 Direction direction_from(const DirectionDegrees& degrees, const std::string& option) {
   if (std::abs(degrees.theta) > 90) {
     throw std::invalid_argument(option + " " + shortest(degrees.theta) + "," + shortest(degrees.phi) +
@@ -192,6 +244,16 @@ Direction direction_from(const DirectionDegrees& degrees, const std::string& opt
   // Unfolded in degrees, where 180 is exact.
   const double opposite = degrees.phi + (degrees.phi > 0 ? -180 : 180);
   return {radians(std::abs(degrees.theta)), radians(degrees.theta < 0 ? opposite : degrees.phi)};
+}
+
+void add_basis_option(CLI::App& app, Basis& basis) {
+  add_option(app, "--basis", basis.family, family_from, "NAME", "isotropic, germer2017 or anisotropic [isotropic]");
+  add_option(app, "--orders", basis.orders, orders_from, "N,M",
+             "Highest radial order of f11 and of the other elements [7,4]");
+}
+
+void add_weights_option(CLI::App& app, Weights& weights) {
+  add_option(app, "--weights", weights, weights_from, "NAME", "none or speckle: cos(theta_r)/cos(theta_i) [none]");
 }
 
 }  // namespace mmbrdf::program

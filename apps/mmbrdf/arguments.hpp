@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/fit.hpp"
 #include "mmbrdf/model.hpp"
 #include "output.hpp"
 
@@ -37,9 +38,19 @@ struct AnglesDegrees {
 AnglesDegrees angles_degrees(const std::string& text);
 
 std::vector<double> numbers(const std::string& text);             ///< A[,B…]
+std::vector<double> range_from(const std::string& text);          ///< FROM:TO:STEP, both ends included; at most 100 000
 Orders orders_from(const std::string& text);                      ///< F11,OTHER
 ReflectanceTable reflectance_from(const std::string& text);       ///< NM:R[,NM:R…] in any order
 std::string reflectance_argument(const ReflectanceTable& table);  ///< the opposite, exact
+
+/// germer2017 or random:N
+struct Grid {
+  int random = 0;  ///< number of random pairs of directions; 0: the published grid
+};
+Grid grid_from(const std::string& text);
+
+Weights weights_from(const std::string& name);
+std::string to_string(Weights weights);
 
 Frame frame_from(const std::string& name);
 std::string to_string(Frame frame);
@@ -53,6 +64,8 @@ double nanometres(double wavelength);  ///< to 1e-9 nm: 0.532 gives 532
 
 /// "351, 532, 633, 1064 nm"
 std::string nanometre_list(const std::vector<double>& wavelengths);
+
+std::vector<Geometry> geometries(const Grid& grid, unsigned long seed);
 
 /// In radians, θ ≥ 0. `option` begins the message.
 Direction direction_from(const DirectionDegrees& degrees, const std::string& option);
@@ -78,6 +91,12 @@ CLI::Option* add_option(CLI::App& app, const std::string& names, Target& target,
           names, [&target, parse, name](const std::string& text) { target = parsed(name, text, parse); }, description)
       ->option_text(shown);
 }
+
+/// --basis and --orders
+void add_basis_option(CLI::App& app, Basis& basis);
+
+/// --weights
+void add_weights_option(CLI::App& app, Weights& weights);
 
 inline CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
                              const std::string& description) {

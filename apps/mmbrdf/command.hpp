@@ -34,5 +34,6 @@ Run simulate_command(CLI::App& app, const CommandLine& line);
 Run info_command(CLI::App& app, const CommandLine& line);
 Run materials_command(CLI::App& app, const CommandLine& line);
 Run convert_command(CLI::App& app, const CommandLine& line);
+Run compare_command(CLI::App& app, const CommandLine& line);
 
 }  // namespace mmbrdf::program

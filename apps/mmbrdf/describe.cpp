@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "describe.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <stdexcept>
 
@@ -106,6 +107,27 @@ std::string unknown_range_line(const std::string& model, const Validity& validit
   return model + " does not say to which " + what + " it was fitted; mmbrdf convert can record them";
 }
 
+void note_unless_printed(const Model& model, const std::string& name) {
+  if (model.family != Family::germer2017) {
+    note("--as-printed changes nothing: " + name + " is of the basis " + to_string(model.family) + ", not germer2017");
+  }
+}
+
+void warn_if_outside(const Model& model, std::span<const Sample> samples, const std::string& name) {
+  const auto leaves = [&](const Sample& s) {
+    return leaves_known_range(outside(model.validity, s.wavelength, s.geometry));
+  };
+  const auto count = std::count_if(samples.begin(), samples.end(), leaves);
+  if (count > 0) {
+    warn(std::to_string(count) + " of " + counted(static_cast<long>(samples.size()), "sample") +
+         (count == 1 ? " lies" : " lie") + " outside the fitted range: fitted are " + fitted_range(model.validity));
+  }
+  const std::string unknown = unknown_range_line(name, model.validity);
+  if (!unknown.empty()) {
+    note(unknown);
+  }
+}
+
 std::string normal_reflectance_line(const Model& model) {
   std::string text;
   for (const double wavelength : known_wavelengths(model)) {
@@ -129,13 +151,15 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
   return json;
 }
 
-void print(const nlohmann::ordered_json& json) {
+void print(const nlohmann::ordered_json& json, std::ostream& out) {
   const char* separator = "{\n";
   for (const auto& [name, value] : json.items()) {
-    std::cout << separator << "  " << dumped(name) << ": " << by_lines(value);
+    out << separator << "  " << dumped(name) << ": " << by_lines(value);
     separator = ",\n";
   }
-  std::cout << "\n}\n";
+  out << "\n}\n";
 }
+
+void print(const nlohmann::ordered_json& json) { print(json, std::cout); }
 
 }  // namespace mmbrdf::program

@@ -2,10 +2,13 @@
 // What several commands say about a model.
 #pragma once
 
+#include <iosfwd>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "mmbrdf/dataset.hpp"
 #include "mmbrdf/model.hpp"
 
 namespace mmbrdf::program {
@@ -32,11 +35,19 @@ bool leaves_known_range(Outside outside);
 /// What the model called `model` does not say about its range. Empty if it says all.
 std::string unknown_range_line(const std::string& model, const Validity& validity);
 
+/// Says on standard error if --as-printed has no meaning for the model called `name`.
+void note_unless_printed(const Model& model, const std::string& name);
+
+/// Says on standard error how many samples lie outside what the model called `name` was fitted to, and what it does not
+/// say of that.
+void warn_if_outside(const Model& model, std::span<const Sample> samples, const std::string& name);
+
 /// Directional-hemispherical reflectance at normal incidence: "0.97515 at 351 nm, 0.98416 at 532 nm"
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);
 
-/// On standard output, each field and each row of a table in a line of its own.
-void print(const nlohmann::ordered_json& json);
+/// Each field and each row of a table in a line of its own.
+void print(const nlohmann::ordered_json& json, std::ostream& out);
+void print(const nlohmann::ordered_json& json);  ///< on standard output
 
 }  // namespace mmbrdf::program

@@ -130,9 +130,8 @@ void warn_if_outside(const Answer& answer, const Validity& validity) {
 
 Model model_of(const Options& options) {
   Model model = open_model(options.model);
-  if (options.as_printed && model.family != Family::germer2017) {
-    note("--as-printed changes nothing: " + base_name(options.model) + " is of the basis " + to_string(model.family) +
-         ", not germer2017");
+  if (options.as_printed) {
+    note_unless_printed(model, base_name(options.model));
   }
   return model;
 }

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <iostream>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -85,6 +88,58 @@ Model open_model(const std::string& name) {
   return model;
 }
 
+bool is_samples(const std::string& name) {
+  if (name == "-" || is_built_in(name) || !std::filesystem::exists(name)) {
+    return name == "-";
+  }
+  std::ifstream in = open_input(name);
+  std::string line;
+  while (std::getline(in, line) &&
+         (line.find_first_not_of(" \t\r\xef\xbb\xbf") == std::string::npos || line[0] == '#')) {
+  }
+  const std::size_t first = line.find_first_not_of(" \t\xef\xbb\xbf");
+  return first != std::string::npos && std::isalpha(static_cast<unsigned char>(line[first])) != 0;
+}
+
+std::string data_name(const std::string& path) { return path == "-" ? "standard input" : base_name(path); }
+
+void read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                     const std::function<void(std::span<const Sample>)>& use) {
+  constexpr std::size_t some = 4096;
+  const std::vector<double> wanted = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
+  const auto near = [](double a, double b) { return std::abs(a - b) <= wavelength_resolution; };
+  std::set<double> there;
+  std::vector<Sample> samples;
+  read_input(path, [&](std::istream& in, const std::string& name) {
+    SampleReader reader(in, name);
+    for (Sample sample; reader.next(sample);) {
+      there.insert(sample.wavelength);
+      const auto is_it = [&](double wavelength) { return near(wavelength, sample.wavelength); };
+      if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) {
+        samples.push_back(sample);
+      }
+      if (samples.size() == some) {
+        use(samples);
+        samples.clear();
+      }
+    }
+  });
+  use(samples);
+  for (const double wavelength : wanted) {
+    if (std::none_of(there.begin(), there.end(), [&](double one) { return near(one, wavelength); })) {
+      throw std::runtime_error(data_name(path) + ": has samples at " + nanometre_list({there.begin(), there.end()}) +
+                               ", not at all of " + nanometre_list(wanted));
+    }
+  }
+}
+
+std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm) {
+  std::vector<Sample> all;
+  read_samples_at(path, wavelengths_nm,
+                  [&](std::span<const Sample> samples) { all.insert(all.end(), samples.begin(), samples.end()); });
+  return all;
+}
+
 void require_kept(const std::string& input, const std::string& output, const std::string& what) {
   const std::string source = input == "-" ? "/dev/stdin" : input;
   std::error_code ignored;
@@ -155,6 +210,14 @@ CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::strin
 }
 
 bool is_standard_output(const std::string& output) { return output.empty() || output == "-"; }
+
+void write_text(const std::string& output, const std::string& text) {
+  if (is_standard_output(output)) {
+    std::cout << text;
+  } else {
+    write_file(output, [&](std::ostream& out) { out << text; });
+  }
+}
 
 CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name) {
   return add_option(app, name, target, model_name, " ", "Built-in name, JSON model or coefficient CSV")->required();

@@ -5,8 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <istream>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "mmbrdf/dataset.hpp"
 #include "mmbrdf/model.hpp"
 
 namespace mmbrdf::program {
@@ -20,8 +24,23 @@ bool is_csv(const std::string& path);
 /// A built-in model, or one from a file. Warns of elements without modes.
 Model open_model(const std::string& name);
 
+/// Whether this is a file of samples and no model: neither a built-in one, nor JSON, nor rows of numbers without a
+/// header. "-" is standard input, which is samples. Throws std::runtime_error for a file that cannot be read.
+bool is_samples(const std::string& name);
+
 /// Calls `read` with a file, or with standard input for "-", and its name for messages.
 void read_input(const std::string& path, const std::function<void(std::istream&, const std::string&)>& read);
+
+/// What a data file is called in messages and provenance: the last part of its path, or "standard input" for "-".
+std::string data_name(const std::string& path);
+
+/// Hands over the samples of these wavelengths (nm; none given: of all), a few thousand at a time. Throws
+/// std::runtime_error if there are none at one of them.
+void read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                     const std::function<void(std::span<const Sample>)>& use);
+
+/// The same, in memory.
+std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm);
 
 /// Throws std::invalid_argument if writing `output` would overwrite `input`, under whatever names and links. "-" is
 /// standard input. `what` names the input in the message.
@@ -50,6 +69,9 @@ CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::strin
 
 /// "-" is standard output.
 bool is_standard_output(const std::string& output);
+
+/// Text on standard output or in a file, which appears when it is complete.
+void write_text(const std::string& output, const std::string& text);
 
 CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name = "MODEL");
 

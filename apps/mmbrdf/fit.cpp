@@ -3,19 +3,14 @@
 
 #include "mmbrdf/fit.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <memory>
-#include <set>
 #include <span>
 
 #include "arguments.hpp"
 #include "command.hpp"
 #include "files.hpp"
 #include "fit_report.hpp"
-#include "mmbrdf/io.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {
@@ -31,49 +26,6 @@ struct Options {
   Format format = Format::text;
 };
 
-Weights weights_from(const std::string& name) {
-  if (name != "none" && name != "speckle") {
-    throw std::invalid_argument("\"" + name + "\": expected none or speckle");
-  }
-  return name == "none" ? Weights::none : Weights::speckle;
-}
-
-std::string to_string(Weights weights) { return weights == Weights::none ? "none" : "speckle"; }
-
-std::string data_name(const Options& options) {
-  return options.data == "-" ? "standard input" : base_name(options.data);
-}
-
-/// Hands over the samples of the wavelengths asked for, a few thousand at a time.
-void read_some(const Options& options, const std::function<void(std::span<const Sample>)>& use) {
-  constexpr std::size_t some = 4096;
-  const std::vector<double> wanted = micrometres(options.wavelengths_nm.value_or(std::vector<double>{}));
-  const auto near = [](double a, double b) { return std::abs(a - b) <= wavelength_resolution; };
-  std::set<double> there;
-  std::vector<Sample> samples;
-  read_input(options.data, [&](std::istream& in, const std::string& name) {
-    SampleReader reader(in, name);
-    for (Sample sample; reader.next(sample);) {
-      there.insert(sample.wavelength);
-      const auto is_it = [&](double wavelength) { return near(wavelength, sample.wavelength); };
-      if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) {
-        samples.push_back(sample);
-      }
-      if (samples.size() == some) {
-        use(samples);
-        samples.clear();
-      }
-    }
-  });
-  use(samples);
-  for (const double wavelength : wanted) {
-    if (std::none_of(there.begin(), there.end(), [&](double one) { return near(one, wavelength); })) {
-      throw std::runtime_error(data_name(options) + ": has samples at " + nanometre_list({there.begin(), there.end()}) +
-                               ", not at all of " + nanometre_list(wanted));
-    }
-  }
-}
-
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
 void require_valid(const Options& options) {
   blocks(options.basis.family, options.basis.orders);
@@ -87,7 +39,7 @@ void require_valid(const Options& options) {
 void sign(Model& model, const Options& options, long rows, const CommandLine& line) {
   const std::filesystem::path origin = options.output.empty() ? options.data : options.output;
   model.name = options.name.empty() ? origin.stem().string() : options.name;
-  model.provenance["data"] = data_name(options);
+  model.provenance["data"] = data_name(options.data);
   model.provenance["rows"] = std::to_string(rows);
   model.provenance["command"] = line.text({options.data, options.output});
   model.provenance["software"] = software();
@@ -132,7 +84,7 @@ void note_free_combinations(const FitResult& result) {
 FitResult fitted(const Options& options, long& rows) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
-  read_some(options, [&](std::span<const Sample> samples) {
+  read_samples_at(options.data, options.wavelengths_nm, [&](std::span<const Sample> samples) {
     rows += static_cast<long>(samples.size());
     if (options.weights == Weights::none) {
       accumulator.add(samples);
@@ -144,7 +96,7 @@ FitResult fitted(const Options& options, long& rows) {
     return options.weights == Weights::none ? accumulator.solve(options.fit)
                                             : fit(all, options.basis, options.fit, options.weights);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(data_name(options) + ": " + plain_message(error));
+    throw std::runtime_error(data_name(options.data) + ": " + plain_message(error));
   }
 }
 
@@ -154,7 +106,7 @@ void fit_data(const Options& options, const CommandLine& line) {
   FitResult result = fitted(options, rows);
   sign(result.model, options, rows, line);
   save_or_warn(result.model, options);
-  print({.data = data_name(options), .weights = to_string(options.weights), .rows = rows, .result = result},
+  print({.data = data_name(options.data), .weights = to_string(options.weights), .rows = rows, .result = result},
         options.format);
   note_free_combinations(result);
 }
@@ -175,9 +127,7 @@ constexpr const char* footer =
     "  mmbrdf fit data.csv --wavelength 532 --basis germer2017 -o model.csv";
 
 void add_basis_options(CLI::App& app, const std::shared_ptr<Options>& o) {
-  add_option(app, "--basis", o->basis.family, family_from, "NAME", "isotropic, germer2017 or anisotropic [isotropic]");
-  add_option(app, "--orders", o->basis.orders, orders_from, "N,M",
-             "Highest radial order of f11 and of the other elements [7,4]");
+  add_basis_option(app, o->basis);
   add_option(app, "--powers", o->fit.powers, whole_number, "P",
              "Highest power of the wavelength [1; 0 for one wavelength]");
   add_option(app, "--mapping", o->basis.mapping, disc_mapping_from, "NAME",
@@ -188,7 +138,7 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Fit these wavelengths only, in nm");
   add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,NM:R...]",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
-  add_option(app, "--weights", o->weights, weights_from, "NAME", "none or speckle: cos(theta_r)/cos(theta_i) [none]");
+  add_weights_option(app, o->weights);
   app.add_flag(
       "--minimum-norm", o->fit.minimum_norm,
       "Accept data that do not determine every coefficient, and\ntake the smallest solution (germer2017: always)");

@@ -29,6 +29,7 @@ constexpr Command commands[] = {
     {"info", "Print what a model holds and where it is valid.", info_command},
     {"materials", "List the built-in models.", materials_command},
     {"convert", "Turn a model into another file format or basis.", convert_command},
+    {"compare", "Say how far a model is from samples or from another model.", compare_command},
 };
 
 constexpr const char* footer =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf simulate
 
-#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -9,17 +8,12 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "files.hpp"
-#include "mmbrdf/dataset.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/simulation.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-struct Grid {
-  int random = 0;  ///< number of random pairs of directions; 0: the published grid
-};
 
 struct Options {
   std::string model, output;
@@ -28,21 +22,6 @@ struct Options {
   double speckle = 0;
   unsigned long seed = 0;
 };
-
-Grid grid_from(const std::string& text) {
-  if (text == "germer2017") {
-    return {};
-  }
-  const std::string prefix = "random:";
-  if (!text.starts_with(prefix)) {
-    throw std::invalid_argument("\"" + text + "\": expected germer2017 or random:N");
-  }
-  const int count = whole_number(text.substr(prefix.size()));
-  if (count == 0) {
-    throw std::invalid_argument("\"" + text + "\": expected at least 1");
-  }
-  return {count};
-}
 
 double speckle_from(const std::string& text) {
   const std::string prefix = "speckle:";
@@ -69,26 +48,9 @@ std::vector<double> wavelengths_of(const Model& model, const Options& options) {
   return model.validity.wavelengths;
 }
 
-void warn_if_outside(const Model& model, const std::vector<Sample>& samples, const std::string& name) {
-  const auto leaves = [&](const Sample& s) {
-    return leaves_known_range(outside(model.validity, s.wavelength, s.geometry));
-  };
-  const auto count = std::count_if(samples.begin(), samples.end(), leaves);
-  if (count > 0) {
-    warn(std::to_string(count) + " of " + counted(static_cast<long>(samples.size()), "sample") +
-         (count == 1 ? " lies" : " lie") + " outside the fitted range: fitted are " + fitted_range(model.validity));
-  }
-  const std::string unknown = unknown_range_line(name, model.validity);
-  if (!unknown.empty()) {
-    note(unknown);
-  }
-}
-
 std::vector<Sample> simulated(const Model& model, const std::vector<double>& wavelengths, const Options& options) {
-  const std::vector<Geometry> geometries =
-      options.grid->random > 0 ? random_geometries(options.grid->random, options.seed) : germer2017_grid();
   try {
-    return simulate(model, wavelengths, geometries, options.speckle, options.seed);
+    return simulate(model, wavelengths, geometries(*options.grid, options.seed), options.speckle, options.seed);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
   }

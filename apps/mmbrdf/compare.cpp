@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf compare
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "files.hpp"
+#include "mmbrdf/comparison.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string first, second, output;
+  std::optional<Grid> grid;
+  std::optional<std::vector<double>> wavelengths_nm;
+  std::optional<double> theta_max_deg, tolerance;
+  unsigned long seed = 0;
+  Format format = Format::text;
+  bool as_printed = false;
+};
+
+/// The wavelengths that both models know; what one does not know is left to the other.
+std::vector<double> common_wavelengths(const Model& first, const Model& second) {
+  const std::vector<double>&a = first.validity.wavelengths, &b = second.validity.wavelengths;
+  if (a.empty() || b.empty()) {
+    return a.empty() ? b : a;
+  }
+  std::vector<double> common;
+  std::copy_if(a.begin(), a.end(), std::back_inserter(common), [&](double one) {
+    return std::any_of(b.begin(), b.end(),
+                       [=](double other) { return std::abs(one - other) <= wavelength_resolution; });
+  });
+  return common;
+}
+
+std::vector<double> wavelengths_of(const Model& first, const Model& second, const Options& options) {
+  if (options.wavelengths_nm) {
+    return micrometres(*options.wavelengths_nm);
+  }
+  std::vector<double> common = common_wavelengths(first, second);
+  if (common.empty()) {
+    throw CLI::ValidationError("--wavelength is required",
+                               "there is none of which both models say that they were fitted to it");
+  }
+  return common;
+}
+
+double theta_max(const Options& options) { return radians(options.theta_max_deg.value_or(90)); }
+
+bool within(const Geometry& geometry, double theta) {
+  constexpr double rounding = 1e-9;  // files give degrees
+  return std::max(geometry.incident.theta, geometry.reflected.theta) <= theta + rounding;
+}
+
+/// What the second model gives where the first is to be compared with it.
+std::vector<Sample> samples_of(const Model& first, const Model& second, const Options& options) {
+  const Grid grid = options.grid.value_or(Grid{});
+  std::vector<Geometry> at = grid.random > 0 && options.theta_max_deg
+                                 ? random_geometries(grid.random, options.seed, theta_max(options))
+                                 : geometries(grid, options.seed);
+  std::erase_if(at, [&](const Geometry& g) { return !within(g, theta_max(options)); });
+  const std::vector<double> wavelengths = wavelengths_of(first, second, options);
+  try {
+    return simulate(second, wavelengths, at);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(base_name(options.second) + ": " + plain_message(error));
+  }
+}
+
+std::vector<Sample> samples_of(const Model& first, const Options& options) {
+  if (is_samples(options.second)) {
+    if (options.grid) {
+      throw CLI::ValidationError("--grid",
+                                 "goes with two models; " + data_name(options.second) + " has its own geometries");
+    }
+    std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm);
+    std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
+    return samples;
+  }
+  const Model second = open_model(options.second);
+  std::vector<Sample> samples = samples_of(first, second, options);
+  warn_if_outside(second, samples, base_name(options.second));
+  return samples;
+}
+
+/// One row of the table.
+struct Row {
+  std::string element, unit;
+  const Difference& difference;
+};
+
+std::vector<Row> rows_of(const Comparison& comparison) {
+  std::vector<Row> rows{{"11", "sr^-1", comparison.f11}, {"11", "f11", comparison.f11_relative}};
+  for (std::size_t e = 1; e < 16; ++e) {
+    rows.push_back({element_name(e), "f11", comparison.normalized[e]});
+  }
+  return rows;
+}
+
+/// Wavelength in nm, and the four angles in degrees, of the largest difference.
+std::array<double, 5> place(const Difference& d) {
+  return {nanometres(d.wavelength), degrees(d.geometry.incident.theta), degrees(d.geometry.incident.phi),
+          degrees(d.geometry.reflected.theta), degrees(d.geometry.reflected.phi)};
+}
+
+struct Report {
+  std::string first, second;
+  std::vector<double> wavelengths;
+  const Comparison& comparison;
+  bool as_printed;
+};
+
+std::string text(const Report& report) {
+  std::string text = report.second + " - " + report.first + (report.as_printed ? " as printed" : "") + ": " +
+                     counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) +
+                     ", frame xy\n\nelement  unit           rms         mean      largest   at nm  theta_i    phi_i  "
+                     "theta_r    phi_r\n";
+  for (const auto& [element, unit, d] : rows_of(report.comparison)) {
+    const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(d);
+    text += format("%-8s %-6s %11.6g %12.6g %12.6g %7.6g %8.2f %8.2f %8.2f %8.2f\n", element.c_str(), unit.c_str(),
+                   d.rms, d.mean, d.largest, nm, theta_i, phi_i, theta_r, phi_r);
+  }
+  return text + format("\nrms of the 15 others / f11         %.6g\n", polarization_rms(report.comparison)) +
+         format("largest difference / f11           %.6g\n", largest(report.comparison).largest);
+}
+
+std::string csv(const Report& report) {
+  std::string text = "element,unit,rms,mean,largest,wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg\n";
+  for (const auto& [element, unit, d] : rows_of(report.comparison)) {
+    text += element + "," + unit;
+    for (const double value : {d.rms, d.mean, d.largest}) {
+      text += "," + exact(value);
+    }
+    for (const double value : place(d)) {
+      text += "," + shortest(value);
+    }
+    text += "\n";
+  }
+  return text + "polarization,f11," + exact(polarization_rms(report.comparison)) + ",,,,,,,\n";
+}
+
+std::string json(const Report& report) {
+  nlohmann::ordered_json json{{"model", report.first},
+                              {"compared_with", report.second},
+                              {"rotation", report.as_printed ? "as_printed" : "covariant"},
+                              {"frame", "xy"},
+                              {"samples", report.comparison.samples}};
+  for (const double wavelength : report.wavelengths) {
+    json["wavelengths_nm"].push_back(nanometres(wavelength));
+  }
+  for (const auto& [element, unit, d] : rows_of(report.comparison)) {
+    const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(d);
+    json["elements"].push_back({{"element", element},
+                                {"unit", unit},
+                                {"rms", d.rms},
+                                {"mean", d.mean},
+                                {"largest", d.largest},
+                                {"wavelength_nm", nm},
+                                {"theta_i_deg", theta_i},
+                                {"phi_i_deg", phi_i},
+                                {"theta_r_deg", theta_r},
+                                {"phi_r_deg", phi_r}});
+  }
+  json["rms_polarization"] = polarization_rms(report.comparison);
+  json["largest"] = largest(report.comparison).largest;
+  std::ostringstream out;
+  print(json, out);
+  return out.str();
+}
+
+void require_within(double tolerance, const Comparison& comparison) {
+  const Difference most = largest(comparison);
+  if (most.largest <= tolerance) {
+    return;
+  }
+  const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(most);
+  throw std::runtime_error("the largest difference / f11, " + brief(most.largest) + " at " + brief(nm) +
+                           " nm, incident " + brief(theta_i) + "," + brief(phi_i) + ", reflected " + brief(theta_r) +
+                           "," + brief(phi_r) + ", is more than " + shortest(tolerance));
+}
+
+void require_valid(const Options& options) {
+  if (options.theta_max_deg && !(*options.theta_max_deg > 0 && *options.theta_max_deg <= 90)) {
+    throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": must be in (0, 90] degrees");
+  }
+  require_model_kept(options.first, options.output);
+  if (is_samples(options.second)) {
+    require_kept(options.second, options.output, "data");
+  } else {
+    require_model_kept(options.second, options.output);
+  }
+  if (is_samples(options.first)) {
+    throw std::invalid_argument(data_name(options.first) + ": samples; the first argument must be a model");
+  }
+}
+
+Comparison compared(const Model& first, const std::vector<Sample>& samples, const Options& options) {
+  try {
+    return compare(first, samples, options.as_printed ? Rotation::as_printed : Rotation::covariant);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(base_name(options.first) + ": " + plain_message(error));
+  }
+}
+
+void compare_them(const Options& options) {
+  require_valid(options);
+  const Model first = open_model(options.first);
+  if (options.as_printed) {
+    note_unless_printed(first, base_name(options.first));
+  }
+  const std::vector<Sample> samples = samples_of(first, options);
+  if (samples.empty()) {
+    throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": no geometry is within");
+  }
+  const Comparison comparison = compared(first, samples, options);
+  const Report report{base_name(options.first), data_name(options.second), wavelengths(samples), comparison,
+                      options.as_printed};
+  write_text(options.output, (options.format == Format::text  ? text
+                              : options.format == Format::csv ? csv
+                                                              : json)(report));
+  warn_if_outside(first, samples, base_name(options.first));
+  if (options.tolerance) {
+    require_within(*options.tolerance, comparison);
+  }
+}
+
+double tolerance_from(const std::string& text) {
+  const double value = number(text);
+  if (value < 0) {
+    throw std::invalid_argument("\"" + text + "\": expected 0 or more");
+  }
+  return value;
+}
+
+constexpr const char* footer =
+    "B is a model or a file of samples (see mmbrdf fit --help); - is samples from standard input. What is printed is\n"
+    "B - A in the frame xy: f11 in sr^-1, f11 divided by that of A, and each of the other elements divided by f11 of\n"
+    "its own. largest is without sign, and stands with the wavelength and the angles where it is.\n"
+    "\n"
+    "Samples are compared where they were taken. Two models are compared at the wavelengths to which both were\n"
+    "fitted, on the published grid or at random directions, uniform in projected solid angle within 75 degrees.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf compare ptfe-532 data.csv --wavelength 532\n"
+    "  mmbrdf compare ptfe new.json --grid random:10000 --tolerance 0.01";
+
+}  // namespace
+
+Run compare_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_model(app, o->first, "A");
+  add_model(app, o->second, "B")->description("The same, or samples (CSV); - is standard input");
+  add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
+             "Wavelengths in nm [those of the samples, or of both models]");
+  add_option(app, "--grid", o->grid, grid_from, "GRID", "For two models: germer2017 or random:N [germer2017]");
+  add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the random directions [0]");
+  add_option(app, "--theta-max", o->theta_max_deg, number, "DEG", "Only where both polar angles are at most this");
+  app.add_flag("--as-printed", o->as_printed,
+               "Published coefficients of A: the sum at the azimuths\ngiven, not at phi_i = 0 and turned");
+  add_option(app, "--tolerance", o->tolerance, tolerance_from, "T",
+             "Exit with status 1 if a difference / f11 is larger");
+  add_file(app, "-o,--output", o->output, "OUT", "Where the table goes; - is standard output [-]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  app.footer(footer);
+  return [o] { compare_them(*o); };
+}
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// How far a model is from samples, or from another model: how much, and where.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf {
+
+/// Differences d of one quantity over all samples.
+struct Difference {
+  double rms = 0;         ///< √(mean of d²)
+  double mean = 0;        ///< with its sign
+  double largest = 0;     ///< |d| where it is largest
+  double wavelength = 0;  ///< where that is, micrometres; the first such sample
+  Geometry geometry;
+};
+
+struct Comparison {
+  long samples = 0;
+  Difference f11;                         ///< in sr⁻¹
+  Difference f11_relative;                ///< divided by f11 of the model
+  std::array<Difference, 16> normalized;  ///< of f_ij / f11, in row-major order, xy frame; that of element 11 is 0
+};
+
+/// Samples − model, for f11 and for the normalised elements.
+/// Throws std::invalid_argument for an invalid model or sample, without samples, where f11 of the model is not positive
+/// (what would f_ij / f11 say there?), or for differences whose squares overflow.
+Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation = Rotation::covariant);
+
+/// Second − first model at each of the wavelengths (micrometres) and geometries. Throws as above, and where f11 of the
+/// second is not positive.
+Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
+                   std::span<const Geometry> geometries);
+
+/// Root mean square over the 15 normalised elements.
+double polarization_rms(const Comparison& comparison);
+
+/// The largest difference of all, relative to f11: of f11_relative and the normalised elements.
+Difference largest(const Comparison& comparison);
+
+}  // namespace mmbrdf

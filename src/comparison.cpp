@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/comparison.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/fit.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+void add(Difference& total, double d, const Sample& sample) {
+  total.rms += d * d;
+  total.mean += d;
+  if (std::abs(d) <= total.largest && total.wavelength > 0) return;
+  total.largest = std::abs(d);
+  total.wavelength = sample.wavelength;
+  total.geometry = sample.geometry;
+}
+
+/// From sums to means.
+void divide(Difference& total, long samples, const std::string& name) {
+  total.rms = std::sqrt(total.rms / static_cast<double>(samples));
+  total.mean /= static_cast<double>(samples);
+  if (!std::isfinite(total.rms) || !std::isfinite(total.mean))
+    throw std::invalid_argument("compare: the differences of " + name + " are too large to be squared");
+}
+
+void require_positive(double f11, const Sample& sample) {
+  if (f11 > 0) return;
+  throw std::invalid_argument("compare: f11 of the model is " + shortest(f11) +
+                              " /sr at theta_i = " + shortest(in_degrees(sample.geometry.incident.theta)) +
+                              ", theta_r = " + shortest(in_degrees(sample.geometry.reflected.theta)) +
+                              " degrees, must be positive");
+}
+
+}  // namespace
+
+Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation) {
+  if (samples.empty()) throw std::invalid_argument("compare: no samples");
+  require_valid(samples);
+  const std::vector<Mueller> differences = residuals(model, samples, rotation);
+  Comparison result;
+  result.samples = static_cast<long>(samples.size());
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const Mueller& d = differences[s];
+    const double f11 = samples[s].f11 - d(0, 0);
+    require_positive(f11, samples[s]);
+    add(result.f11, d(0, 0), samples[s]);
+    add(result.f11_relative, d(0, 0) / f11, samples[s]);
+    for (std::size_t e = 1; e < 16; ++e) add(result.normalized[e], d.elements[e], samples[s]);
+  }
+  divide(result.f11, result.samples, "f11");
+  divide(result.f11_relative, result.samples, "f11");
+  for (std::size_t e = 1; e < 16; ++e)
+    divide(result.normalized[e], result.samples, "element " + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1));
+  return result;
+}
+
+Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
+                   std::span<const Geometry> geometries) {
+  return compare(first, simulate(second, wavelengths, geometries));
+}
+
+double polarization_rms(const Comparison& comparison) {
+  double squares = 0;
+  for (std::size_t e = 1; e < 16; ++e) squares += std::pow(comparison.normalized[e].rms, 2);
+  return std::sqrt(squares / 15);
+}
+
+Difference largest(const Comparison& comparison) {
+  Difference result = comparison.f11_relative;
+  for (std::size_t e = 1; e < 16; ++e)
+    if (comparison.normalized[e].largest > result.largest) result = comparison.normalized[e];
+  return result;
+}
+
+}  // namespace mmbrdf

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/comparison.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "cases.hpp"
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/materials.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "published.hpp"
+#include "random_model.hpp"
+
+namespace mmbrdf {
+namespace {
+
+const std::vector<double> green{0.532};
+
+std::vector<Sample> simulated(const Model& model, int count) {
+  return simulate(model, green, random_geometries(count, 3));
+}
+
+TEST(Comparison, FindsWhatWasAddedToOneSampleAndWhere) {
+  const Model model = material("ptfe-532");
+  std::vector<Sample> samples = simulated(model, 100);
+  samples[17].f11 *= 1.5;
+  samples[42].normalized(2, 1) -= 0.25;
+  const Comparison c = compare(model, samples);
+  EXPECT_EQ(c.samples, 100);
+  // All else is what simulating and comparing round differently.
+  constexpr double rounding = 1e-15;
+  EXPECT_NEAR(c.f11_relative.largest, 0.5, rounding);
+  EXPECT_NEAR(c.f11_relative.rms, 0.05, rounding);  // √(0.5² / 100)
+  EXPECT_NEAR(c.f11_relative.mean, 0.005, rounding);
+  EXPECT_NEAR(c.f11.largest, samples[17].f11 / 3, rounding);
+  EXPECT_EQ(c.f11.geometry, samples[17].geometry);
+  EXPECT_NEAR(c.normalized[9].mean, -0.0025, rounding);  // samples − model, with its sign
+  EXPECT_NEAR(c.normalized[9].largest, 0.25, rounding);
+  EXPECT_EQ(c.normalized[9].geometry, samples[42].geometry);
+  EXPECT_EQ(c.normalized[9].wavelength, 0.532);
+  EXPECT_LE(c.normalized[6].largest, rounding);
+  EXPECT_NEAR(polarization_rms(c), 0.025 / std::sqrt(15), rounding);
+  EXPECT_EQ(largest(c).geometry, samples[17].geometry);
+}
+
+RC_GTEST_PROP(Comparison, OfTwoModelsTheOtherWayRoundHasTheOtherSign, (unsigned seed)) {
+  const Model a = random_model(Family::isotropic, {3, 2}, 1, seed),
+              b = random_model(Family::isotropic, {3, 2}, 1, ~seed);
+  const std::vector<double> wavelengths{0.4, 0.5};
+  const std::vector<Geometry> geometries = random_geometries(20, seed);
+  const Comparison ab = compare(a, b, wavelengths, geometries), ba = compare(b, a, wavelengths, geometries);
+  RC_ASSERT(ab.samples == 40);
+  for (std::size_t e = 1; e < 16; ++e) {
+    RC_ASSERT(std::abs(ab.normalized[e].mean + ba.normalized[e].mean) < 1e-14);  // sums of 40 numbers below 10
+    RC_ASSERT(std::abs(ab.normalized[e].rms - ba.normalized[e].rms) < 1e-14);
+    RC_ASSERT(ab.normalized[e].rms <= ab.normalized[e].largest * (1 + 1e-14));
+  }
+}
+
+TEST(Comparison, RefusesWhatHasNoAnswer) {
+  const Model model = material("ptfe-532");
+  EXPECT_NE(message_of([&] { compare(model, {}); }).find("no samples"), std::string::npos);
+  Model negative = model;
+  for (double& a : negative.blocks.front().coefficients) a = -a;
+  EXPECT_NE(message_of([&] { compare(negative, simulated(model, 1)); }).find("f11 of the model is -0.3"),
+            std::string::npos);
+  std::vector<Sample> huge = simulated(model, 2);
+  huge[1].normalized(3, 3) = 1e200;
+  EXPECT_NE(message_of([&] { compare(model, huge); }).find("element 44"), std::string::npos);
+  huge[1].normalized(3, 3) = std::nan("");
+  EXPECT_NE(message_of([&] { compare(model, huge); }).find("sample 2: m44"), std::string::npos);
+}
+
+// Theory 2.5: neither model was fitted to the random directions. Printed digits.
+TEST(PublishedComparison, WithRandomDirectionsGivesTheKnownResiduals) {
+  const std::string file = published("PTFE.data.random.csv");
+  if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");
+  const std::vector<Sample> samples = read_samples(file);
+  const Model coefficients = read_coefficients(published("PTFE.532.coeff.csv"));
+  EXPECT_NEAR(polarization_rms(compare(material("ptfe-532"), samples)), 0.01131, 5e-6);
+  EXPECT_NEAR(polarization_rms(compare(coefficients, samples)), 0.01134, 5e-6);
+  EXPECT_NEAR(polarization_rms(compare(coefficients, samples, Rotation::as_printed)), 0.01753, 5e-6);
+}
+
+}  // namespace
+}  // namespace mmbrdf
