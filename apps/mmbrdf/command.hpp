@@ -35,5 +35,6 @@ Run info_command(CLI::App& app, const CommandLine& line);
 Run materials_command(CLI::App& app, const CommandLine& line);
 Run convert_command(CLI::App& app, const CommandLine& line);
 Run compare_command(CLI::App& app, const CommandLine& line);
+Run subsets_command(CLI::App& app, const CommandLine& line);
 
 }  // namespace mmbrdf::program

@@ -30,6 +30,7 @@ constexpr Command commands[] = {
     {"materials", "List the built-in models.", materials_command},
     {"convert", "Turn a model into another file format or basis.", convert_command},
     {"compare", "Say how far a model is from samples or from another model.", compare_command},
+    {"subsets", "Fit parts of the data apart and say how far the fits agree.", subsets_command},
 };
 
 constexpr const char* footer =

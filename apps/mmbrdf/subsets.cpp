@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf subsets
+
+#include "mmbrdf/subsets.hpp"
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "files.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string data, reference, output;
+  int parts = 3, splits = 1;
+  bool random = false, as_printed = false;
+  unsigned long seed = 0;
+  Basis basis;
+  FitOptions fit;
+  Weights weights = Weights::none;
+  std::optional<double> wavelength_nm;
+  double theta_i_deg = 45;
+  std::vector<double> theta_r_deg = range_from("-60:60:1");
+  Format format = Format::text;
+
+  bool by_lot() const { return random || splits > 1; }
+};
+
+/// What was asked, for all splits the same.
+struct Question {
+  std::vector<Sample> samples;
+  double wavelength;
+  std::vector<Geometry> geometries;
+  std::optional<Model> reference;  // none: the fit to all samples
+};
+
+/// One division of the data.
+struct Split {
+  std::vector<PolarizedCurve> curves;
+  PolarizedCurve reference, uncertainty;  // of the fit to one part, as the covariance of the fit to all says
+  SubsetStatistics statistics;
+  double predicted;
+};
+
+Split split(const Question& q, const Options& o, unsigned long seed) {
+  const Rotation rotation = o.basis.rotation;
+  const SubsetFits fits =
+      fit_parts(o.by_lot() ? random_parts(q.samples, o.parts, seed) : interleaved_parts(q.samples, o.parts), o.basis,
+                o.fit, o.weights);
+  Split result;
+  for (const Model& part : fits.parts) {
+    result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries, rotation));
+  }
+  result.reference = q.reference ? polarized_curve(*q.reference, q.wavelength, q.geometries)
+                                 : polarized_curve(fits.whole, q.wavelength, q.geometries, rotation);
+  result.uncertainty = polarized_uncertainty(fits.whole, q.wavelength, q.geometries, rotation);
+  for (PolarizedBrdf& u : result.uncertainty) {
+    for (double* part : {&u.ss, &u.sp, &u.ps, &u.pp}) {
+      *part *= std::sqrt(o.parts);
+    }
+  }
+  result.statistics = subset_statistics(result.curves, result.reference);
+  result.predicted = relative_rms(result.uncertainty, result.reference);
+  return result;
+}
+
+/// Root mean square over splits.
+double observed(const std::vector<Split>& splits) {
+  double squares = 0;
+  for (const Split& s : splits) {
+    squares += s.statistics.root_mean_variance * s.statistics.root_mean_variance;
+  }
+  return std::sqrt(squares / static_cast<double>(splits.size()));
+}
+
+std::string range_text(const Options& o) {
+  return brief(o.theta_r_deg.front()) + " ... " + brief(o.theta_r_deg.back()) + " degrees (" +
+         counted(static_cast<long>(o.theta_r_deg.size()), "angle") + ")";
+}
+
+std::string division(const Options& o) {
+  return o.by_lot() ? "by lot, seed " + std::to_string(o.seed) : "dealt in turn";
+}
+
+std::string heading(const Question& q, const Options& o) {
+  std::string text = data_name(o.data) + ": " + counted(static_cast<long>(q.samples.size()), "sample") + " in " +
+                     std::to_string(o.parts) + " parts, " + division(o) + "\n";
+  text += "basis " + to_string(o.basis.family) + (o.as_printed ? " as printed" : "") + ", orders " +
+          std::to_string(o.basis.orders.f11) + "," + std::to_string(o.basis.orders.other) + ", weights " +
+          to_string(o.weights) + "\n";
+  return text + "f_ss, f_sp, f_ps, f_pp at " + brief(nanometres(q.wavelength)) +
+         " nm, theta_i = " + brief(o.theta_i_deg) + ", theta_r = " + range_text(o) + "\nall divided by " +
+         (o.reference.empty() ? std::string("the fit to all samples") : base_name(o.reference)) + "\n\n";
+}
+
+std::string percent(const char* what, double value) { return format("%-52s %8.4f %%\n", what, 100 * value); }
+
+std::string text(const Question& q, const Options& o, const std::vector<Split>& splits) {
+  std::string text = heading(q, o);
+  if (splits.size() == 1) {
+    const SubsetStatistics& s = splits.front().statistics;
+    text += percent("mean standard deviation of the fits", s.mean_deviation);
+    text += percent("|mean of the fits - 1|, mean", s.mean_distance);
+    text += percent("|mean of the fits - 1|, largest", s.largest_distance);
+    text.insert(text.size() - 1, " at theta_r = " + brief(o.theta_r_deg[s.largest_at]));
+  } else {
+    text += counted(static_cast<long>(splits.size()), "split") + "\n";
+  }
+  const double predicted = splits.front().predicted;
+  text += percent("standard deviation, root mean square", observed(splits));
+  text += percent("the same as the covariance of one fit predicts it", predicted);
+  if (predicted > 0) {
+    text += format("%-52s %8.4f\n", "observed / predicted", observed(splits) / predicted);
+  }
+  return text;
+}
+
+constexpr std::array<const char*, 4> names{"f_ss", "f_sp", "f_ps", "f_pp"};
+constexpr std::array members{&PolarizedBrdf::ss, &PolarizedBrdf::sp, &PolarizedBrdf::ps, &PolarizedBrdf::pp};
+
+/// The curves of one split.
+std::string curves_csv(const Options& o, const Split& split) {
+  std::string text = "theta_r_deg";
+  for (const std::string name : names) {
+    for (std::size_t k = 1; k <= split.curves.size(); ++k) {
+      text += "," + name + "_" + std::to_string(k);
+    }
+    text += "," + name + "_mean,s_" + name + ",u_" + name + "," + name + "_reference";
+  }
+  for (std::size_t g = 0; g < split.reference.size(); ++g) {
+    text += "\n" + shortest(o.theta_r_deg[g]);
+    for (const auto member : members) {
+      for (const PolarizedCurve& curve : split.curves) {
+        text += "," + exact(curve[g].*member);
+      }
+      for (const PolarizedCurve* curve :
+           {&split.statistics.mean, &split.statistics.deviation, &split.uncertainty, &split.reference}) {
+        text += "," + exact((*curve)[g].*member);
+      }
+    }
+  }
+  return text + "\n";
+}
+
+std::string splits_csv(const Options& o, const std::vector<Split>& splits) {
+  std::string text = "seed,mean_deviation,root_mean_variance,predicted,mean_distance,largest_distance,theta_r_deg\n";
+  for (std::size_t i = 0; i < splits.size(); ++i) {
+    const SubsetStatistics& s = splits[i].statistics;
+    text += std::to_string(o.seed + i);
+    for (const double value :
+         {s.mean_deviation, s.root_mean_variance, splits[i].predicted, s.mean_distance, s.largest_distance}) {
+      text += "," + exact(value);
+    }
+    text += "," + shortest(o.theta_r_deg[s.largest_at]) + "\n";
+  }
+  return text;
+}
+
+std::string csv(const Question&, const Options& o, const std::vector<Split>& splits) {
+  return splits.size() == 1 ? curves_csv(o, splits.front()) : splits_csv(o, splits);
+}
+
+std::string json(const Question& q, const Options& o, const std::vector<Split>& splits) {
+  nlohmann::ordered_json json{{"data", data_name(o.data)},
+                              {"samples", q.samples.size()},
+                              {"parts", o.parts},
+                              {"basis", to_string(o.basis.family)},
+                              {"orders", {o.basis.orders.f11, o.basis.orders.other}},
+                              {"rotation", o.as_printed ? "as_printed" : "covariant"},
+                              {"weights", to_string(o.weights)},
+                              {"wavelength_nm", nanometres(q.wavelength)},
+                              {"theta_i_deg", o.theta_i_deg},
+                              {"angles", o.theta_r_deg.size()}};
+  json["reference"] = o.reference.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(base_name(o.reference));
+  for (std::size_t i = 0; i < splits.size(); ++i) {
+    const SubsetStatistics& s = splits[i].statistics;
+    nlohmann::ordered_json entry;
+    entry["seed"] = o.by_lot() ? nlohmann::ordered_json(o.seed + i) : nlohmann::ordered_json();
+    entry["mean_deviation"] = s.mean_deviation;
+    entry["root_mean_variance"] = s.root_mean_variance;
+    entry["mean_distance"] = s.mean_distance;
+    entry["largest_distance"] = s.largest_distance;
+    entry["largest_at_theta_r_deg"] = o.theta_r_deg[s.largest_at];
+    json["splits"].push_back(entry);
+  }
+  json["observed"] = observed(splits);
+  json["predicted"] = splits.front().predicted;
+  std::ostringstream out;
+  print(json, out);
+  return out.str();
+}
+
+void require_valid(const Options& o) {
+  if (o.theta_i_deg < 0 || o.theta_i_deg > 90) {
+    throw std::invalid_argument("--theta-i " + shortest(o.theta_i_deg) + ": is not in [0, 90] degrees");
+  }
+  for (const double theta : {o.theta_r_deg.front(), o.theta_r_deg.back()}) {
+    if (std::abs(theta) > 90) {
+      throw std::invalid_argument("--range: " + shortest(theta) + " is not in [-90, 90] degrees");
+    }
+  }
+  if (o.as_printed && o.basis.family != Family::germer2017) {
+    throw CLI::ValidationError("--as-printed", "goes with --basis germer2017");
+  }
+  if (o.splits < 1) {
+    throw std::invalid_argument("--splits 0: must be at least 1");
+  }
+  require_kept(o.data, o.output, "data");
+}
+
+/// The wavelength at which the fits are compared: the only one, or the one asked for.
+double wavelength_of(const std::vector<Sample>& samples, const Options& o) {
+  const std::vector<double> present = wavelengths(samples);
+  if (present.size() == 1) {
+    return present.front();
+  }
+  throw CLI::ValidationError("--wavelength is required",
+                             data_name(o.data) + " has samples at " + nanometre_list(present));
+}
+
+Question question(const Options& o) {
+  std::optional<std::vector<double>> wavelengths_nm;
+  if (o.wavelength_nm) {
+    wavelengths_nm = {*o.wavelength_nm};
+  }
+  Question q{samples_at(o.data, wavelengths_nm), 0, {}, {}};
+  q.wavelength = wavelength_of(q.samples, o);
+  std::vector<double> theta_r;
+  for (const double theta : o.theta_r_deg) {
+    theta_r.push_back(radians(theta));
+  }
+  q.geometries = in_plane(radians(o.theta_i_deg), theta_r);
+  if (!o.reference.empty()) {
+    q.reference = open_model(o.reference);
+  }
+  return q;
+}
+
+void study(Options o) {
+  require_valid(o);
+  o.basis.rotation = o.as_printed ? Rotation::as_printed : Rotation::covariant;
+  const Question q = question(o);
+  std::vector<Split> splits;
+  try {
+    for (int i = 0; i < o.splits; ++i) {
+      splits.push_back(split(q, o, o.seed + static_cast<unsigned long>(i)));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(data_name(o.data) + ": " + plain_message(error));
+  }
+  write_text(o.output, (o.format == Format::text ? text : o.format == Format::csv ? csv : json)(q, o, splits));
+}
+
+constexpr const char* footer =
+    "The samples of one wavelength are divided into K parts, and each is fitted apart. The fits are compared in the\n"
+    "plane of incidence, where f_ss, f_sp, f_ps, f_pp are BRDFs between linear polarizations, the incident one first:\n"
+    "how much they differ from each other (standard deviation with K - 1 degrees of freedom) and their mean from the\n"
+    "reference. Beside it stands what the covariance of the one fit to all samples predicts for a fit to a K-th of\n"
+    "them. theta_r > 0 is forward, towards the specular direction. csv has the curves (s_: standard deviation of the\n"
+    "fits, u_: predicted), with --splits a row for each split.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf subsets data.csv --wavelength 532\n"
+    "  mmbrdf subsets data.csv --splits 30 --seed 1";
+
+}  // namespace
+
+Run subsets_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input")->required();
+  add_option(app, "--k", o->parts, whole_number, "K", "Number of parts [3]");
+  app.add_flag("--random", o->random, "Divide by lot; else every K-th sample is of one part");
+  add_option(app, "--splits", o->splits, whole_number, "N",
+             "Divide by lot as often as this, with seeds S, S+1, ... [1]");
+  add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the lot [0]");
+  add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM", "Of the samples, in nm, if there are several");
+  add_option(app, "--theta-i", o->theta_i_deg, number, "DEG", "Polar angle of incidence [45]");
+  add_option(app, "--range", o->theta_r_deg, range_from, "FROM:TO:STEP", "Polar angles of the detector [-60:60:1]");
+  add_basis_option(app, o->basis);
+  app.add_flag("--as-printed", o->as_printed, "germer2017: fit and evaluate at the azimuths as they are");
+  add_weights_option(app, o->weights);
+  add_model(app, o->reference, "--reference")
+      ->required(false)
+      ->option_text("MODEL")
+      ->description(
+          "What the fits are divided by: built-in name, JSON model or\ncoefficient CSV [the fit to all samples]");
+  add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  app.footer(footer);
+  return [o] { study(*o); };
+}
+
+}  // namespace mmbrdf::program

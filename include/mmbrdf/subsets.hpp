@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The subset method (Germer 2017, section 5): disjoint parts of the data are fitted apart, and the spread of what the
+/// fits predict is a measure of the uncertainty of one of them. The covariance of a single fit predicts that spread
+/// (theory 4.2), so the method tests the covariance; alone it knows little: with k parts a standard deviation has k − 1
+/// degrees of freedom, and what all parts share (scale, angles, misfit of the model) does not show in it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mmbrdf/analysis.hpp"
+#include "mmbrdf/fit.hpp"
+
+namespace mmbrdf {
+
+/// Sample number s, from 0, goes to part s mod k: the paper's "every other three data points". Throws
+/// std::invalid_argument for k below 2 or more parts than samples.
+std::vector<std::vector<Sample>> interleaved_parts(std::span<const Sample> samples, int k);
+
+/// Parts by lot, whose sizes differ by 1 at most. The same seed gives the same parts. Throws as above.
+std::vector<std::vector<Sample>> random_parts(std::span<const Sample> samples, int k, unsigned long seed);
+
+/// The fit to all samples, and to each part.
+struct SubsetFits {
+  Model whole;
+  std::vector<Model> parts;
+};
+
+/// Throws std::invalid_argument as fit() does, with the number of the part; and for a part that leaves more
+/// combinations free than all samples do, so that its fit would not be one of the same model.
+SubsetFits fit_parts(std::span<const std::vector<Sample>> parts, const Basis& basis = {},
+                     const FitOptions& options = {}, Weights weights = Weights::none);
+
+/// Directions in the plane of incidence at one theta_i: the source at azimuth 0, the detector at azimuth π (forward)
+/// for theta_r ≥ 0, at azimuth 0 (back, towards the source) for theta_r < 0. Radians.
+std::vector<Geometry> in_plane(double theta_i, std::span<const double> theta_r);
+
+/// f_ss, f_sp, f_ps, f_pp in sr⁻¹, one for each geometry.
+using PolarizedCurve = std::vector<PolarizedBrdf>;
+
+/// What a model predicts at a wavelength (micrometres). Throws std::invalid_argument for an invalid model, wavelength
+/// or geometry.
+PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries,
+                               Rotation rotation = Rotation::covariant);
+
+/// Its standard uncertainty in first order. f_ab is linear in F11, F12, F21, F22 of the sp frame, so
+///   u²(f_ab) = ¼ Σ_ee' c_e c_e' cov(F_e, F_e'),  c = (1, a, b, ab)   (theory 4.2).
+/// Throws std::invalid_argument as prepare_uncertainty does: without covariance, it is not known.
+PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
+                                     Rotation rotation = Rotation::covariant);
+
+/// How k curves lie to each other and to a reference. All is relative to the reference.
+struct SubsetStatistics {
+  PolarizedCurve mean;            ///< of the curves, sr⁻¹
+  PolarizedCurve deviation;       ///< standard deviation of the k curves, k − 1 degrees of freedom, sr⁻¹
+  double mean_deviation = 0;      ///< deviation / reference, mean over geometries and the four curves
+  double root_mean_variance = 0;  ///< its root mean square; unlike the mean not too small for few curves
+  double mean_distance = 0;       ///< mean of |mean / reference − 1|
+  double largest_distance = 0;    ///< largest of them
+  std::size_t largest_at = 0;     ///< its geometry
+};
+
+/// Throws std::invalid_argument for fewer than 2 curves, curves of other lengths than the reference, empty ones, or a
+/// reference that is not positive.
+SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const PolarizedCurve& reference);
+
+/// Root mean square of uncertainty / reference: what root_mean_variance estimates. That of a fit to one of k equal
+/// parts is √k times that of the fit to all. Throws std::invalid_argument as subset_statistics does.
+double relative_rms(const PolarizedCurve& uncertainty, const PolarizedCurve& reference);
+
+}  // namespace mmbrdf

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/subsets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "cases.hpp"
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/materials.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "mmbrdf/uncertainty.hpp"
+#include "published.hpp"
+
+namespace mmbrdf {
+namespace {
+
+const std::vector<double> green{0.532};
+
+bool has(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+std::vector<Sample> simulated(int count, double speckle) {
+  return simulate(material("ptfe-532"), green, random_geometries(count, 5), speckle, 5);
+}
+
+/// theta_i = 45 degrees, theta_r = −60 … 60 degrees in steps of 1 (theory 4.2).
+std::vector<Geometry> of_the_paper() {
+  std::vector<double> theta_r;
+  for (int t = -60; t <= 60; ++t) theta_r.push_back(radians(t));
+  return in_plane(radians(45), theta_r);
+}
+
+std::vector<PolarizedCurve> curves(const std::vector<Model>& models, Rotation rotation = Rotation::covariant) {
+  std::vector<PolarizedCurve> result;
+  for (const Model& model : models) result.push_back(polarized_curve(model, 0.532, of_the_paper(), rotation));
+  return result;
+}
+
+TEST(Subsets, AreDisjointAndTogetherAreAllSamples) {
+  const std::vector<Sample> samples = simulated(10, 0);
+  for (const auto& parts : {interleaved_parts(samples, 3), random_parts(samples, 3, 7)}) {
+    std::vector<double> found, expected;
+    for (const std::vector<Sample>& part : parts) {
+      EXPECT_GE(part.size(), 3u);
+      EXPECT_LE(part.size(), 4u);
+      for (const Sample& s : part) found.push_back(s.f11);
+    }
+    for (const Sample& s : samples) expected.push_back(s.f11);
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(found, expected);
+  }
+  EXPECT_EQ(interleaved_parts(samples, 3)[1][2].geometry, samples[7].geometry);
+}
+
+TEST(Subsets, OfOneSeedAreTheSameAndOfAnotherAreNot) {
+  const std::vector<Sample> samples = simulated(50, 0);
+  const auto first = [&](unsigned long seed) { return random_parts(samples, 2, seed)[0][0].f11; };
+  EXPECT_EQ(first(1), first(1));
+  int others = 0;
+  for (unsigned long seed = 0; seed < 20; ++seed) others += first(seed) == first(1) ? 0 : 1;
+  EXPECT_GT(others, 15);  // by chance 1 of 50 is the same
+}
+
+TEST(Subsets, StatisticsAreThoseOfTheirDefinition) {
+  const PolarizedCurve reference{{1, 2, 4, 5}, {1, 1, 1, 1}};
+  const std::vector<PolarizedCurve> two{{{1, 2, 4, 5}, {1, 1, 1, 1}}, {{1, 2, 4, 5}, {1, 1, 1.5, 1}}};
+  const SubsetStatistics s = subset_statistics(two, reference);
+  constexpr double rounding = 1e-15;
+  const double deviation = 0.5 / std::numbers::sqrt2;  // of 1 and 1.5, with one degree of freedom
+  EXPECT_NEAR(s.deviation[1].ps, deviation, rounding);
+  EXPECT_NEAR(s.mean_deviation, deviation / 8, rounding);
+  EXPECT_NEAR(s.root_mean_variance, deviation / std::sqrt(8), rounding);
+  EXPECT_NEAR(s.mean[1].ps, 1.25, rounding);
+  EXPECT_NEAR(s.mean_distance, 0.25 / 8, rounding);
+  EXPECT_NEAR(s.largest_distance, 0.25, rounding);
+  EXPECT_EQ(s.largest_at, 1u);
+  EXPECT_NEAR(relative_rms({{0.1, 0, 0, 0}, {0, 0, 0.3, 0}}, reference), std::sqrt(0.1 / 8), rounding);
+}
+
+TEST(Subsets, PlaneOfIncidenceRunsFromTheSourceToForward) {
+  const std::vector<double> theta_r{radians(-45), 0, radians(45)};
+  const std::vector<Geometry> g = in_plane(radians(45), theta_r);
+  EXPECT_EQ(g[0].reflected, g[0].incident);  // retro-reflection
+  const Vector3 in = unit_vector(g[2].incident), out = unit_vector(g[2].reflected);
+  EXPECT_NEAR(in[0] + out[0], 0, 1e-15);  // specular
+}
+
+TEST(Subsets, UncertaintyOfTheSumOverPolarizationsIsThatOfF11) {
+  const Model model = material("ptfe-532");
+  const std::vector<Geometry> geometries = of_the_paper();
+  const PolarizedCurve u = polarized_uncertainty(model, 0.532, geometries);
+  const PreparedUncertainty prepared = prepare_uncertainty(model, 0.532);
+  for (std::size_t g = 0; g < geometries.size(); g += 10) {
+    const MuellerCovariance c = prepared.evaluate(geometries[g], Frame::sp);
+    // Σ_ab u²(f_ab) = Σ_e u²(F_e): the products of the factors add up to 0, but for e = e'.
+    const double found = u[g].ss * u[g].ss + u[g].sp * u[g].sp + u[g].ps * u[g].ps + u[g].pp * u[g].pp;
+    EXPECT_NEAR(found / (c(0, 0) + c(1, 1) + c(4, 4) + c(5, 5)), 1, 1e-12);
+  }
+}
+
+// With a model of the same orders and the weights that belong to the noise. Ten splits of the same samples have some 20
+// degrees of freedom, and the four curves at all angles several times as many: the ratio is known to about 0.05.
+TEST(Subsets, ScatterAsTheCovarianceOfOneFitSays) {
+  Basis basis;
+  basis.orders = {4, 2};
+  const Model truth = fit(simulated(300, 0.01), basis).model;
+  const std::vector<Sample> samples = simulate(truth, green, random_geometries(300, 6), 0.01, 6);
+  double squares = 0, predicted = 0;
+  constexpr int splits = 10;
+  for (unsigned long seed = 0; seed < splits; ++seed) {
+    const SubsetFits fits = fit_parts(random_parts(samples, 3, seed), basis, {}, Weights::speckle);
+    const PolarizedCurve reference = polarized_curve(fits.whole, 0.532, of_the_paper());
+    squares += std::pow(subset_statistics(curves(fits.parts), reference).root_mean_variance, 2) / splits;
+    predicted = std::sqrt(3) * relative_rms(polarized_uncertainty(fits.whole, 0.532, of_the_paper()), reference);
+  }
+  EXPECT_GT(std::sqrt(squares) / predicted, 0.85);
+  EXPECT_LT(std::sqrt(squares) / predicted, 1.15);
+}
+
+TEST(Subsets, RefuseWhatHasNoAnswer) {
+  const std::vector<Sample> samples = simulated(40, 0);
+  EXPECT_PRED2(has, message_of([&] { interleaved_parts(samples, 1); }), "k = 1, must be at least 2");
+  EXPECT_PRED2(has, message_of([&] { random_parts(samples, 41, 0); }), "k = 41, more than the 40 samples");
+  EXPECT_PRED2(has, message_of([&] { fit_parts(interleaved_parts(samples, 2)); }),
+               "part 1 of 2, 20 samples: the data do not determine the model");
+  // The published sets always have a solution, of smallest norm: then it is the rank that must not fall.
+  EXPECT_PRED2(has, message_of([&] {
+                 fit_parts(interleaved_parts(samples, 2), {Family::germer2017, {7, 4}});
+               }),
+               "part 1 of 2, 20 samples: block 11 has rank 20, with all samples 40");
+  const PolarizedCurve good{{1, 1, 1, 1}}, zero{{1, 1, 0, 1}};
+  const std::vector<PolarizedCurve> two{good, good}, one{good}, uneven{good, {}};
+  EXPECT_PRED2(has, message_of([&] { subset_statistics(one, good); }), "fewer than 2 curves");
+  EXPECT_PRED2(has, message_of([&] { subset_statistics(two, zero); }), "f_ps of the reference is 0 /sr at geometry 1");
+  EXPECT_PRED2(has, message_of([&] { subset_statistics(two, {}); }), "no geometries");
+  EXPECT_PRED2(has, message_of([&] { subset_statistics(uneven, good); }),
+               "a curve of 0 geometries, the reference has 1");
+  EXPECT_PRED2(has, message_of([&] { relative_rms({}, good); }), "a curve of 0 geometries");
+  Model silent = material("ptfe-532");
+  silent.blocks[3].covariance.clear();
+  EXPECT_PRED2(has, message_of([&] { polarized_uncertainty(silent, 0.532, of_the_paper()); }), "is not known");
+}
+
+// The paper's section 5: "0.59 %", "2.6 %", "0.52 %". Theory 4.2 says how: published sets fitted at the azimuths as
+// they are, every third point, compared with the published fit of the grid. Printed digits.
+TEST(PublishedSubsets, GiveThePapersNumbersInThePapersWayAndLessInAnIsotropicOne) {
+  const std::string file = published("PTFE.data.random.csv");
+  if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");
+  const auto parts = interleaved_parts(read_samples(file), 3);
+  const PolarizedCurve reference =
+      polarized_curve(read_coefficients(published("PTFE.532.coeff.csv")), 0.532, of_the_paper());
+  Basis printed;
+  printed.family = Family::germer2017;
+  printed.rotation = Rotation::as_printed;
+  const SubsetStatistics paper =
+      subset_statistics(curves(fit_parts(parts, printed).parts, Rotation::as_printed), reference);
+  EXPECT_NEAR(paper.mean_distance, 0.0059, 5e-5);
+  EXPECT_NEAR(paper.largest_distance, 0.0264, 5e-5);
+  EXPECT_NEAR(paper.mean_deviation, 0.0052, 5e-5);
+  const SubsetStatistics isotropic = subset_statistics(curves(fit_parts(parts).parts), reference);
+  EXPECT_NEAR(isotropic.mean_distance, 0.0052, 5e-5);
+  EXPECT_NEAR(isotropic.largest_distance, 0.024, 5e-4);
+  EXPECT_NEAR(isotropic.mean_deviation, 0.0039, 5e-5);
+}
+
+// Theory 4.2 has the means over angles and curves, 0.37 % predicted and 0.35 % observed; these are root mean squares,
+// 0.381 and (with other splits than those) about as much. The limits are theory's.
+TEST(PublishedSubsets, OfThirtyRandomSplitsScatterAsTheCovarianceOfOneFitSays) {
+  const std::string file = published("PTFE.data.random.csv");
+  if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");
+  const std::vector<Sample> samples = read_samples(file);
+  const Model whole = fit(samples).model;
+  const PolarizedCurve reference = polarized_curve(whole, 0.532, of_the_paper());
+  const PolarizedCurve uncertainty = polarized_uncertainty(whole, 0.532, of_the_paper());
+  double mean = 0;
+  for (std::size_t g = 0; g < reference.size(); ++g)
+    mean += uncertainty[g].ss / reference[g].ss + uncertainty[g].sp / reference[g].sp +
+            uncertainty[g].ps / reference[g].ps + uncertainty[g].pp / reference[g].pp;
+  EXPECT_NEAR(std::sqrt(3) * mean / (4 * 121), 0.0037, 5e-5);  // the printed digits
+  double squares = 0;
+  constexpr int splits = 30;
+  for (unsigned long seed = 0; seed < splits; ++seed) {
+    std::vector<Model> models;
+    for (const std::vector<Sample>& part : random_parts(samples, 3, seed)) models.push_back(fit(part).model);
+    squares += std::pow(subset_statistics(curves(models), reference).root_mean_variance, 2) / splits;
+  }
+  const double ratio = std::sqrt(squares) / (std::sqrt(3) * relative_rms(uncertainty, reference));
+  EXPECT_GT(ratio, 0.85);
+  EXPECT_LT(ratio, 1.1);
+}
+
+}  // namespace
+}  // namespace mmbrdf
