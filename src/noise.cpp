@@ -139,9 +139,12 @@ double standard_deviation(const NoiseLaw& law, const Geometry& geometry) {
   return law.scale * std::sqrt(a / b);
 }
 
-double relative_weight(const NoiseLaw& law, const Geometry& geometry) {
+double weight(const NoiseLaw& law, const Geometry& geometry) {
   const auto [a, b] = powers(law, geometry, {law.incident_exponent > 0, law.reflected_exponent < 0}, "weight is");
-  return b / a;
+  const double result = b / a / (law.scale * law.scale);
+  if (!std::isfinite(result))
+    throw std::invalid_argument("noise law: scale = " + shortest(law.scale) + ", the weight is infinite");
+  return result;
 }
 
 NoiseEstimate estimate_noise(std::span<const Sample> samples, std::span<const Mueller> residuals,

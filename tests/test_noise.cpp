@@ -37,7 +37,7 @@ TEST(Noise, LawIsOneFormula) {
   EXPECT_NEAR(standard_deviation({0.01, 2, 0}, g), 0.01 * std::cos(0.7), 1e-17);
   EXPECT_EQ(standard_deviation({0.01, 3, 4}, {}), 0.01);
   const NoiseLaw law{0.01, 0.8, 1.2};
-  EXPECT_NEAR(relative_weight(law, g), std::pow(0.01 / standard_deviation(law, g), 2), 1e-15);
+  EXPECT_NEAR(weight(law, g) * std::pow(standard_deviation(law, g), 2), 1, 1e-15);
 }
 
 // 100 measurements of known noise. Estimates divided by their own uncertainties have a standard deviation of 1; that of
@@ -124,10 +124,44 @@ TEST(Noise, RefusesWhatDoesNotDetermineALaw) {
   grazing[4].geometry.reflected.theta = radians(90);
   EXPECT_PRED2(has, said(grazing, m.residuals), "theta_r = 90 degrees");
   EXPECT_PRED2(has, message_of([] { standard_deviation({}, {{}, {radians(90), 0}}); }), "the noise is infinite");
-  EXPECT_PRED2(has, message_of([] { relative_weight({}, {{radians(90), 0}, {}}); }), "the weight is infinite");
-  EXPECT_LT(relative_weight({}, {{}, {radians(90), 0}}), 1e-16);  // infinite noise is weight 0
+  EXPECT_PRED2(has, message_of([] { weight({}, {{radians(90), 0}, {}}); }), "the weight is infinite");
+  EXPECT_LT(weight({}, {{}, {radians(90), 0}}), 1e-16);  // infinite noise is weight 0
+  EXPECT_PRED2(has, message_of([] { weight({0, 1, 1}, {}); }), "scale = 0");
   const std::vector<Element> none{{0, 4}};
   EXPECT_PRED2(has, message_of([&] { estimate_noise(m.samples, m.residuals, none); }), "element (0, 4)");
+}
+
+// Two wavelengths, one noisier than the other. With the right weights the sum of squares is the number of rows, within
+// √(2 / rows) = 0.04; f11 has 80 coefficients for 1000 rows.
+TEST(Noise, EstimatedWeightsAreThoseOfEachWavelength) {
+  const Model model = material("ptfe");
+  std::vector<Sample> samples;
+  const std::array wavelengths{0.532, 0.633}, scales{0.01, 0.03};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<Sample> here =
+        simulate(model, std::span(wavelengths).subspan(i, 1), random_geometries(500, 8), scales[i], i);
+    samples.insert(samples.end(), here.begin(), here.end());
+  }
+  const FitResult result = fit(samples, {}, {}, Weights::estimated);
+  ASSERT_EQ(result.noise.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [law, covariance, rows] = result.noise[i];
+    EXPECT_EQ(rows, 1000);
+    EXPECT_NEAR(law.scale, scales[i], 4 * scales[i] * std::sqrt(covariance[0]));
+    EXPECT_NEAR(law.incident_exponent, 1, 4 * std::sqrt(covariance[4]));
+    EXPECT_NEAR(law.reflected_exponent, 1, 4 * std::sqrt(covariance[8]));
+  }
+  for (const std::size_t e : {1u, 3u, 6u, 15u}) EXPECT_NEAR(result.elements[e].chi_squared / 1000, 1, 0.15) << e;
+  EXPECT_NEAR(result.elements[0].chi_squared / (1000 - 80), 1, 0.15);
+  EXPECT_TRUE(fit(samples, {}, {}, Weights::speckle).noise.empty());
+}
+
+TEST(Noise, WeightsNameTheSample) {
+  std::vector<Sample> samples = with_speckle(0.01, 1, 5).samples;
+  samples[3].geometry.incident.theta = radians(90);
+  const std::string message = message_of([&] { noise_weights(samples, material("ptfe-532"), {}); });
+  EXPECT_NE(message.find("sample 4: noise law: theta_i = 90 degrees, where the weight is infinite"), std::string::npos)
+      << message;
 }
 
 /// The law of the isotropic fit to the samples of one file, at one wavelength (nm).

@@ -80,7 +80,7 @@ void note_free_combinations(const FitResult& result) {
   }
 }
 
-/// Only speckle weights, which need a first fit, hold all samples in memory.
+/// Only weights, which need a first fit, hold all samples in memory.
 FitResult fitted(const Options& options, long& rows) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
@@ -100,11 +100,23 @@ FitResult fitted(const Options& options, long& rows) {
   }
 }
 
+/// Keeps the laws from which the weights are.
+void record_noise(Model& model, const FitResult& result) {
+  std::string text;
+  for (std::size_t i = 0; i < result.noise.size(); ++i) {
+    text += (i > 0 ? "; " : "") + noise_line(result, i);
+  }
+  if (!text.empty()) {
+    model.provenance["noise"] = text;
+  }
+}
+
 void fit_data(const Options& options, const CommandLine& line) {
   require_valid(options);
   long rows = 0;
   FitResult result = fitted(options, rows);
   sign(result.model, options, rows, line);
+  record_noise(result.model, result);
   save_or_warn(result.model, options);
   print({.data = data_name(options.data), .weights = to_string(options.weights), .rows = rows, .result = result},
         options.format);
@@ -120,7 +132,7 @@ constexpr const char* footer =
     "together are fitted together, as a block. With several wavelengths, f11 is divided by each one's own reflectance\n"
     "at normal incidence, unless --reflectance gives it; the model keeps that table. Any number of rows takes the "
     "same\n"
-    "memory, but for --weights speckle.\n"
+    "memory, but for --weights.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf fit data.csv -o model.json\n"

@@ -2,6 +2,7 @@
 #include "fit_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -55,6 +56,10 @@ void print_text(const FitReport& report) {
   std::cout << format("\nrms of %-27s %.6g\n", f11, report.result.elements[0].rms)
             << format("rms of %-27s %.6g\n", "the 15 others / f11", polarization_rms(report.result))
             << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
+  for (std::size_t i = 0; i < report.result.noise.size(); ++i) {
+    std::cout << (i == 0 ? "\nnoise of elements 14 and 41, relative for f11\n" : "") << noise_line(report.result, i)
+              << '\n';
+  }
 }
 
 void print_csv(const FitReport& report) {
@@ -101,6 +106,22 @@ Json blocks_json(const FitResult& result) {
   return json;
 }
 
+Json noise_json(const FitResult& result) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < result.noise.size(); ++i) {
+    const auto& [law, covariance, rows] = result.noise[i];
+    json.push_back({{"wavelength_nm", nanometres(result.model.validity.wavelengths[i])},
+                    {"scale", law.scale},
+                    {"u_scale", law.scale * std::sqrt(covariance[0])},
+                    {"incident_exponent", law.incident_exponent},
+                    {"u_incident_exponent", std::sqrt(covariance[4])},
+                    {"reflected_exponent", law.reflected_exponent},
+                    {"u_reflected_exponent", std::sqrt(covariance[8])},
+                    {"rows", rows}});
+  }
+  return json;
+}
+
 void print_json(const FitReport& report) {
   const Model& model = report.result.model;
   Json json{{"data", report.data}, {"rows", report.rows}, {"weights", report.weights}};
@@ -110,10 +131,21 @@ void print_json(const FitReport& report) {
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);
   json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);
+  if (!report.result.noise.empty()) {
+    json["noise"] = noise_json(report.result);
+  }
   print(json);
 }
 
 }  // namespace
+
+std::string noise_line(const FitResult& result, std::size_t i) {
+  const auto& [law, covariance, rows] = result.noise[i];
+  return brief(nanometres(result.model.validity.wavelengths[i])) + " nm: " +
+         format("sigma^2 = %.5f^2 cos(theta_i)^%.3f / cos(theta_r)^%.3f, u %.5f, %.3f, %.3f", law.scale,
+                law.incident_exponent, law.reflected_exponent, law.scale * std::sqrt(covariance[0]),
+                std::sqrt(covariance[4]), std::sqrt(covariance[8]));
+}
 
 void print(const FitReport& report, Format format) {
   (format == Format::text ? print_text : format == Format::csv ? print_csv : print_json)(report);

@@ -11,10 +11,13 @@ namespace mmbrdf::program {
 
 struct FitReport {
   std::string data;     ///< name of the data file
-  std::string weights;  ///< none or speckle
+  std::string weights;  ///< none, speckle or estimated
   long rows;
   const FitResult& result;
 };
+
+/// "532 nm: sigma^2 = 0.0051^2 cos(theta_i)^0.80 / cos(theta_r)^1.04" with standard uncertainties: the law number i.
+std::string noise_line(const FitResult& result, std::size_t i);
 
 /// The table of residuals, on standard output.
 void print(const FitReport& report, Format format);

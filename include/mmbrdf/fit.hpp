@@ -27,6 +27,7 @@
 #include "mmbrdf/dataset.hpp"
 #include "mmbrdf/least_squares.hpp"
 #include "mmbrdf/model.hpp"
+#include "mmbrdf/noise.hpp"
 
 namespace mmbrdf {
 
@@ -45,6 +46,8 @@ enum class Weights {
   none,  ///< every row counts the same
   speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1).
             ///< f11 is then fitted twice: the first, unweighted fit tells what σ is relative to.
+  estimated,  ///< 1/σ² of the law that estimate_noise() finds, at each wavelength, in what the first fit leaves of the
+              ///< elements 14 and 41; as above otherwise.
 };
 
 enum class Covariance {
@@ -79,6 +82,7 @@ struct FitResult {
   std::array<ElementFit, 16> elements;  ///< in row-major order
   std::vector<Mueller> residuals;  ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
                                    ///< Only from fit(); a FitAccumulator keeps no samples.
+  std::vector<NoiseEstimate> noise;  ///< of Weights::estimated: the law at each fitted wavelength; else empty
 };
 
 /// Root mean square over the 15 normalised elements.
@@ -148,9 +152,12 @@ class FitAccumulator {
 FitResult fit(std::span<const Sample> samples, const Basis& basis = {}, const FitOptions& options = {},
               Weights weights = Weights::none);
 
-/// Relative weights of the speckle law, as FitAccumulator::add takes them: w = cos θr / cos θi for m_ij, and for f11 /
-/// reflectance w / (f11 / reflectance)² with the f11 of `model`, to which its noise is relative. Throws
-/// std::invalid_argument, with the sample's number, where θi is 90 degrees or f11 of the model is not positive.
+/// Weights of a noise law, as FitAccumulator::add takes them: w = 1/σ² for m_ij, and for f11 / reflectance
+/// w / (f11 / reflectance)² with the f11 of `model`, to which its noise is relative. Throws std::invalid_argument, with
+/// the sample's number, where weight() does or f11 of the model is not positive.
+std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model& model, const NoiseLaw& law);
+
+/// The same for the speckle law with scale 1: w = cos θr / cos θi.
 std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model);
 
 /// Measured − model for each sample, as in FitResult.

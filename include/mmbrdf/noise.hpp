@@ -23,9 +23,9 @@ struct NoiseLaw {
 /// if a < 0 (to 1e-9).
 double standard_deviation(const NoiseLaw& law, const Geometry& geometry);
 
-/// scale² / σ², the weight of a sample in a fit: cos^b θr / cos^a θi. Throws std::invalid_argument where that is
-/// infinite: at θi = 90 degrees if a > 0, at θr = 90 degrees if b < 0.
-double relative_weight(const NoiseLaw& law, const Geometry& geometry);
+/// 1 / σ², the weight of a sample in a fit. Throws std::invalid_argument where that is infinite: for scale 0, at θi =
+/// 90 degrees if a > 0, at θr = 90 degrees if b < 0.
+double weight(const NoiseLaw& law, const Geometry& geometry);
 
 /// An element by row and column, from 0.
 using Element = std::pair<int, int>;

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fits of samples that are held in memory: what needs them a second time. Part of fit.hpp.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mmbrdf/fit.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+/// A model prepared at the wavelengths that were asked for so far.
+class PreparedAt {
+ public:
+  PreparedAt(const Model& model, Rotation rotation) : model_(model), rotation_(rotation) {}
+  const PreparedModel& operator()(double wavelength) {
+    const auto at = prepared_.find(wavelength);
+    return at != prepared_.end() ? at->second
+                                 : prepared_.emplace(wavelength, prepare(model_, wavelength, rotation_)).first->second;
+  }
+
+ private:
+  const Model& model_;
+  Rotation rotation_;
+  std::map<double, PreparedModel> prepared_;
+};
+
+Mueller ones() {
+  Mueller result;
+  result.elements.fill(1);
+  return result;
+}
+
+/// Of one sample, whose f11 is relative to that of the model.
+Mueller weights_of(const Sample& sample, const NoiseLaw& law, const PreparedModel& prepared, double reflectance) {
+  const double f11 = prepared.f11(sample.geometry) / reflectance;
+  if (!(f11 > 0)) throw std::invalid_argument("f11 of the unweighted fit is " + shortest(f11));
+  Mueller weights;
+  weights.elements.fill(weight(law, sample.geometry));
+  weights(0, 0) /= f11 * f11;
+  return weights;
+}
+
+/// `law_at` gives the law at a wavelength.
+std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& model, const auto& law_at) {
+  std::vector<Mueller> weights;
+  PreparedAt prepared(model, Rotation::covariant);
+  for (const auto& sample : samples) {
+    const double wavelength = sample.wavelength;
+    try {
+      weights.push_back(weights_of(sample, law_at(wavelength), prepared(wavelength), model.reflectance.at(wavelength)));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("weights: sample " + std::to_string(weights.size() + 1) + ": " + error.what());
+    }
+  }
+  return weights;
+}
+
+/// Which of the fitted wavelengths it is.
+std::size_t place(const Model& model, double wavelength) {
+  const std::vector<double>& list = model.validity.wavelengths;
+  const auto near = [=](double other) { return std::abs(wavelength - other) <= wavelength_resolution; };
+  return static_cast<std::size_t>(std::find_if(list.begin(), list.end(), near) - list.begin());
+}
+
+/// The law at each fitted wavelength, from what a first fit leaves.
+std::vector<NoiseEstimate> noise_at_wavelengths(const Model& first, std::span<const Sample> samples,
+                                                std::span<const Mueller> left) {
+  const std::size_t count = first.validity.wavelengths.size();
+  std::vector<std::vector<Sample>> samples_at(count);
+  std::vector<std::vector<Mueller>> left_at(count);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const std::size_t at = place(first, samples[s].wavelength);
+    samples_at[at].push_back(samples[s]);
+    left_at[at].push_back(left[s]);
+  }
+  std::vector<NoiseEstimate> laws;
+  for (std::size_t at = 0; at < count; ++at) laws.push_back(estimate_noise(samples_at[at], left_at[at]));
+  return laws;
+}
+
+}  // namespace
+
+std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model& model, const NoiseLaw& law) {
+  return weights_of(samples, model, [&](double) { return law; });
+}
+
+std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model) {
+  return noise_weights(samples, model, {});
+}
+
+FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
+  FitAccumulator accumulator(basis);
+  accumulator.add(samples);
+  FitResult result = accumulator.solved(options);
+  std::vector<Mueller> list;
+  std::vector<NoiseEstimate> noise;
+  if (weights == Weights::estimated)
+    noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples, basis.rotation));
+  if (weights != Weights::none) {
+    list = weights_of(samples, result.model, [&](double wavelength) {
+      return noise.empty() ? NoiseLaw{} : noise[place(result.model, wavelength)].law;
+    });
+    accumulator = FitAccumulator(basis);
+    accumulator.add(samples, list);
+    result = accumulator.solved(options);
+  }
+  result.noise = std::move(noise);
+  result.residuals = residuals(result.model, samples, basis.rotation);
+  if (options.covariance == Covariance::sandwich) {
+    list.resize(samples.size(), ones());
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      const double phi_i = samples[s].geometry.incident.phi;
+      Mueller r = accumulator.turns() ? turned(result.residuals[s], -phi_i) : result.residuals[s];
+      r(0, 0) /= result.model.reflectance.at(samples[s].wavelength);
+      for (std::size_t e = 0; e < 16; ++e) list[s].elements[e] *= list[s].elements[e] * r.elements[e] * r.elements[e];
+    }
+    FitAccumulator squares(basis);
+    squares.add(samples, list);
+    accumulator.use_sandwich(result, options, squares);
+  }
+  return result;
+}
+
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation) {
+  std::vector<Mueller> result;
+  result.reserve(samples.size());
+  PreparedAt prepared(model, rotation);
+  for (const Sample& sample : samples) {
+    const Mueller predicted = prepared(sample.wavelength).evaluate(sample.geometry);
+    Mueller difference = sample.normalized - normalized(predicted);
+    difference(0, 0) = sample.f11 - predicted(0, 0);
+    result.push_back(difference);
+  }
+  return result;
+}
+
+}  // namespace mmbrdf
