@@ -104,7 +104,7 @@ TEST(Subsets, UncertaintyOfTheSumOverPolarizationsIsThatOfF11) {
 
 // 40 measurements of known noise, fitted with a model of the same orders and the weights that belong to it. Each tells
 // the spread of three fits, with 2 degrees of freedom: 80 together, so the ratio is known to 1/√160 = 0.08 even if the
-// four curves move as one at all angles, and they do not.
+// four curves move as one at all angles, and they do not. Parts of 100 samples for 14 coefficients of f11 make it 1.06.
 TEST(Subsets, ScatterAsTheCovarianceOfOneFitSays) {
   Basis basis;
   basis.orders = {4, 2};
@@ -117,7 +117,7 @@ TEST(Subsets, ScatterAsTheCovarianceOfOneFitSays) {
     observed += std::pow(subset_statistics(curves(fits.parts), reference).root_mean_variance, 2);
     predicted += 3 * std::pow(relative_rms(polarized_uncertainty(fits.whole, 0.532, of_the_paper()), reference), 2);
   }
-  EXPECT_NEAR(std::sqrt(observed / predicted), 1, 0.16);
+  EXPECT_NEAR(std::sqrt(observed / predicted), 1.06, 0.16);
 }
 
 TEST(Subsets, RefuseWhatHasNoAnswer) {

@@ -65,7 +65,8 @@ struct SubsetStatistics {
 SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const PolarizedCurve& reference);
 
 /// Root mean square of uncertainty / reference: what root_mean_variance estimates. That of a fit to one of k equal
-/// parts is √k times that of the fit to all. Throws std::invalid_argument as subset_statistics does.
+/// parts is √k times that of the fit to all, and more by √(n / (n − p)) or so where a part has only n samples for p
+/// coefficients of f11. Throws std::invalid_argument as subset_statistics does.
 double relative_rms(const PolarizedCurve& uncertainty, const PolarizedCurve& reference);
 
 }  // namespace mmbrdf
