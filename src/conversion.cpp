@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "mmbrdf/fit.hpp"
-#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/quadrature.hpp"
 
 namespace mmbrdf {
 
