@@ -81,7 +81,8 @@ double bihemispherical_reflectance(const Model& model, double wavelength) {
   require_valid(model);
   require_wavelength(wavelength);
   const Table integrals = projected_integrals(model.mapping);
-  return value_with(slopes_with(model.blocks.front().block, model.family, integrals, integrals), model, wavelength) / pi;
+  return value_with(slopes_with(model.blocks.front().block, model.family, integrals, integrals), model, wavelength) /
+         pi;
 }
 
 int hemisphere_nodes(const Model& model) {

@@ -337,7 +337,7 @@ RC_GTEST_PROP(Radiometry, TurningSourceAndReceiverTogetherTurnsTheMeanMatrix, ()
   const Family family = *rc::gen::element(Family::isotropic, Family::germer2017);
   const PreparedModel model = prepare(random_model(family, {5, 3}, 0, *rc::gen::arbitrary<std::uint32_t>()), 0.5);
   const Direction i{between(0.3, 1), between(-4, 4)}, r{between(0.3, 1), between(-4, 4)};
-  const double turn = between(-3, 3), half = between(0.01, 0.29);
+  const double turn = between(-3, 3), half = between(0.01, 0.12);
   const auto mean = [&](double by) {
     return average(model, Aperture::cone({i.theta, i.phi + by}, half),
                    Aperture::rectangle({r.theta, r.phi + by}, half, half / 2, 0.4))

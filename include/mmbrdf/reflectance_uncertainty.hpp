@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Standard uncertainties of the quantities of radiometry.hpp: the slopes of the matrix over the coefficients,
+/// integrated as the matrix is. Both arguments are of the same model, `prepared` at the wavelength asked for. What they
+/// hold and leave out is said in uncertainty.hpp. All throw std::invalid_argument where the values do.
+#pragma once
+
+#include "mmbrdf/apertures.hpp"
+#include "mmbrdf/uncertainty.hpp"
+
+namespace mmbrdf {
+
+/// For light of any polarization in the sp frame of the incident beam.
+double directional_hemispherical_uncertainty(const Model& model, const PreparedUncertainty& prepared,
+                                             const Direction& incident, const Stokes& light_sp = {1, 0, 0, 0});
+
+/// Through an analyzer in the sp frame of the reflected beam.
+double hemispherical_directional_uncertainty(const Model& model, const PreparedUncertainty& prepared,
+                                             const Direction& reflected, const Stokes& analyzer_sp = {1, 0, 0, 0});
+
+double bihemispherical_uncertainty(const Model& model, const PreparedUncertainty& prepared);
+
+/// Covariance of the mean matrix over two apertures, sr⁻², frame xy. An uncertainty needs few digits: 4 nodes give them
+/// for orders up to 7, 4 whatever the apertures, and more cost time.
+MuellerCovariance average_covariance(const PreparedUncertainty& prepared, const Aperture& source,
+                                     const Aperture& receiver, int nodes = 4);
+
+}  // namespace mmbrdf
