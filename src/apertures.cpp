@@ -210,6 +210,7 @@ Aperture Aperture::ring(double theta_min, double theta_max) {
   const std::string text = "ring from " + in_degrees_text(theta_min) + " to " + in_degrees_text(theta_max) + " degrees";
   if (!(theta_min >= 0)) throw std::invalid_argument(text + ": begins below 0");
   if (!(theta_max <= pi / 2)) throw std::invalid_argument(text + ": reaches below the horizon");
+  if (theta_max < theta_min) throw std::invalid_argument(text + ": ends before it begins");
   if (theta_max != theta_min) require_size(theta_max - theta_min, text + ": width");
   return {Shape::ring, {}, {theta_min, theta_max}};
 }

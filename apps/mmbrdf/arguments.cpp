@@ -225,6 +225,21 @@ std::vector<double> micrometres(const std::vector<double>& wavelengths_nm) {
   return result;
 }
 
+double wavelength_from(const std::optional<double>& wavelength_nm, const Model& model) {
+  if (wavelength_nm) {
+    return micrometres(*wavelength_nm);
+  }
+  try {
+    return only_wavelength(model);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--wavelength is required", error.what());
+  }
+}
+
+bool knows_wavelength(const Model& model) {
+  return !model.validity.wavelengths.empty() || !model.reflectance.values.empty();
+}
+
 double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e9; }
 
 std::string nanometre_list(const std::vector<double>& wavelengths) {

@@ -60,6 +60,13 @@ Format format_from(const std::string& name);
 
 double micrometres(double wavelength_nm);
 std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
+
+/// Micrometres: what was given, or the model's own if it needs none. Throws CLI::ValidationError for models that do.
+double wavelength_from(const std::optional<double>& wavelength_nm, const Model& model);
+
+/// Whether the wavelength means something to a model that was not asked at a given one.
+bool knows_wavelength(const Model& model);
+
 double nanometres(double wavelength);  ///< to 1e-9 nm: 0.532 gives 532
 
 /// "351, 532, 633, 1064 nm"

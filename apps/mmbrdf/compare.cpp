@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "arguments.hpp"
 #include "command.hpp"
@@ -172,9 +171,7 @@ std::string json(const Report& report) {
   }
   json["rms_polarization"] = polarization_rms(report.comparison);
   json["largest"] = largest(report.comparison).largest;
-  std::ostringstream out;
-  print(json, out);
-  return out.str();
+  return printed(json);
 }
 
 void require_within(double tolerance, const Comparison& comparison) {

@@ -151,15 +151,14 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
   return json;
 }
 
-void print(const nlohmann::ordered_json& json, std::ostream& out) {
-  const char* separator = "{\n";
+std::string printed(const nlohmann::ordered_json& json) {
+  std::string text;
   for (const auto& [name, value] : json.items()) {
-    out << separator << "  " << dumped(name) << ": " << by_lines(value);
-    separator = ",\n";
+    text += (text.empty() ? "{\n  " : ",\n  ") + dumped(name) + ": " + by_lines(value);
   }
-  out << "\n}\n";
+  return text + "\n}\n";
 }
 
-void print(const nlohmann::ordered_json& json) { print(json, std::cout); }
+void print(const nlohmann::ordered_json& json) { std::cout << printed(json); }
 
 }  // namespace mmbrdf::program

@@ -2,7 +2,6 @@
 // What several commands say about a model.
 #pragma once
 
-#include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -47,7 +46,9 @@ std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);
 
 /// Each field and each row of a table in a line of its own.
-void print(const nlohmann::ordered_json& json, std::ostream& out);
-void print(const nlohmann::ordered_json& json);  ///< on standard output
+std::string printed(const nlohmann::ordered_json& json);
+
+/// The same on standard output.
+void print(const nlohmann::ordered_json& json);
 
 }  // namespace mmbrdf::program

@@ -107,18 +107,6 @@ void print_json(const Answer& a) {
   print(json);
 }
 
-/// The wavelength asked for, or the model's own if it needs none.
-double wavelength_of(const Model& model, const Options& options) {
-  if (options.wavelength_nm) {
-    return micrometres(*options.wavelength_nm);
-  }
-  try {
-    return only_wavelength(model);
-  } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--wavelength is required", error.what());
-  }
-}
-
 void warn_if_outside(const Answer& answer, const Validity& validity) {
   if (leaves_known_range(answer.outside)) {
     warn("outside the fitted range (" + to_string(answer.outside) + "): fitted are " + fitted_range(validity));
@@ -138,8 +126,8 @@ Model model_of(const Options& options) {
 
 void evaluate_one(const Options& options) {
   const Model model = model_of(options);
-  const double wavelength = wavelength_of(model, options);
-  const bool known = options.wavelength_nm || !model.validity.wavelengths.empty() || !model.reflectance.values.empty();
+  const double wavelength = wavelength_from(options.wavelength_nm, model);
+  const bool known = options.wavelength_nm || knows_wavelength(model);
   const Geometry geometry{direction_from(*options.incident, "--incident"),
                           direction_from(*options.reflected, "--reflected")};
   const PreparedModel prepared = prepare(model, wavelength, options.rotation());

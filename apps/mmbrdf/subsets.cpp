@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "arguments.hpp"
 #include "command.hpp"
@@ -193,9 +192,7 @@ std::string json(const Question& q, const Options& o, const std::vector<Split>& 
   }
   json["observed"] = observed(splits);
   json["predicted"] = splits.front().predicted;
-  std::ostringstream out;
-  print(json, out);
-  return out.str();
+  return printed(json);
 }
 
 void require_valid(const Options& o) {

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf integrate
+
+#include "integrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "files.hpp"
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/reflectance_uncertainty.hpp"
+#include "sides.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+constexpr double source_phi_deg = 0, receiver_phi_deg = 180;
+
+/// Incident light, or what an analyzer passes, in the sp frame.
+struct Polarization {
+  std::string text = "unpolarized";
+  Stokes light{1, 0, 0, 0};
+};
+
+Polarization polarization_from(const std::string& text) {
+  if (text == "unpolarized") {
+    return {};
+  }
+  if (text == "s" || text == "p") {
+    return {text, {1, text == "s" ? 1.0 : -1.0, 0, 0}};
+  }
+  std::vector<double> s;
+  try {
+    s = numbers(text);
+  } catch (const std::invalid_argument&) {
+    s.clear();
+  }
+  if (s.size() != 4) {
+    throw std::invalid_argument("\"" + text + "\": expected unpolarized, s, p or S1,S2,S3,S4");
+  }
+  return {text, {s[0], s[1], s[2], s[3]}};
+}
+
+struct Options {
+  std::string model, output;
+  std::optional<Quantity> quantity;
+  std::optional<std::vector<double>> wavelengths_nm, thetas_deg;
+  std::optional<Polarization> polarization;
+  std::optional<Sides> geometry;
+  std::optional<double> tolerance;
+  Format format = Format::text;
+  bool strict = false;
+};
+
+/// What belongs to one wavelength.
+struct AtWavelength {
+  const Model& model;
+  double wavelength;
+  std::optional<PreparedUncertainty> uncertainty;  // none: not known
+};
+
+bool knows_uncertainty(const Model& model) {
+  return std::none_of(model.blocks.begin(), model.blocks.end(),
+                      [](const FittedBlock& block) { return block.covariance.empty(); });
+}
+
+std::optional<PreparedUncertainty> uncertainty_of(const Model& model, double wavelength) {
+  return knows_uncertainty(model) ? std::optional(prepare_uncertainty(model, wavelength)) : std::nullopt;
+}
+
+/// Of dhr and hdr.
+IntegratedRow hemispherical_row(const AtWavelength& at, Quantity quantity, double theta_deg, const Polarization& p) {
+  const Direction beam = direction_from({theta_deg, 0}, "--theta");
+  const bool dhr = quantity == Quantity::dhr, unpolarized = p.light == Stokes{1, 0, 0, 0};
+  IntegratedRow row;
+  row.theta_deg = theta_deg;
+  row.outside = outside(at.model.validity, at.wavelength, dhr ? Geometry{beam, {}} : Geometry{{}, beam});
+  if (unpolarized) {  // the closed forms
+    row.values = {directional_hemispherical_reflectance(at.model, at.wavelength, beam)};
+  } else {
+    row.values = {dhr ? directional_hemispherical_reflectance(at.model, at.wavelength, beam, p.light)
+                      : hemispherical_directional_reflectance(at.model, at.wavelength, beam, p.light)};
+  }
+  if (at.uncertainty) {
+    row.uncertainties = {dhr ? directional_hemispherical_uncertainty(at.model, *at.uncertainty, beam, p.light)
+                             : hemispherical_directional_uncertainty(at.model, *at.uncertainty, beam, p.light)};
+  }
+  return row;
+}
+
+IntegratedRow bihemispherical_row(const AtWavelength& at) {
+  IntegratedRow row;
+  row.outside = outside(at.model.validity, at.wavelength, {});
+  row.values = {bihemispherical_reflectance(at.model, at.wavelength)};
+  if (at.uncertainty) {
+    row.uncertainties = {bihemispherical_uncertainty(at.model, *at.uncertainty)};
+  }
+  return row;
+}
+
+/// What the mean of f11 is multiplied by.
+double factor_of(Quantity quantity, const Aperture& receiver) {
+  switch (quantity) {
+    case Quantity::reflectance_factor:
+    case Quantity::radiance_factor:
+      return std::numbers::pi;
+    case Quantity::reflectance:
+      if (receiver.projected_solid_angle() == 0) {
+        throw std::invalid_argument("reflectance: the receiver has no solid angle");
+      }
+      return receiver.projected_solid_angle();
+    default:
+      return 1;
+  }
+}
+
+IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides& sides, const Options& options) {
+  const Aperture source = aperture_of(sides.source, source_phi_deg);
+  const Aperture receiver = aperture_of(sides.receiver, receiver_phi_deg);
+  const double factor = factor_of(quantity, receiver);
+  const double theta_i = is_hemisphere(sides.source) ? 0 : source.largest_theta();
+  const double theta_r = is_hemisphere(sides.receiver) ? 0 : receiver.largest_theta();
+  AverageOptions rule;
+  rule.tolerance = options.tolerance.value_or(rule.tolerance);
+  const Average mean = average(prepare(at.model, at.wavelength), source, receiver, rule);
+  if (!mean.converged) {
+    const std::string message =
+        format("the quadrature stopped at an error of %.1e of f11", mean.error / mean.mueller(0, 0));
+    if (options.strict) {
+      throw std::runtime_error(message);
+    }
+    warn(message);
+  }
+  IntegratedRow row;
+  row.outside = outside(at.model.validity, at.wavelength, {{theta_i, 0}, {theta_r, 0}});
+  row.quadrature_error = factor * mean.error;
+  row.geometries = mean.geometries;
+  const std::size_t elements = quantity == Quantity::mueller ? 16 : 1;
+  for (std::size_t e = 0; e < elements; ++e) {
+    row.values.push_back(factor * mean.mueller.elements[e]);
+  }
+  if (at.uncertainty) {
+    const Mueller u = standard_uncertainty(average_covariance(*at.uncertainty, source, receiver));
+    for (std::size_t e = 0; e < elements; ++e) {
+      row.uncertainties.push_back(factor * u.elements[e]);
+    }
+  }
+  return row;
+}
+
+/// Share of the projected solid angle of the hemispheres beyond the fitted angles; none if that is unknown, or there is
+/// no hemisphere.
+std::optional<double> extrapolated_share(const Validity& validity, bool source, bool receiver) {
+  double within = 1;
+  for (const auto& [used, limit] :
+       {std::pair(source, validity.theta_i_max), std::pair(receiver, validity.theta_r_max)}) {
+    if (used && !limit) {
+      return {};
+    }
+    within *= used ? std::pow(std::sin(*limit), 2) : 1;
+  }
+  return source || receiver ? std::optional(1 - within) : std::nullopt;
+}
+
+std::vector<IntegratedRow> rows_of(const AtWavelength& at, Quantity quantity, const Options& options) {
+  if (needs_geometry(quantity)) {
+    return {average_row(at, quantity, *options.geometry, options)};
+  }
+  if (quantity == Quantity::bhr) {
+    return {bihemispherical_row(at)};
+  }
+  std::vector<IntegratedRow> rows;
+  for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0})) {
+    rows.push_back(hemispherical_row(at, quantity, theta_deg, options.polarization.value_or(Polarization{})));
+  }
+  return rows;
+}
+
+/// Throws where an option does not belong to the quantity.
+Quantity checked_quantity(const Options& options) {
+  if (!options.quantity && !options.geometry) {
+    throw CLI::RequiredError("--quantity (or --geometry)");
+  }
+  const Quantity quantity = options.quantity.value_or(Quantity::reflectance_factor);
+  const std::string name = "of --quantity " + to_string(quantity);
+  const bool of_beam = quantity == Quantity::dhr || quantity == Quantity::hdr;
+  const auto forbid = [&](bool given, const std::string& option) {
+    if (given) {
+      throw CLI::ValidationError(option, "is no option " + name);
+    }
+  };
+  if (needs_geometry(quantity) && !options.geometry) {
+    throw CLI::RequiredError("--geometry " + name);
+  }
+  forbid(!needs_geometry(quantity) && options.geometry, "--geometry");
+  forbid(!needs_geometry(quantity) && options.tolerance, "--tolerance");
+  forbid(!of_beam && options.thetas_deg, "--theta");
+  forbid(!of_beam && options.polarization, "--polarization");
+  return quantity;
+}
+
+std::vector<double> wavelengths_of(const Model& model, const Options& options) {
+  return options.wavelengths_nm ? micrometres(*options.wavelengths_nm) : std::vector{wavelength_from({}, model)};
+}
+
+/// Warns of rows outside the fitted range, or refuses them.
+void check_range(const Integrated& result, const Validity& validity, bool strict) {
+  unsigned all = inside;
+  for (const IntegratedRow& row : result.rows) {
+    all |= row.outside;
+  }
+  const auto outside = static_cast<Outside>(all);
+  if (leaves_known_range(outside)) {
+    const std::string message =
+        "outside the fitted range (" + to_string(outside) + "): fitted are " + fitted_range(validity);
+    if (strict) {
+      throw std::runtime_error(message);
+    }
+    warn(message);
+  }
+  if (outside & unknown_range) {
+    warn(unknown_range_line(result.model, validity));
+  }
+}
+
+Integrated integrated(const Model& model, Quantity quantity, const Options& options) {
+  Integrated result;
+  result.model = base_name(options.model);
+  result.quantity = quantity;
+  result.polarization = options.polarization.value_or(Polarization{}).text;
+  if (options.geometry) {
+    result.source = description(options.geometry->source, source_phi_deg);
+    result.receiver = description(options.geometry->receiver, receiver_phi_deg);
+  }
+  const bool hemisphere_i = options.geometry ? is_hemisphere(options.geometry->source) : quantity != Quantity::dhr;
+  const bool hemisphere_r = options.geometry ? is_hemisphere(options.geometry->receiver) : quantity != Quantity::hdr;
+  result.extrapolated = extrapolated_share(model.validity, hemisphere_i, hemisphere_r);
+  const std::vector<double> wavelengths = wavelengths_of(model, options);
+  result.several_wavelengths = wavelengths.size() > 1;
+  for (const double wavelength : wavelengths) {
+    for (IntegratedRow& row : rows_of({model, wavelength, uncertainty_of(model, wavelength)}, quantity, options)) {
+      if (options.wavelengths_nm || knows_wavelength(model)) {
+        row.wavelength_nm = nanometres(wavelength);
+      }
+      result.rows.push_back(std::move(row));
+    }
+  }
+  return result;
+}
+
+void integrate(const Options& options) {
+  const Quantity quantity = checked_quantity(options);
+  require_model_kept(options.model, options.output);
+  const Model model = open_model(options.model);
+  const Integrated result = integrated(model, quantity, options);
+  check_range(result, model.validity, options.strict);
+  if (!knows_uncertainty(model)) {
+    warn(result.model + " has no covariance: uncertainties are not known");
+  }
+  write_text(options.output, written(result, options.format));
+}
+
+const std::string footer =
+    std::string(
+        "Reflectances of the whole hemisphere: dhr (directional-hemispherical), hdr (hemispherical-directional, the\n"
+        "source uniform and unpolarized), bhr (bihemispherical). Of a source and a receiver, means weighted with\n"
+        "projected solid angle on both sides: brdf (f11, sr^-1), reflectance_factor and radiance_factor (pi f11),\n"
+        "reflectance (flux into the receiver per incident flux), mueller (all elements, frame xy).\n"
+        "\n") +
+    sides_help +
+    "\n"
+    "u_ columns are standard uncertainties of the fit alone, empty where the model has no covariance.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf integrate ptfe --quantity dhr --wavelength 532 --theta 0,8,45,60,75 --format csv\n"
+    "  mmbrdf integrate ptfe --wavelength 532 --geometry 0:45\n"
+    "  mmbrdf integrate ptfe --wavelength 532 --geometry 'cone(8,0,1):d-cone(8,180,4)' --quantity reflectance";
+
+}  // namespace
+
+Run integrate_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_model(app, o->model);
+  add_option(app, "-q,--quantity", o->quantity, quantity_from, "QUANTITY",
+             "dhr, hdr, bhr, brdf, reflectance_factor, radiance_factor,\nreflectance or mueller [reflectance_factor]");
+  add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
+             "Wavelengths in nm; not needed for models of one wavelength");
+  add_option(app, "-g,--geometry", o->geometry, sides_from, "SOURCE:RECEIVER", "As in 0:45, 45a:0 or 8:d; see below");
+  add_option(app, "--theta", o->thetas_deg, numbers, "T[,T...]",
+             "Of dhr and hdr: polar angles of the beam, in degrees [0]");
+  add_option(app, "--polarization", o->polarization, polarization_from, "P",
+             "Of dhr the incident light, of hdr what an analyzer passes:\nunpolarized, s, p or S1,S2,S3,S4, frame sp "
+             "[unpolarized]");
+  add_option(app, "--tolerance", o->tolerance, number, "T", "Of the quadrature, relative [1e-10]");
+  app.add_flag("--strict", o->strict, "Refuse what lies outside the fitted range");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");
+  app.footer(footer);
+  return [o] { integrate(*o); };
+}
+
+}  // namespace mmbrdf::program

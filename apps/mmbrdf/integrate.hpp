@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `mmbrdf integrate` found, and how it is written.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/model.hpp"
+#include "mmbrdf/mueller.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+enum class Quantity { dhr, hdr, bhr, brdf, reflectance_factor, radiance_factor, reflectance, mueller };
+
+/// Throws std::invalid_argument for another name.
+Quantity quantity_from(const std::string& name);
+std::string to_string(Quantity quantity);
+
+/// Whether it is one of a source and a receiver, and not of the whole hemisphere.
+bool needs_geometry(Quantity quantity);
+
+/// One number, or all sixteen of a matrix. Matrices are in the frame xy.
+struct IntegratedRow {
+  std::optional<double> wavelength_nm;  // none: unknown
+  std::optional<double> theta_deg;      // of dhr and hdr
+  std::vector<double> values;           // 1 or 16
+  std::vector<double> uncertainties;    // as many, or none: not known
+  double quadrature_error = 0;          // in units of the values
+  long geometries = 1;
+  Outside outside = inside;
+};
+
+struct Integrated {
+  std::string model;
+  Quantity quantity;
+  std::string polarization;            // as typed
+  std::string source, receiver;        // descriptions, with --geometry
+  std::optional<double> extrapolated;  // share of the hemisphere's projected solid angle beyond the fitted angles
+  std::vector<IntegratedRow> rows;
+  bool several_wavelengths = false;
+};
+
+/// As CSV the columns are [wavelength_nm,][theta_i_deg,|theta_r_deg,]QUANTITY,u_QUANTITY, with --geometry followed by
+/// quadrature_error,validity; the sixteen elements and their uncertainties for mueller.
+std::string written(const Integrated& result, Format format);
+
+}  // namespace mmbrdf::program
