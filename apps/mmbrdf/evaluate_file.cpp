@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -13,45 +14,11 @@
 #include "files.hpp"
 #include "mmbrdf/io.hpp"
 #include "output.hpp"
+#include "recent_wavelengths.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-/// The model at the wavelengths that were asked for lately.
-class RecentWavelengths {
- public:
-  explicit RecentWavelengths(PreparedModel first) : models_{std::move(first)} {}
-
-  const PreparedModel& at(double wavelength) {
-    if (models_[last_].wavelength() != wavelength) {
-      const auto known = std::find_if(models_.begin(), models_.end(),
-                                      [=](const PreparedModel& model) { return model.wavelength() == wavelength; });
-      last_ = static_cast<std::size_t>(known - models_.begin());
-      if (known == models_.end()) {
-        add(models_[0].at(wavelength));
-      }
-    }
-    return models_[last_];
-  }
-
- private:
-  static constexpr std::size_t most = 16;
-
-  void add(PreparedModel model) {
-    if (models_.size() < most) {
-      last_ = models_.size();
-      models_.push_back(std::move(model));
-    } else {
-      last_ = oldest_;
-      models_[last_] = std::move(model);
-      oldest_ = (oldest_ + 1) % most;
-    }
-  }
-
-  std::vector<PreparedModel> models_;
-  std::size_t last_ = 0, oldest_ = 0;
-};
 
 /// Counts rows on standard error, if that is a terminal.
 class Progress {
@@ -85,8 +52,7 @@ double own_wavelength(const Model& model) {
   }
 }
 
-std::string header(const CsvReader& reader, bool normalized) {
-  const std::string added = element_columns(normalized) + ",validity";
+std::string header(const CsvReader& reader, const std::string& added) {
   const std::vector<std::string>& columns = reader.columns();
   std::string text;
   for (const std::string& column : columns) {
@@ -112,12 +78,11 @@ bool has_wavelengths(const CsvReader& reader) {
 
 class FileEvaluator {
  public:
-  FileEvaluator(const Model& model, const FileEvaluation& what, CsvReader& reader)
-      : what_(what),
+  FileEvaluator(const Model& model, const RowsOfFile& what, const AddedColumns& added, CsvReader& reader)
+      : added_(added),
         reader_(reader),
         columns_(reader, what.wavelength > 0 ? what.wavelength : own_wavelength(model)),
-        header_(header(reader, what.normalized)),
-        models_(prepare(model, 1, what.rotation)),
+        header_(header(reader, added.names)),
         unknown_(unknown_range_line(what.model, model.validity)) {
     if (what.wavelength > 0 && has_wavelengths(reader)) {
       warn("--wavelength is not used: the rows have their own");
@@ -126,73 +91,45 @@ class FileEvaluator {
 
   /// The rest of the file.
   void write(std::ostream& out) {
-    std::string text = header_;
+    RowWriter writer(out, header_);
     while (out && reader_.next()) {  // when out has failed, write_file tells why
-      add_row(text);
+      add_row(writer.text());
       progress_.row();
-      if (text.size() > chunk) {
-        put(out, text);
-      }
+      writer.end_row();
     }
-    put(out, text);
+    writer.flush();
   }
 
   void report() const {
     progress_.end();
-    if (outside_ > 0) {
-      warn(std::to_string(outside_) + " of " + counted(progress_.rows(), "row") + (outside_ == 1 ? " lies" : " lie") +
-           " outside the fitted range: see column validity");
-    }
-    if (!unknown_.empty()) {
-      warn(unknown_);
-    }
+    report_rows(outside_, progress_.rows(), unknown_);
   }
 
  private:
-  static constexpr std::size_t chunk = 1 << 16;
-
   void add_row(std::string& text) {
-    const PreparedModel& model = models_.at(columns_.wavelength(reader_));
+    const double wavelength = columns_.wavelength(reader_);
     const Geometry geometry = columns_.geometry(reader_);
-    const Outside outside = model.outside(geometry);
     text += reader_.text();
-    append_elements(text, evaluated(model, geometry));
-    text += ',';
-    text += to_string(outside);
-    text += '\n';
-    outside_ += leaves_known_range(outside) ? 1 : 0;
-  }
-
-  Mueller evaluated(const PreparedModel& model, const Geometry& geometry) const {
     try {
-      const Mueller f = model.evaluate(geometry, what_.frame);
-      return what_.normalized ? normalized_beside_f11(f) : f;
+      outside_ += leaves_known_range(added_.append(text, wavelength, geometry)) ? 1 : 0;
     } catch (const std::invalid_argument& error) {
       throw reader_.error(plain_message(error));
     }
   }
 
-  static void put(std::ostream& out, std::string& text) {
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    text.clear();
-    if (&out == &std::cout) {
-      flush_output();
-    }
-  }
-
-  const FileEvaluation& what_;
+  const AddedColumns& added_;
   CsvReader& reader_;
   GeometryColumns columns_;
   std::string header_;
-  RecentWavelengths models_;
   Progress progress_;
   std::string unknown_;  // what the model does not say about its range
   long outside_ = 0;
 };
 
-void evaluate_stream(const Model& model, const FileEvaluation& what, std::istream& in, const std::string& name) {
+void evaluate_stream(const Model& model, const RowsOfFile& what, const AddedColumns& added, std::istream& in,
+                     const std::string& name) {
   CsvReader reader(in, name);
-  FileEvaluator evaluator(model, what, reader);
+  FileEvaluator evaluator(model, what, added, reader);
   if (is_standard_output(what.output)) {
     evaluator.write(std::cout);
   } else {
@@ -203,8 +140,50 @@ void evaluate_stream(const Model& model, const FileEvaluation& what, std::istrea
 
 }  // namespace
 
-void evaluate_file(const Model& model, const FileEvaluation& what) {
-  read_input(what.input, [&](std::istream& in, const std::string& name) { evaluate_stream(model, what, in, name); });
+void RowWriter::end_row() {
+  constexpr std::size_t chunk = 1 << 16;
+  text_ += '\n';
+  if (text_.size() > chunk) {
+    flush();
+  }
+}
+
+void RowWriter::flush() {
+  out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
+  text_.clear();
+  if (&out_ == &std::cout) {
+    flush_output();
+  }
+}
+
+void report_rows(long outside, long rows, const std::string& unknown_range) {
+  if (outside > 0) {
+    warn(std::to_string(outside) + " of " + counted(rows, "row") + (outside == 1 ? " lies" : " lie") +
+         " outside the fitted range: see column validity");
+  }
+  if (!unknown_range.empty()) {
+    warn(unknown_range);
+  }
+}
+
+AddedColumns evaluated_columns(const Model& model, Frame frame, Rotation rotation, bool normalized) {
+  const auto models = std::make_shared<RecentWavelengths<PreparedModel>>(
+      [first = prepare(model, 1, rotation)](double wavelength) { return first.at(wavelength); });
+  return {element_columns(normalized) + ",validity",
+          [models, frame, normalized](std::string& text, double wavelength, const Geometry& geometry) {
+            const PreparedModel& prepared = models->at(wavelength);
+            const Mueller f = prepared.evaluate(geometry, frame);
+            append_elements(text, normalized ? normalized_beside_f11(f) : f);
+            const Outside outside = prepared.outside(geometry);
+            text += ',';
+            text += to_string(outside);
+            return outside;
+          }};
+}
+
+void evaluate_file(const Model& model, const RowsOfFile& what, const AddedColumns& columns) {
+  read_input(what.input,
+             [&](std::istream& in, const std::string& name) { evaluate_stream(model, what, columns, in, name); });
 }
 
 }  // namespace mmbrdf::program

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Evaluates a model at each row of a CSV file of any length.
+// Rows of geometries of any number, from a CSV file or from elsewhere, with what a model says of each behind it.
 #pragma once
 
+#include <functional>
+#include <ostream>
 #include <string>
 
 #include "mmbrdf/geometry.hpp"
@@ -9,19 +11,43 @@
 
 namespace mmbrdf::program {
 
-struct FileEvaluation {
+/// What is written behind the geometry of a row.
+struct AddedColumns {
+  std::string names;  ///< ",f11,f12,…"
+  /// Appends the fields, each with a comma before it. Throws std::invalid_argument where there is no answer. The
+  /// wavelength is in micrometres.
+  std::function<Outside(std::string& text, double wavelength, const Geometry& geometry)> append;
+};
+
+/// The 16 elements and the validity.
+AddedColumns evaluated_columns(const Model& model, Frame frame, Rotation rotation, bool normalized);
+
+struct RowsOfFile {
   std::string model;      ///< name, for messages
   std::string input;      ///< path; - for standard input
   std::string output;     ///< path; empty or - for standard output
   double wavelength = 0;  ///< micrometres, for rows without; 0: the model's own
-  Frame frame = Frame::xy;
-  Rotation rotation = Rotation::covariant;
-  bool normalized = false;
 };
 
-/// Each row as it is, with the 16 elements and the validity behind it. A column of the input that has the name of one
-/// of those is called input_NAME. Says on standard error how many rows lie outside the fitted range, if that is known.
+/// Each row as it is, with the columns behind it. A column of the input that has the name of one of those is called
+/// input_NAME. Says on standard error how many rows lie outside the fitted range, if that is known.
 /// Throws std::runtime_error naming file and line.
-void evaluate_file(const Model& model, const FileEvaluation& what);
+void evaluate_file(const Model& model, const RowsOfFile& what, const AddedColumns& columns);
+
+/// Text that goes to `out` piece by piece.
+class RowWriter {
+ public:
+  RowWriter(std::ostream& out, std::string header) : out_(out), text_(std::move(header)) {}
+  std::string& text() { return text_; }
+  void end_row();
+  void flush();
+
+ private:
+  std::ostream& out_;
+  std::string text_;
+};
+
+/// Says that so many rows lie outside the fitted range, and what the model does not say about it.
+void report_rows(long outside, long rows, const std::string& unknown_range);
 
 }  // namespace mmbrdf::program

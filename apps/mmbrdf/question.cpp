@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "question.hpp"
+
+#include "describe.hpp"
+#include "files.hpp"
+#include "output.hpp"
+
+namespace mmbrdf::program {
+
+const char* const place_columns = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
+
+QuestionOptions add_question(CLI::App& app, Question& question, const std::string& done) {
+  QuestionOptions o{};
+  add_model(app, question.model);
+  o.wavelength = add_option(app, "-w,--wavelength", question.wavelength_nm, number, "NM",
+                            "Wavelength in nm; not needed for models of one wavelength,\nnor for rows that have their "
+                            "own");
+  o.incident = add_option(app, "-i,--incident", question.incident, direction_degrees, "THETA,PHI",
+                          "Direction to the source, in degrees");
+  o.reflected = add_option(app, "-r,--reflected", question.reflected, direction_degrees, "THETA,PHI",
+                           "Direction to the detector, in degrees");
+  o.geometries = add_file(app, "-g,--geometries", question.geometries, "FILE.csv",
+                          done + " at each row of a file; - is standard input");
+  o.geometries->excludes(o.incident)->excludes(o.reflected);
+  o.output = add_file(app, "-o,--output", question.output, "OUT.csv", "Where the rows go; - is standard output [-]");
+  add_option(app, "--frame", question.frame, frame_from, "FRAME", "xy, sp or scattering_plane [xy]");
+  return o;
+}
+
+void add_as_printed(CLI::App& app, Question& question) {
+  app.add_flag("--as-printed", question.as_printed,
+               "Published coefficients: the sum at the azimuths given, not\nat phi_i = 0 and turned. To compare only");
+}
+
+Model model_of(const Question& question) {
+  Model model = open_model(question.model);
+  if (question.as_printed) {
+    note_unless_printed(model, base_name(question.model));
+  }
+  return model;
+}
+
+void require_directions(const Question& question, const std::string& or_else) {
+  for (const auto& [given, name] : {std::pair(question.incident.has_value(), "--incident"),
+                                    std::pair(question.reflected.has_value(), "--reflected")}) {
+    if (!given) {
+      throw CLI::RequiredError(std::string(name) + " (or " + or_else + ")");
+    }
+  }
+}
+
+Geometry geometry_of(const Question& question) {
+  return {direction_from(*question.incident, "--incident"), direction_from(*question.reflected, "--reflected")};
+}
+
+Model model_of_rows(const Question& question) {
+  require_model_kept(question.model, question.output);
+  require_kept(question.geometries, question.output, "geometries");
+  return model_of(question);
+}
+
+RowsOfFile rows_of(const Question& question) {
+  return {.model = base_name(question.model),
+          .input = question.geometries,
+          .output = question.output,
+          .wavelength = question.wavelength_nm ? micrometres(*question.wavelength_nm) : 0};
+}
+
+Place place_of(const Model& model, const Question& question, double wavelength) {
+  const bool known = question.wavelength_nm || knows_wavelength(model);
+  return {base_name(question.model), known ? std::optional(nanometres(wavelength)) : std::nullopt,
+          question.incident.value_or(DirectionDegrees{}), question.reflected.value_or(DirectionDegrees{})};
+}
+
+std::string heading(const Place& place) {
+  const std::string wavelength = place.wavelength_nm ? brief(*place.wavelength_nm) + " nm" : "unknown";
+  return place.model + ": wavelength " + wavelength + ", incident " + brief(place.incident.theta) + "," +
+         brief(place.incident.phi) + ", reflected " + brief(place.reflected.theta) + "," + brief(place.reflected.phi) +
+         " (theta,phi in degrees)\n";
+}
+
+std::string fields(const Place& place) {
+  std::string text = place.wavelength_nm ? shortest(*place.wavelength_nm) : "";
+  for (const double angle : {place.incident.theta, place.incident.phi, place.reflected.theta, place.reflected.phi}) {
+    text += "," + shortest(angle);
+  }
+  return text;
+}
+
+nlohmann::ordered_json to_json(const Place& place) {
+  nlohmann::ordered_json json;
+  json["model"] = place.model;
+  json["wavelength_nm"] = place.wavelength_nm ? nlohmann::ordered_json(*place.wavelength_nm) : nullptr;
+  json["theta_i_deg"] = place.incident.theta;
+  json["phi_i_deg"] = place.incident.phi;
+  json["theta_r_deg"] = place.reflected.theta;
+  json["phi_r_deg"] = place.reflected.phi;
+  return json;
+}
+
+void add_frame(nlohmann::ordered_json& json, const Question& question) {
+  json["frame"] = to_string(question.frame);
+  json["convention"] = "germer2017";  // see StokesConvention
+  json["convention_note"] = convention_note(question.frame);
+  json["rotation"] = question.as_printed ? "as_printed" : "covariant";
+}
+
+std::string convention_note(Frame frame) {
+  const std::string s2 = frame == Frame::xy ? "y - x" : frame == Frame::sp ? "s - p" : "perpendicular - parallel";
+  return "S2 = " + s2 + ", S4 = left - right";
+}
+
+void warn_if_outside(const std::string& model, Outside outside, const Validity& validity) {
+  if (leaves_known_range(outside)) {
+    warn("outside the fitted range (" + to_string(outside) + "): fitted are " + fitted_range(validity));
+  }
+  if (outside & unknown_range) {
+    warn(unknown_range_line(model, validity));
+  }
+}
+
+}  // namespace mmbrdf::program
