@@ -29,6 +29,12 @@ struct PreparedModel::Pattern {
   std::array<std::size_t, 17> begin{};  // products of element e: begin[e] … begin[e + 1]
   std::vector<Product> products;
   std::vector<std::vector<double>> powers;  // for each power of the wavelength, a weight for each product
+  struct Share {
+    int product;
+    double weight;
+  };
+  std::vector<Share> shares;               // what coefficients give to the weights of products, mode after mode
+  std::vector<std::size_t> shares_end{0};  // shares of mode q: shares_end[q] … shares_end[q + 1]
   ReflectanceTable reflectance;
   Validity validity;
 };
@@ -64,6 +70,8 @@ struct ProductKey {
   auto operator<=>(const ProductKey&) const = default;
 };
 
+ProductKey key_of(const Term& term) { return {4 * term.row + term.column, term.incident, term.reflected}; }
+
 std::map<ProductKey, std::vector<double>> collected_products(const Model& model) {
   std::map<ProductKey, std::vector<double>> result;
   const std::size_t powers = size(model.powers) + 1;
@@ -71,7 +79,7 @@ std::map<ProductKey, std::vector<double>> collected_products(const Model& model)
     const std::size_t count = fitted.block.modes.size();
     for (std::size_t q = 0; q < count; ++q)
       for (const Term& term : terms(fitted.block.modes[q], model.family)) {
-        auto& weights = result[{4 * term.row + term.column, term.incident, term.reflected}];
+        auto& weights = result[key_of(term)];
         weights.resize(powers);
         for (std::size_t p = 0; p < powers; ++p) weights[p] += term.weight * fitted.coefficients[p * count + q];
       }
@@ -253,12 +261,20 @@ PreparedModel prepare(const Model& model, double wavelength, Rotation rotation) 
   pattern->reflectance = model.reflectance;
   pattern->validity = model.validity;
   pattern->powers.resize(size(model.powers) + 1);
+  std::map<ProductKey, int> positions;
   for (const auto& [key, weights] : collected_products(model)) {
+    positions.emplace_hint(positions.end(), key, static_cast<int>(pattern->products.size()));
     ++pattern->begin[size(key.element) + 1];
     pattern->products.push_back({key.incident, key.reflected});
     for (std::size_t p = 0; p < weights.size(); ++p) pattern->powers[p].push_back(weights[p]);
   }
   for (std::size_t e = 0; e < 16; ++e) pattern->begin[e + 1] += pattern->begin[e];
+  for (const FittedBlock& fitted : model.blocks)
+    for (const Mode& mode : fitted.block.modes) {
+      for (const Term& term : terms(mode, model.family))
+        pattern->shares.push_back({positions.at(key_of(term)), term.weight});
+      pattern->shares_end.push_back(pattern->shares.size());
+    }
   return PreparedModel(std::move(pattern), wavelength);
 }
 
@@ -281,6 +297,26 @@ PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wave
 PreparedModel PreparedModel::at(double wavelength) const {
   require_wavelength(wavelength);
   return PreparedModel(pattern_, wavelength);
+}
+
+PreparedModel PreparedModel::with(std::span<const double> coefficients, double reflectance) const {
+  const Pattern& p = *pattern_;
+  if (coefficients.size() + 1 != p.shares_end.size())
+    throw std::invalid_argument("with: " + std::to_string(coefficients.size()) + " coefficients, expected " +
+                                std::to_string(p.shares_end.size() - 1));
+  PreparedModel result = *this;
+  result.reflectance_ = reflectance;
+  std::fill(result.weights_.begin(), result.weights_.end(), 0.0);
+  double* const weights = result.weights_.data();
+  bool finite = std::isfinite(reflectance);
+  for (std::size_t q = 0; q < coefficients.size(); ++q) {
+    const double a = coefficients[q];
+    finite = finite && std::isfinite(a);
+    for (std::size_t s = p.shares_end[q]; s < p.shares_end[q + 1]; ++s)
+      weights[p.shares[s].product] += p.shares[s].weight * a;
+  }
+  if (!finite) throw std::invalid_argument("with: a number is not finite");
+  return result;
 }
 
 PreparedIncidence PreparedModel::at(const Direction& incident) const { return PreparedIncidence(*this, incident); }

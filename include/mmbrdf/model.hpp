@@ -121,13 +121,21 @@ class PreparedModel {
 
   Outside outside(const Geometry& geometry) const;
 
-  /// The same model at another wavelength (micrometres, positive).
+  /// The same model at another wavelength (micrometres, positive), with the coefficients it was prepared from.
   PreparedModel at(double wavelength) const;
+
+  /// The same modes at the same wavelength with other coefficients, one for each mode, block after block as in the
+  /// model: Σ_p λ^p a_p of its coefficients of power p; and another factor of f11. Cheap: for many draws of both.
+  /// Throws std::invalid_argument for another number of coefficients, or numbers that are not finite.
+  PreparedModel with(std::span<const double> coefficients, double reflectance) const;
 
   /// Contracted once more, for many reflected directions at one incident direction.
   PreparedIncidence at(const Direction& incident) const;
 
   double wavelength() const { return wavelength_; }
+
+  /// Of the model's table, at this wavelength.
+  double reflectance() const { return reflectance_; }
 
  private:
   friend PreparedModel prepare(const Model&, double, Rotation);

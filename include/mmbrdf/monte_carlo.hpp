@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Uncertainties by propagation of distributions: draws of a model's coefficients, and any quantity over them (GUM
+/// Supplement 1: JCGM 101:2008; theory 4.2). For what is far from linear: eigenvalues, entropy, decompositions, a
+/// depolarization near 0.
+///
+///   const Draws draws(model, 1000, seed);
+///   const auto models = draws.at(0.532);
+///   const auto d = values(models, [&](const PreparedModel& m) { return depolarization(m.evaluate(geometry)); });
+///   distribution(d).standard_deviation, correlation(d, others), …
+///
+/// All quantities from one Draws are from the same draws, so their correlations are right, at all wavelengths.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mmbrdf/model.hpp"
+#include "mmbrdf/uncertainty.hpp"
+
+namespace mmbrdf {
+
+/// Throws std::invalid_argument, naming the block, if a covariance that is known has an eigenvalue below
+/// −covariance_tolerance (uncertainty.hpp) × the largest. Variances of 0 (solutions of minimum norm) are fine.
+void require_semidefinite(const Model& model);
+
+/// Draws a + V^½ z of the coefficients of each block, with z normal: distributed as N(a, V), also where V is singular.
+/// The values of a reflectance table that has a covariance are drawn with the coefficients of block 11.
+class Draws {
+ public:
+  /// The same seed gives the same draws, and a longer list begins with the shorter. Throws std::invalid_argument for an
+  /// invalid model, a block whose covariance is not known or not positive semidefinite, or unless 2 ≤ count ≤
+  /// max_draws.
+  explicit Draws(const Model& model, int count = 1000, unsigned long seed = 0, Rotation rotation = Rotation::covariant);
+  static constexpr int max_draws = 1000000;
+
+  int count() const { return count_; }
+
+  /// The drawn models at a wavelength (micrometres), some 8 kB each at orders 7, 4. Throws as prepare() does.
+  std::vector<PreparedModel> at(double wavelength) const;
+
+ private:
+  struct Coefficients;
+  int count_;
+  std::shared_ptr<const Coefficients> coefficients_;
+};
+
+/// One number for each drawn model.
+template <class Quantity>
+std::vector<double> values(std::span<const PreparedModel> draws, Quantity quantity) {
+  std::vector<double> result;
+  result.reserve(draws.size());
+  for (const PreparedModel& draw : draws) result.push_back(quantity(draw));
+  return result;
+}
+
+/// Which of the intervals that hold a given part of the values.
+enum class Interval {
+  symmetric,  ///< as many values below as above (JCGM 101, 7.7.2)
+  shortest,   ///< (JCGM 101, 7.7.4)
+};
+
+struct Distribution {
+  double mean = 0;
+  double standard_deviation = 0;  ///< of one value, with count − 1: the standard uncertainty
+  double low = 0, high = 0;       ///< ends of the coverage interval, both among the values
+};
+
+/// Throws std::invalid_argument for fewer than two values, one that is not finite, or unless 0 < coverage < 1.
+Distribution distribution(std::span<const double> values, double coverage = 0.95,
+                          Interval interval = Interval::symmetric);
+
+/// Of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws std::invalid_argument if the
+/// counts differ, or as above.
+double correlation(std::span<const double> values, std::span<const double> others);
+
+}  // namespace mmbrdf

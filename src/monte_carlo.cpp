@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/monte_carlo.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "numbers.hpp"
+#include "random.hpp"
+
+//   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
+//   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Index index(std::size_t n) { return static_cast<Index>(n); }
+
+bool draws_reflectance(const FittedBlock& fitted, const ReflectanceTable& table) {
+  return fitted.block.name == "11" && !table.covariance.empty();
+}
+
+/// a, and behind it the values of the reflectance table where they are drawn along.
+VectorXd means(const FittedBlock& fitted, const ReflectanceTable& table) {
+  const Index size = index(fitted.coefficients.size());
+  const Eigen::Map<const VectorXd> a(fitted.coefficients.data(), size);
+  if (!draws_reflectance(fitted, table)) return a;
+  const Index count = index(table.values.size());
+  VectorXd result(size + count);
+  result << a, Eigen::Map<const VectorXd>(table.values.data(), count);
+  return result;
+}
+
+/// V of the same.
+MatrixXd joint_covariance(const FittedBlock& fitted, const ReflectanceTable& table) {
+  const Index size = index(fitted.coefficients.size());
+  const Eigen::Map<const MatrixXd> own(fitted.covariance.data(), size, size);
+  if (!draws_reflectance(fitted, table)) return own;
+  const Index count = index(table.values.size());
+  const Eigen::Map<const MatrixXd> with_f11(table.covariance_with_f11.data(), size, count);  // row-major, transposed
+  MatrixXd result(size + count, size + count);
+  result << own, with_f11, with_f11.transpose(), Eigen::Map<const MatrixXd>(table.covariance.data(), count, count);
+  return result;
+}
+
+/// U diag(√s) Uᵀ: unlike U diag(√s), the same for each choice of the eigenvectors.
+MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(joint_covariance(fitted, table));
+  const VectorXd& s = solver.eigenvalues();
+  const double lowest = s[0], highest = std::max(s[s.size() - 1], 0.0);
+  if (lowest < -covariance_tolerance * highest)
+    throw std::invalid_argument("the covariance of block " + fitted.block.name +
+                                " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
+                                shortest(highest));
+  return solver.eigenvectors() * s.cwiseMax(0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
+}
+
+double mean_of(std::span<const double> values) {
+  double sum = 0;
+  for (const double value : values) sum += value / static_cast<double>(values.size());
+  return sum;
+}
+
+void require_values(std::span<const double> values, const char* what) {
+  if (values.size() < 2)
+    throw std::invalid_argument(std::string(what) + ": " + std::to_string(values.size()) +
+                                " values, at least 2 are needed");
+  for (const double value : values)
+    if (!std::isfinite(value))
+      throw std::invalid_argument(std::string(what) + ": the value " + shortest(value) + " is not finite");
+}
+
+/// Differences from the mean, divided by the largest of them; and that.
+struct Deviations {
+  std::vector<double> relative;
+  double largest = 0;
+};
+
+Deviations deviations(std::span<const double> values) {
+  const double mean = mean_of(values);
+  Deviations result;
+  for (const double value : values) {
+    result.relative.push_back(value - mean);
+    result.largest = std::max(result.largest, std::abs(value - mean));
+  }
+  for (double& value : result.relative) value = result.largest > 0 ? value / result.largest : 0;
+  return result;
+}
+
+}  // namespace
+
+struct Draws::Coefficients {
+  PreparedModel model;
+  int powers = 0;
+  ReflectanceTable reflectance;
+  std::vector<Index> sizes;      // powers × modes of each block
+  std::vector<MatrixXd> blocks;  // coefficients by count; below those of block 11 the drawn values of the table
+
+  double reflectance_at(double wavelength, Index draw) const;
+};
+
+double Draws::Coefficients::reflectance_at(double wavelength, Index draw) const {
+  if (reflectance.covariance.empty()) return reflectance.at(wavelength);
+  const std::vector<double> weights = reflectance.weights(wavelength);
+  return blocks[0]
+      .col(draw)
+      .tail(index(weights.size()))
+      .dot(Eigen::Map<const VectorXd>(weights.data(), index(weights.size())));
+}
+
+void require_semidefinite(const Model& model) {
+  require_valid(model);
+  for (const FittedBlock& fitted : model.blocks)
+    if (!fitted.covariance.empty()) square_root(fitted, model.reflectance);
+}
+
+Draws::Draws(const Model& model, int count, unsigned long seed, Rotation rotation) : count_(count) {
+  if (count < 2 || count > max_draws)
+    throw std::invalid_argument("draws: count = " + std::to_string(count) + ", must be in 2..." +
+                                std::to_string(max_draws));
+  Coefficients drawn{prepare(model, 1, rotation), model.powers, model.reflectance, {}, {}};
+  for (const FittedBlock& fitted : model.blocks) {
+    if (fitted.covariance.empty())
+      throw std::invalid_argument("the covariance of block " + fitted.block.name + " is not known");
+    drawn.sizes.push_back(index(fitted.coefficients.size()));
+    drawn.blocks.emplace_back(means(fitted, model.reflectance).size(), count);
+  }
+  std::mt19937_64 engine(seed);
+  for (Index draw = 0; draw < count; ++draw)
+    for (MatrixXd& z : drawn.blocks)
+      for (Index i = 0; i < z.rows(); i += 2) {
+        const auto [first, second] = two_normal(engine);
+        z(i, draw) = first;
+        if (i + 1 < z.rows()) z(i + 1, draw) = second;
+      }
+  for (std::size_t b = 0; b < drawn.blocks.size(); ++b) {
+    drawn.blocks[b] = square_root(model.blocks[b], model.reflectance) * drawn.blocks[b];
+    drawn.blocks[b].colwise() += means(model.blocks[b], model.reflectance);
+  }
+  coefficients_ = std::make_shared<const Coefficients>(std::move(drawn));
+}
+
+std::vector<PreparedModel> Draws::at(double wavelength) const {
+  const Coefficients& drawn = *coefficients_;
+  const PreparedModel model = drawn.model.at(wavelength);
+  Index modes = 0;
+  for (const Index size : drawn.sizes) modes += size / (drawn.powers + 1);
+  MatrixXd folded = MatrixXd::Zero(modes, count_);  // Σ_p λ^p a_p
+  Index begin = 0;
+  for (std::size_t b = 0; b < drawn.blocks.size(); ++b) {
+    const Index size = drawn.sizes[b] / (drawn.powers + 1);
+    double power = 1;
+    for (int p = 0; p <= drawn.powers; ++p, power *= wavelength)
+      folded.middleRows(begin, size) += power * drawn.blocks[b].middleRows(p * size, size);
+    begin += size;
+  }
+  std::vector<PreparedModel> result;
+  result.reserve(static_cast<std::size_t>(count_));
+  for (Index draw = 0; draw < count_; ++draw)
+    result.push_back(
+        model.with({folded.col(draw).data(), static_cast<std::size_t>(modes)}, drawn.reflectance_at(wavelength, draw)));
+  return result;
+}
+
+Distribution distribution(std::span<const double> values, double coverage, Interval interval) {
+  require_values(values, "distribution");
+  if (!(coverage > 0 && coverage < 1))
+    throw std::invalid_argument("distribution: coverage " + shortest(coverage) + " is not between 0 and 1");
+  const Deviations d = deviations(values);
+  double squares = 0;
+  for (const double value : d.relative) squares += value * value;
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t count = sorted.size();
+  // JCGM 101, 7.7.1: q = ⌊p M + ½⌋ steps from the low end to the high end.
+  const auto steps = std::min(static_cast<std::size_t>(coverage * static_cast<double>(count) + 0.5), count - 1);
+  std::size_t low = (count - steps + 1) / 2 - 1;  // r = ⌊(M − q + 1) / 2⌋, counted from 1
+  if (interval == Interval::shortest) {
+    low = 0;
+    for (std::size_t r = 1; r + steps < count; ++r)
+      if (sorted[r + steps] - sorted[r] < sorted[low + steps] - sorted[low]) low = r;
+  }
+  return {mean_of(values), d.largest * std::sqrt(squares / static_cast<double>(count - 1)), sorted[low],
+          sorted[low + steps]};
+}
+
+double correlation(std::span<const double> values, std::span<const double> others) {
+  if (values.size() != others.size())
+    throw std::invalid_argument("correlation: " + std::to_string(values.size()) + " and " +
+                                std::to_string(others.size()) + " values");
+  require_values(values, "correlation");
+  require_values(others, "correlation");
+  const Deviations a = deviations(values), b = deviations(others);
+  double aa = 0, bb = 0, ab = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    aa += a.relative[i] * a.relative[i];
+    bb += b.relative[i] * b.relative[i];
+    ab += a.relative[i] * b.relative[i];
+  }
+  return aa > 0 && bb > 0 ? std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0) : 0;
+}
+
+}  // namespace mmbrdf
