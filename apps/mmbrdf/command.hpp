@@ -29,6 +29,7 @@ using Run = std::function<void()>;
 /// Each declares the options and the help of one command, and returns what it does. Degrees and nanometres are known
 /// to these functions only.
 Run evaluate_command(CLI::App& app, const CommandLine& line);
+Run analyze_command(CLI::App& app, const CommandLine& line);
 Run integrate_command(CLI::App& app, const CommandLine& line);
 Run fit_command(CLI::App& app, const CommandLine& line);
 Run simulate_command(CLI::App& app, const CommandLine& line);

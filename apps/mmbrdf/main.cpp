@@ -24,6 +24,7 @@ struct Command {
 
 constexpr Command commands[] = {
     {"evaluate", "Print the Mueller BRDF of a model at one geometry, or at each row of a file.", evaluate_command},
+    {"analyze", "Print what the Mueller BRDF of a model says, with uncertainties.", analyze_command},
     {"integrate", "Print reflectances of a model, and its means over finite apertures.", integrate_command},
     {"fit", "Fit a model to measured samples and print how well it fits.", fit_command},
     {"simulate", "Make samples that a model would give, with or without noise.", simulate_command},

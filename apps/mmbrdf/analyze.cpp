@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf analyze: every quantity of a model at a geometry, with its uncertainty; or at many.
+
+#include <iostream>
+#include <memory>
+
+#include "analyze_report.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "files.hpp"
+#include "mmbrdf/analysis.hpp"
+#include "mmbrdf/io.hpp"
+#include "output.hpp"
+#include "scan.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options : Question {
+  std::vector<std::string> scan_texts, term_texts;
+  std::vector<Scan> scans;
+  AnalysisOptions analysis;
+  std::optional<Format> format;
+};
+
+/// VALUE with the unit that belongs to the error: a part of 1 or %, or degrees. As a part of 1, or in radians.
+double uncertainty_from(const std::string& text, ErrorOf what) {
+  const bool angle = what == ErrorOf::theta_i || what == ErrorOf::theta_r || what == ErrorOf::azimuth;
+  const std::string unit = angle ? "deg" : "%";
+  const bool with_unit = text.ends_with(unit);
+  const double value = number(with_unit ? text.substr(0, text.size() - unit.size()) : text);
+  if (value < 0) {
+    throw std::invalid_argument("\"" + text + "\": expected 0 or more");
+  }
+  return angle ? radians(value) : with_unit ? value / 100 : value;
+}
+
+TypeBTerm term_from(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw std::invalid_argument("\"" + text + "\": expected [NAME:]KIND=VALUE, as in scale=0.3% or plaque:scale=0.003");
+  }
+  const std::string name = text.substr(0, equals);
+  const std::size_t colon = name.rfind(':');
+  const ErrorOf what = error_from(colon == std::string::npos ? name : name.substr(colon + 1));
+  return {colon == std::string::npos ? name : name.substr(0, colon), what,
+          uncertainty_from(text.substr(equals + 1), what)};
+}
+
+Stokes stokes_from(const std::string& text) {
+  const std::vector<double> values = numbers(text);
+  if (values.size() != 4) {
+    throw std::invalid_argument("\"" + text + "\": expected S1,S2,S3,S4");
+  }
+  return {values[0], values[1], values[2], values[3]};
+}
+
+int draws_from(const std::string& text) {
+  const int count = whole_number(text);
+  constexpr int most = 100000;  // 1 GB
+  if (count < 2 || count > most) {
+    throw std::invalid_argument("\"" + text + "\": expected 2 to " + std::to_string(most));
+  }
+  return count;
+}
+
+void require_possible(const Stokes& light) {
+  try {
+    degree_of_polarization(light);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("--stokes: " + plain_message(error));
+  }
+}
+
+/// Draws and covariances may be refused, and are the model's: "name: …".
+std::unique_ptr<Analyzer> analyzer_of(const Model& model, const Options& options) {
+  AnalysisOptions analysis = options.analysis;
+  analysis.frame = options.frame;
+  analysis.rotation = options.rotation();
+  std::unique_ptr<Analyzer> analyzer;
+  try {
+    analyzer = std::make_unique<Analyzer>(model, analysis);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
+  }
+  if (!analyzer->unknown_uncertainty().empty()) {
+    warn("uncertainties are not known: " + analyzer->unknown_uncertainty());
+  }
+  return analyzer;
+}
+
+void analyze_one(const Options& options) {
+  const Model model = model_of(options);
+  const double wavelength = wavelength_from(options.wavelength_nm, model);
+  const auto analyzer = analyzer_of(model, options);
+  const Place place = place_of(model, options, wavelength);
+  const Geometry geometry = geometry_of(options);
+  if (options.format == Format::csv) {
+    const AddedColumns columns = analyzed_columns(*analyzer);
+    std::string row = fields(place);
+    warn_if_outside(place.model, columns.append(row, wavelength, geometry), model.validity);
+    std::cout << place_columns << columns.names << '\n' << row << '\n';
+    return;
+  }
+  const AnalysisReport report{options, place, *analyzer, analyzer->at(wavelength, geometry)};
+  warn_if_outside(place.model, report.analysis.outside, model.validity);
+  (options.format == Format::json ? print_json : print_text)(report);
+}
+
+/// Returns how many rows lie outside the fitted range.
+long write_scan(std::ostream& out, const Model& model, const Options& options, const AddedColumns& columns) {
+  long outside = 0;
+  RowWriter writer(out, place_columns + columns.names + "\n");
+  for (long row = 0; out && row < row_count(options.scans); ++row) {
+    const Question question = at_row(options.scans, options, row);
+    const double wavelength = wavelength_from(question.wavelength_nm, model);
+    writer.text() += fields(place_of(model, question, wavelength));
+    outside += leaves_known_range(columns.append(writer.text(), wavelength, geometry_of(question))) ? 1 : 0;
+    writer.end_row();
+  }
+  writer.flush();
+  return outside;
+}
+
+void analyze_scan(const Options& options) {
+  require_complete(options.scans, options);
+  require_model_kept(options.model, options.output);
+  const Model model = model_of(options);
+  wavelength_from(at_row(options.scans, options, 0).wavelength_nm, model);
+  const auto analyzer = analyzer_of(model, options);
+  const AddedColumns columns = analyzed_columns(*analyzer);
+  long outside = 0;
+  if (is_standard_output(options.output)) {
+    outside = write_scan(std::cout, model, options, columns);
+  } else {
+    write_file(options.output, [&](std::ostream& out) { outside = write_scan(out, model, options, columns); });
+  }
+  report_rows(outside, row_count(options.scans), unknown_range_line(base_name(options.model), model.validity));
+}
+
+void analyze_file(const Options& options) {
+  const Model model = model_of_rows(options);
+  const auto analyzer = analyzer_of(model, options);
+  evaluate_file(model, rows_of(options), analyzed_columns(*analyzer));
+}
+
+void analyze(Options& options) {
+  const bool rows = !options.geometries.empty() || !options.scan_texts.empty();
+  for (const std::string& text : options.scan_texts) {
+    options.scans.push_back(parsed("--scan", text, scan_from));
+  }
+  for (const std::string& text : options.term_texts) {
+    options.analysis.terms.push_back(parsed("--term", text, term_from));
+  }
+  if (rows && options.format && *options.format != Format::csv) {
+    throw CLI::ValidationError("--format", "only csv goes with --geometries and --scan");
+  }
+  if (options.analysis.light) {
+    require_possible(*options.analysis.light);
+  }
+  if (!rows && !options.output.empty()) {
+    throw CLI::ValidationError("--output", "needs --geometries or --scan");
+  }
+  if (!options.geometries.empty()) {
+    return analyze_file(options);
+  }
+  if (!options.scans.empty()) {
+    return analyze_scan(options);
+  }
+  require_directions(options, "--geometries, --scan");
+  analyze_one(options);
+}
+
+constexpr const char* footer =
+    "Columns behind those of the geometry: f11 ... f44 in sr^-1 in the frame asked for, validity and u_f11 ... u_f44 "
+    "as\n"
+    "for evaluate; depolarization; f_ss, f_sp, f_ps, f_pp in sr^-1 (the first letter is the incident polarization);\n"
+    "diattenuation; polarizance; eigenvalue_min, the smallest eigenvalue of the coherency matrix divided by f11;\n"
+    "realizable, 1 unless f11 or an eigenvalue is negative; purity; entropy; estimable, 1 where the data of the fit\n"
+    "determine every element. u_NAME is the standard uncertainty (k = 1) of NAME. A field is empty where a quantity "
+    "has\n"
+    "no meaning (f11 is not positive) or its uncertainty is not known.\n"
+    "\n"
+    "Uncertainties are those of the fit, in first order, and of the terms: KIND is scale (relative), theta_i, theta_r "
+    "or\n"
+    "azimuth (degrees), calibration (of each element divided by f11). Errors of terms are independent of each other,\n"
+    "and the same at all geometries. With --monte-carlo those of ratios and eigenvalues are from N draws of the\n"
+    "coefficients and of the terms, with a 95 % interval, NAME_low to NAME_high.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf analyze ptfe -w 532 -i 45,0 -r 30,180 --term plaque:scale=0.3% --term theta_r=0.02deg\n"
+    "  mmbrdf analyze ptfe -w 532 -i 45,0 --scan theta_r=-75:75:1 -o scan.csv\n"
+    "  mmbrdf analyze ptfe --geometries directions.csv --monte-carlo 1000 -o values.csv";
+
+}  // namespace
+
+Run analyze_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  const QuestionOptions declared = add_question(app, *o, "Analyze");
+  app.add_option("--scan", o->scan_texts,
+                 "Run through a range: theta_i, phi_i, theta_r, phi_r\nor wavelength; again: through all pairs")
+      ->option_text("VAR=FROM:TO:STEP")
+      ->allow_extra_args(false)
+      ->excludes(declared.geometries);
+  app.add_option("--term", o->term_texts,
+                 "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
+                 "calibration=0.001; repeatable")
+      ->option_text("[NAME:]KIND=U")
+      ->allow_extra_args(false);
+  add_option(app, "--stokes", o->analysis.light, stokes_from, "S1,S2,S3,S4",
+             "Incident light, in the frame: adds degree_of_polarization");
+  auto* draws = add_option(app, "--monte-carlo", o->analysis.draws, draws_from, "N",
+                           "Uncertainties of ratios from N draws [first order]");
+  add_option(app, "--seed", o->analysis.seed, seed, "S", "Whole number that chooses the draws [0]")->needs(draws);
+  app.add_flag("--strict", o->analysis.strict, "Refuse what is not known to be inside the fitted range");
+  add_as_printed(app, *o);
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text; csv for files and scans]");
+  app.footer(footer);
+  return [o] { analyze(*o); };
+}
+
+}  // namespace mmbrdf::program
