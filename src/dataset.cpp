@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -84,6 +85,27 @@ void require_valid(std::span<const Sample> samples) {
         throw std::invalid_argument(name + ": m" + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1) + " = " +
                                     shortest(sample.normalized.elements[e]) + ", must be finite");
   }
+}
+
+Sample at_zero_azimuth(const Sample& sample) {
+  const double phi = sample.geometry.incident.phi;
+  Sample result = sample;
+  result.normalized = turned(sample.normalized, -phi);
+  result.geometry.incident.phi = 0;
+  result.geometry.reflected.phi -= phi;
+  return result;
+}
+
+std::vector<std::size_t> grouped(std::span<const double> values, double tolerance) {
+  std::vector<std::size_t> order(values.size()), result(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::size_t group = 0;
+  for (std::size_t q = 0; q < order.size(); ++q) {
+    if (q > 0 && values[order[q]] - values[order[q - 1]] > tolerance) ++group;
+    result[order[q]] = group;
+  }
+  return result;
 }
 
 std::vector<Geometry> germer2017_grid() {

@@ -24,15 +24,6 @@ std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 std::string nanometres(double wavelength) { return shortest(in_nanometres(wavelength)); }
 
-/// The sample as an isotropic specimen would give it at phi_i = 0.
-Sample at_zero_azimuth(Sample sample) {
-  const double phi = sample.geometry.incident.phi;
-  sample.normalized = turned(sample.normalized, -phi);
-  sample.geometry.incident.phi = 0;
-  sample.geometry.reflected.phi -= phi;
-  return sample;
-}
-
 /// "11(7,7,5,-5)", and the power of the wavelength where there are several.
 std::string short_name(const Block& block, std::size_t coefficient, std::size_t count) {
   const Mode& mode = block.modes[coefficient % block.modes.size()];
@@ -294,6 +285,7 @@ ElementFit FitAccumulator::element_fit(std::size_t element, const LeastSquares& 
   fit.chi_squared = norm * norm;
   double weight = 0;
   for (const auto& [wavelength, at] : wavelengths_) weight += at.weight[element];
+  fit.weight = weight;
   fit.rms = weight > 0 ? norm / std::sqrt(weight) : 0;
   return fit;
 }

@@ -146,6 +146,28 @@ LeastSquares LeastSquares::repeated(std::span<const double> factors, double valu
   return result;
 }
 
+LeastSquares LeastSquares::restricted(std::span<const std::size_t> unknowns) const {
+  std::vector<bool> taken(width() - 1, false);
+  for (const std::size_t unknown : unknowns) {
+    if (unknown >= taken.size() || taken[unknown])
+      throw std::invalid_argument("LeastSquares: unknown number " + std::to_string(unknown) +
+                                  (unknown < taken.size() ? " comes twice" : " is not there"));
+    taken[unknown] = true;
+  }
+  LeastSquares result(static_cast<int>(unknowns.size()));
+  std::vector<double> rows;
+  rows.reserve(width() * result.width());
+  const auto append = [&](std::size_t column) {
+    const auto first = triangle_.begin() + static_cast<std::ptrdiff_t>(column * width());
+    rows.insert(rows.end(), first, first + static_cast<std::ptrdiff_t>(width()));
+  };
+  for (const std::size_t unknown : unknowns) append(unknown);
+  append(width() - 1);
+  result.fold(rows, width());
+  result.rows_ = rows_;
+  return result;
+}
+
 double LeastSquares::residual_norm(std::span<const double> x) const {
   if (x.size() + 1 != width())
     throw std::invalid_argument("LeastSquares: " + std::to_string(x.size()) + " values for " +

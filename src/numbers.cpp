@@ -86,6 +86,11 @@ std::string shortest(double value) {
   return {text.begin(), std::to_chars(text.begin(), text.end(), value).ptr};
 }
 
+std::string rounded(double value, int digits) {
+  std::array<char, 48> text;
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr};
+}
+
 double in_degrees(double angle) {
   return roundest(degrees(angle), [=](double value) { return radians(value) == angle; });
 }

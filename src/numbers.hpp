@@ -23,6 +23,9 @@ int parse_index(std::string_view text);
 /// The fewest digits that parse_number() reads back as the same number.
 std::string shortest(double value);
 
+/// At most this many significant digits, for messages.
+std::string rounded(double value, int digits);
+
 /// Degrees with the fewest digits for which radians() gives `angle` again; where no number of degrees does, the
 /// nearest.
 double in_degrees(double angle);

@@ -181,3 +181,23 @@ TEST(RandomGeometries, RefuseANegativeCountAndAnglesOutsideTheHemisphere) {
   EXPECT_THROW(random_geometries(1, 1, 0), std::invalid_argument);
   EXPECT_NO_THROW(random_geometries(1, 1, radians(90)));
 }
+
+TEST(Grouped, JoinsValuesWithoutAGapLargerThanTheTolerance) {
+  const std::vector<double> values{3, 1, 1.1, 2, 1.05, 3.1};
+  EXPECT_EQ(grouped(values, 0.2), (std::vector<std::size_t>{2, 0, 0, 1, 0, 2}));
+  EXPECT_EQ(grouped(values, 1), (std::vector<std::size_t>{0, 0, 0, 0, 0, 0}));
+  EXPECT_TRUE(grouped({}, 1).empty());
+}
+
+// Its matrix in the sp frame is that of a sample which looks the same from every side: it does not change.
+TEST(Sample, AtZeroAzimuthKeepsItsMatrixInTheSpFrame) {
+  Sample sample = sample_at(0.5);
+  sample.geometry = {{0.7, 2.1}, {1.2, -0.4}};
+  for (std::size_t e = 1; e < 16; ++e) sample.normalized.elements[e] = std::sin(static_cast<double>(e));
+  const Sample turned_sample = at_zero_azimuth(sample);
+  EXPECT_EQ(turned_sample.geometry.incident.phi, 0);
+  EXPECT_NEAR(turned_sample.geometry.reflected.phi, -2.5, 1e-15);
+  const Mueller before = change_frame(sample.normalized, sample.geometry, Frame::xy, Frame::sp);
+  const Mueller after = change_frame(turned_sample.normalized, turned_sample.geometry, Frame::xy, Frame::sp);
+  for (std::size_t e = 0; e < 16; ++e) EXPECT_NEAR(after.elements[e], before.elements[e], frame_error);
+}

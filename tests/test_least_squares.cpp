@@ -497,6 +497,27 @@ RC_GTEST_PROP(LeastSquares, RepeatsItsUnknownsAsIfEachRowHadBeenRepeated, ()) {
   }
 }
 
+RC_GTEST_PROP(LeastSquares, RestrictedToSomeUnknownsIsTheProblemOfTheirColumns, ()) {
+  const Problem problem = any_determined_problem();
+  std::vector<std::size_t> kept = any_order(problem.unknowns);
+  kept.resize(*rc::gen::inRange<std::size_t>(1, problem.unknowns + 1));
+  Problem columns{kept.size(), {}, problem.values, {}};
+  for (std::size_t row = 0; row < problem.count(); ++row)
+    for (const std::size_t unknown : kept) columns.rows.push_back(problem.rows[row * problem.unknowns + unknown]);
+  RC_ASSERT(agree(accumulated(problem).restricted(kept).solve(), accumulated(columns).solve(), rounding));
+}
+
+TEST(LeastSquares, RefusesUnknownsThatThereAreNot) {
+  const LeastSquares two(2);
+  EXPECT_THROW(two.restricted({}), std::invalid_argument);
+  EXPECT_EQ(message_of([&] { two.restricted(std::array<std::size_t, 1>{2}); }),
+            "LeastSquares: unknown number 2 is not there");
+  EXPECT_EQ(message_of([&] {
+              two.restricted(std::array<std::size_t, 2>{1, 1});
+            }),
+            "LeastSquares: unknown number 1 comes twice");
+}
+
 // Two groups of rows with λ = 1 and 2, coefficients linear in λ: together they are of full rank, alone they are not.
 RC_GTEST_PROP(LeastSquares, FitsCoefficientsThatAreLinearInAWavelength, ()) {
   const Problem first = any_determined_problem();

@@ -2,6 +2,7 @@
 /// Measured or simulated samples of a Mueller-matrix BRDF.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,13 @@ std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<co
 /// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive, an invalid
 /// geometry or a number that is not finite.
 void require_valid(std::span<const Sample> samples);
+
+/// The sample as an isotropic specimen would give it at phi_i = 0: in axes turned with the plane of incidence.
+Sample at_zero_azimuth(const Sample& sample);
+
+/// The group of each value, counted from 0 in rising order: values belong together if no gap between them exceeds the
+/// tolerance. For angles and wavelengths that a file has rounded. The values must be finite.
+std::vector<std::size_t> grouped(std::span<const double> values, double tolerance);
 
 /// The grid of the published measurement (theory 1.4): theta_i = 0, 15, …, 75 degrees at azimuth π; reflected
 /// directions with direction cosines 0.1 (i, j), i² + j² < 100; none closer than 5 degrees to retro-reflection. 1824

@@ -74,6 +74,7 @@ struct ElementFit {
   long rows = 0;
   double rms = 0;          ///< √(Σ w r² / Σ w) of the residuals r; those of f11 are of f11 / reflectance
   double chi_squared = 0;  ///< Σ w r²
+  double weight = 0;       ///< Σ w
 };
 
 struct FitResult {
@@ -103,12 +104,19 @@ class FitAccumulator {
   /// As if all of other's samples had been added here. Throws std::invalid_argument for another basis.
   void merge(const FitAccumulator& other);
 
+  /// The same samples at other orders. Throws std::invalid_argument if one is higher than those of the basis.
+  FitAccumulator at_orders(const Orders& orders) const;
+
   long samples() const { return samples_; }
 
   /// Throws std::invalid_argument if there are no samples, if the powers need more wavelengths than there are, if a
   /// reflectance table does not reach a wavelength, if the samples do not determine the model and minimum_norm
   /// is off: the message says how many combinations of which modes are free; or for a sandwich covariance.
   FitResult solve(const FitOptions& options = {}) const;
+
+  /// How well a model, of whatever data, fits the samples: their f11 is divided by its reflectance.
+  /// Throws std::invalid_argument for a model of another basis.
+  std::array<ElementFit, 16> misfit(const Model& model) const;
 
  private:
   struct AtWavelength {

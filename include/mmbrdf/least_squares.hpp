@@ -49,6 +49,10 @@ class LeastSquares {
   /// that all rows share. Throws std::invalid_argument without factors or if one is not finite.
   LeastSquares repeated(std::span<const double> factors, double value_factor = 1) const;
 
+  /// The problem that has some of the unknowns only, in this order; the others are 0. Positions count from 0. Throws
+  /// std::invalid_argument for none of them, or one that there is not or that comes twice.
+  LeastSquares restricted(std::span<const std::size_t> unknowns) const;
+
   /// ‖A x − b‖ for any x of the right size.
   double residual_norm(std::span<const double> x) const;
 

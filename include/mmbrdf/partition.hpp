@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Partitions of samples: folds that are left out in turn, or subsets that are fitted apart.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/dataset.hpp"
+
+namespace mmbrdf {
+
+/// Every sample belongs to one fold.
+struct Partition {
+  enum class Kind { rows, random, angle, wavelength };
+  Kind kind = Kind::rows;
+  std::vector<std::size_t> fold;   ///< of each sample, counted from 0
+  std::vector<std::string> names;  ///< of the folds: "fold 1", "30 degrees", "532 nm"
+};
+/// "rows", "random", "angle", "wavelength"
+std::string to_string(Partition::Kind kind);
+
+/// Sample number modulo `folds`. Throws std::invalid_argument unless 2 ≤ folds ≤ max_folds and folds ≤ samples.
+Partition folds_by_row(std::size_t samples, int folds);
+
+/// As even as can be, by the seed, the same on every machine. Throws as folds_by_row does.
+Partition random_folds(std::size_t samples, int folds, unsigned long seed);
+
+/// One fold for each polar angle of incidence. Angles are one if no gap between them exceeds the tolerance (radians):
+/// files round, and the published grid has 0.001 degrees for 0. Throws std::invalid_argument for fewer than 2 or more
+/// than max_folds angles, for so many that they cannot be told apart, or a negative tolerance.
+Partition folds_by_incident_angle(std::span<const Sample> samples, double tolerance = radians(0.1));
+
+/// One fold for each wavelength. Throws std::invalid_argument for fewer than 2 or more than max_folds wavelengths.
+Partition folds_by_wavelength(std::span<const Sample> samples);
+
+inline constexpr int max_folds = 100;  ///< each holds a triangle for each element and wavelength
+
+}  // namespace mmbrdf

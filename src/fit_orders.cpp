@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The same samples at other orders, and under another model: what cross-validation is made of.
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/fit.hpp"
+
+namespace mmbrdf {
+
+std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
+  const auto same = [](const Block& ours, const FittedBlock& theirs) { return ours.modes == theirs.block.modes; };
+  if (model.family != basis_.family || model.mapping != basis_.mapping ||
+      !std::equal(blocks_.begin(), blocks_.end(), model.blocks.begin(), model.blocks.end(), same))
+    throw std::invalid_argument("FitAccumulator: the model has another basis");
+  std::array<ElementFit, 16> result;
+  for (std::size_t e = 0; e < 16 && samples_ > 0; ++e) {
+    const bool fed = block_of_[e] >= 0;
+    const LeastSquares rows = over_wavelengths(e, fed ? model.powers : 0, model.reflectance);
+    result[e] = element_fit(
+        e, rows, fed ? model.blocks[static_cast<std::size_t>(block_of_[e])].coefficients : std::vector<double>{0});
+  }
+  return result;
+}
+
+FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
+  if (orders.f11 > basis_.orders.f11 || orders.other > basis_.orders.other)
+    throw std::invalid_argument("FitAccumulator: orders " + std::to_string(orders.f11) + "," +
+                                std::to_string(orders.other) + " are higher than those of the samples added");
+  Basis basis = basis_;
+  basis.orders = orders;
+  FitAccumulator result(basis);
+  result.theta_i_max_ = theta_i_max_;
+  result.theta_r_max_ = theta_r_max_;
+  result.samples_ = samples_;
+  for (std::size_t e = 0; e < 16; ++e) {
+    std::vector<std::size_t> kept;  // of the modes of the element's block
+    if (result.block_of_[e] >= 0) {
+      const std::vector<Mode>& all = blocks_[static_cast<std::size_t>(block_of_[e])].modes;
+      for (const Mode& mode : result.blocks_[static_cast<std::size_t>(result.block_of_[e])].modes)
+        kept.push_back(static_cast<std::size_t>(std::find(all.begin(), all.end(), mode) - all.begin()));
+    }
+    for (const auto& [wavelength, at] : wavelengths_) {
+      AtWavelength& to = result.slot(wavelength);
+      to.weight[e] = at.weight[e];
+      to.elements[e] = kept.empty() ? at.elements[e].restricted(std::array{std::size_t{0}}).repeated(std::array{0.0})
+                                    : at.elements[e].restricted(kept);
+    }
+  }
+  return result;
+}
+
+}  // namespace mmbrdf

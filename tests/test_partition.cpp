@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/partition.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <vector>
+
+#include "cases.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "random_model.hpp"
+
+namespace mmbrdf {
+namespace {
+
+void expect_all_used(const Partition& partition, std::size_t samples) {
+  ASSERT_EQ(partition.fold.size(), samples);
+  const std::set<std::size_t> used(partition.fold.begin(), partition.fold.end());
+  EXPECT_EQ(used.size(), partition.names.size());
+  EXPECT_EQ(*used.rbegin(), partition.names.size() - 1);
+}
+
+std::vector<Sample> in_random_directions(int count) {
+  return simulate(random_model(Family::isotropic, {2, 1}, 0, 1), std::array{0.5}, random_geometries(count, 11));
+}
+
+}  // namespace
+
+TEST(Partition, ByRowIsTheRowNumberModuloTheFolds) {
+  const Partition partition = folds_by_row(8, 3);
+  EXPECT_EQ(partition.fold, (std::vector<std::size_t>{0, 1, 2, 0, 1, 2, 0, 1}));
+  EXPECT_EQ(partition.names.size(), 3U);
+}
+
+TEST(Partition, AtRandomIsEvenAndFollowsTheSeed) {
+  const Partition one = random_folds(100, 3, 1), again = random_folds(100, 3, 1), other = random_folds(100, 3, 2);
+  EXPECT_EQ(one.fold, again.fold);
+  EXPECT_NE(one.fold, other.fold);
+  EXPECT_NE(one.fold, folds_by_row(100, 3).fold);
+  expect_all_used(one, 100);
+  for (std::size_t f = 0; f < 3; ++f)
+    EXPECT_NEAR(static_cast<double>(std::count(one.fold.begin(), one.fold.end(), f)), 100 / 3., 1) << f;
+}
+
+TEST(Partition, ByAngleJoinsWhatAFileHasRounded) {
+  std::vector<Sample> samples(5);
+  const double angles[] = {45, 0.001, -0.001, 44.998, 30};
+  for (std::size_t s = 0; s < 5; ++s) {
+    samples[s].wavelength = 0.5;
+    samples[s].geometry.incident = unfolded({radians(angles[s]), 0});
+  }
+  const Partition partition = folds_by_incident_angle(samples);
+  EXPECT_EQ(partition.fold, (std::vector<std::size_t>{2, 0, 0, 2, 1}));
+  EXPECT_EQ(partition.names[1], "30 degrees");
+  EXPECT_EQ(folds_by_incident_angle(samples, radians(1e-4)).names.size(), 4U);
+}
+
+TEST(Partition, ByWavelengthNamesThem) {
+  std::vector<Sample> samples(3);
+  samples[0].wavelength = samples[2].wavelength = 0.633;
+  samples[1].wavelength = 0.351;
+  const Partition partition = folds_by_wavelength(samples);
+  EXPECT_EQ(partition.fold, (std::vector<std::size_t>{1, 0, 1}));
+  EXPECT_EQ(partition.names, (std::vector<std::string>{"351 nm", "633 nm"}));
+}
+
+TEST(Partition, RefusesWhatCannotBeLeftOut) {
+  const auto says = [](auto action, const std::string& part) {
+    EXPECT_NE(message_of(action).find(part), std::string::npos) << message_of(action);
+  };
+  says([] { folds_by_row(5, 6); }, "6 of 5 samples");
+  says([] { folds_by_row(5, 1); }, "folds: 1 is not in 2...100");
+  says([] { random_folds(1000, 101, 0); }, "folds: 101");
+  const std::vector<Sample> random = in_random_directions(3000), few = in_random_directions(300);
+  says([&] { folds_by_incident_angle(random); }, "too close to be told apart");
+  says([&] { folds_by_incident_angle(few); }, "it takes 2 to 100");
+  says([&] { folds_by_wavelength(few); }, "wavelengths: the data have 1,");
+  says([&] { folds_by_incident_angle(few, -1); }, "tolerance -1");
+}
+
+}  // namespace mmbrdf
