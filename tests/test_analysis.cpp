@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
 #include "published.hpp"
 #include "random_mueller.hpp"
 
@@ -486,86 +485,4 @@ TEST(PublishedData, AreAllRealizable) {
     smallest_random = std::min(smallest_random, realizability_margin(sample.normalized));
   EXPECT_EQ(samples.size(), 1760U);
   EXPECT_NEAR(smallest_random, 0.156, 0.5e-3);
-}
-
-namespace {
-
-/// Over theta_i and theta_r in steps of 2.5 degrees and phi_r − phi_i in steps of 7.5 degrees.
-struct Realizability {
-  std::map<int, double> smallest;  ///< margin, by the highest polar angle in degrees that both stay below
-  int count = 0;                   ///< geometries up to 90 degrees
-  int negative = 0;                ///< of them not realizable; of the matrix divided by f11, whatever the sign of that
-  int negative_up_to_85 = 0;
-  int negative_f11 = 0;
-};
-
-Realizability realizability(const Model& model, double wavelength) {
-  const PreparedModel prepared = prepare(model, wavelength);
-  Realizability result{{{45, 1}, {60, 1}, {75, 1}, {80, 1}, {85, 1}}, 0, 0, 0, 0};
-  for (int i = 0; i <= 36; ++i)
-    for (int r = 0; r <= 36; ++r)
-      for (int d = 0; d <= 24; ++d) {
-        const Mueller f = prepared.evaluate({{radians(2.5 * i), 0}, {radians(2.5 * r), radians(7.5 * d)}});
-        const double margin = realizability_margin(normalized(f)), theta = 2.5 * std::max(i, r);
-        for (auto& [limit, smallest] : result.smallest)
-          if (theta <= limit) smallest = std::min(smallest, margin);
-        ++result.count;
-        if (f(0, 0) < 0) ++result.negative_f11;
-        if (margin < 0) ++result.negative;
-        if (margin < 0 && theta <= 85) ++result.negative_up_to_85;
-      }
-  EXPECT_EQ(result.count, 34225);
-  return result;
-}
-
-struct Expected {
-  double wavelength;
-  const char* file;
-  std::array<double, 5> smallest;  // up to 45, 60, 75, 80, 85 degrees
-  int negative_single, negative_multiple;
-};
-
-// Theory 4.4.
-constexpr std::array expected_of_models{
-    Expected{0.351, "PTFE.351.coeff.csv", {0.233, 0.204, 0.140, 0.106, 0.063}, 0, 0},
-    Expected{0.532, "PTFE.532.coeff.csv", {0.230, 0.196, 0.120, 0.082, 0.035}, 7, 2},
-    Expected{0.633, "PTFE.633.coeff.csv", {0.228, 0.197, 0.120, 0.082, 0.036}, 7, 5},
-    Expected{1.064, "PTFE.1064.coeff.csv", {0.220, 0.195, 0.121, 0.079, 0.025}, 24, 27}};
-
-}  // namespace
-
-TEST(PublishedModels, AreRealizableUpTo85DegreesAndNotEverywhereBeyond) {
-  for (const Expected& expected : expected_of_models) {
-    const std::string path = published(expected.file);
-    if (path.empty()) GTEST_SKIP() << absent(expected.file);
-    const Realizability found = realizability(load_model(path), expected.wavelength);
-    std::size_t place = 0;
-    for (const auto& [limit, smallest] : found.smallest)
-      EXPECT_NEAR(smallest, expected.smallest[place++], 0.5e-3) << expected.file << " up to " << limit << " degrees";
-    EXPECT_EQ(found.negative_up_to_85, 0) << expected.file;
-    EXPECT_EQ(found.negative, expected.negative_single) << expected.file;
-    EXPECT_EQ(found.negative_f11 > 0, expected.wavelength == 1.064) << expected.file;
-  }
-}
-
-TEST(PublishedModels, OfAllWavelengthsAreRealizableUpTo85DegreesToo) {
-  const std::string path = published("PTFE.coeff.csv");
-  if (path.empty()) GTEST_SKIP() << absent("PTFE.coeff.csv");
-  const Model model = load_model(path);
-  for (const Expected& expected : expected_of_models) {
-    const Realizability found = realizability(model, expected.wavelength);
-    EXPECT_EQ(found.negative_up_to_85, 0) << expected.wavelength;
-    EXPECT_EQ(found.negative, expected.negative_multiple) << expected.wavelength;
-  }
-}
-
-// Theory 4.4, "isotropic basis".
-TEST(BuiltInModels, AreRealizableButForAFewGrazingGeometries) {
-  const std::map<std::string, int> expected{{"ptfe-351", 0}, {"ptfe-532", 0}, {"ptfe-633", 1}, {"ptfe-1064", 3}};
-  for (const auto& [name, negative] : expected) {
-    const Model model = material(name);
-    const Realizability found = realizability(model, only_wavelength(model));
-    EXPECT_EQ(found.negative_up_to_85, 0) << name;
-    EXPECT_EQ(found.negative, negative) << name;
-  }
 }
