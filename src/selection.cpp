@@ -25,17 +25,32 @@ struct Folded {
   std::vector<FitAccumulator> fold, rest;  // rest: all but the fold
 };
 
-/// Speckle noise is relative to f11 / reflectance: that of an unweighted fit at the lowest orders.
+/// The noise law of the weights, and the f11 to which noise is relative, are those of a fit at the lowest orders.
 std::vector<Mueller> weights_of(std::span<const Sample> samples, const SelectionOptions& options, Weights weights) {
   if (weights == Weights::none) return {};
   const Basis lowest{options.family, {options.orders_f11.first, options.orders_other.first}, options.mapping};
-  FitAccumulator all(lowest);
-  all.add(samples);
-  return speckle_weights(samples, all.solve({.powers = options.powers.first,
-                                             .reflectance = options.reflectance,
-                                             .minimum_norm = true,
-                                             .rank_tolerance = options.rank_tolerance})
-                                      .model);
+  const FitOptions how{.powers = options.powers.first,
+                       .reflectance = options.reflectance,
+                       .minimum_norm = true,
+                       .rank_tolerance = options.rank_tolerance};
+  const FitResult first = fit(samples, lowest, how, weights == Weights::estimated ? weights : Weights::none);
+  if (first.noise.empty()) return speckle_weights(samples, first.model);
+  std::vector<Mueller> result(samples.size());
+  std::vector<double> wavelengths;
+  for (const Sample& sample : samples) wavelengths.push_back(sample.wavelength);
+  const std::vector<std::size_t> at = grouped(wavelengths, wavelength_resolution);
+  for (std::size_t w = 0; w < first.noise.size(); ++w) {
+    std::vector<Sample> part;
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      if (at[s] == w) part.push_back(samples[s]);
+    std::vector<Mueller> list = noise_weights(part, first.model, first.noise[w].law);
+    for (std::size_t s = samples.size(); s-- > 0;)
+      if (at[s] == w) {
+        result[s] = list.back();
+        list.pop_back();
+      }
+  }
+  return result;
 }
 
 Folded folded(std::span<const Sample> samples, std::span<const Mueller> weights, const Partition& partition,

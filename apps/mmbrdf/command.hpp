@@ -32,6 +32,7 @@ Run evaluate_command(CLI::App& app, const CommandLine& line);
 Run analyze_command(CLI::App& app, const CommandLine& line);
 Run integrate_command(CLI::App& app, const CommandLine& line);
 Run fit_command(CLI::App& app, const CommandLine& line);
+Run select_command(CLI::App& app, const CommandLine& line);
 Run simulate_command(CLI::App& app, const CommandLine& line);
 Run info_command(CLI::App& app, const CommandLine& line);
 Run materials_command(CLI::App& app, const CommandLine& line);

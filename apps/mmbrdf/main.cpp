@@ -27,6 +27,7 @@ constexpr Command commands[] = {
     {"analyze", "Print what the Mueller BRDF of a model says, with uncertainties.", analyze_command},
     {"integrate", "Print reflectances of a model, and its means over finite apertures.", integrate_command},
     {"fit", "Fit a model to measured samples and print how well it fits.", fit_command},
+    {"select", "Find the orders and powers that measured samples support.", select_command},
     {"simulate", "Make samples that a model would give, with or without noise.", simulate_command},
     {"info", "Print what a model holds and where it is valid.", info_command},
     {"materials", "List the built-in models.", materials_command},

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "select_report.hpp"
+
+#include <array>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "arguments.hpp"
+#include "describe.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+using Kind = Partition::Kind;
+using Json = nlohmann::ordered_json;
+
+/// Both parts with their names.
+std::array<std::pair<const char*, const PartSelection*>, 2> parts(const Selection& selection) {
+  return {{{"f11", &selection.f11}, {"other", &selection.other}}};
+}
+
+bool is_recommended(const PartSelection& part, const Candidate& candidate) {
+  return part.recommended && &candidate == &part.candidates[*part.recommended];
+}
+
+/// "recommended", "refused" or nothing.
+std::string status(const PartSelection& part, const Candidate& candidate) {
+  return is_recommended(part, candidate) ? "recommended" : candidate.refusal.empty() ? "" : "refused";
+}
+
+/// "3 folds by row, 6 incident angles"
+std::string left_out(std::span<const Partition> partitions) {
+  std::vector<std::string> words;
+  for (const Partition& partition : partitions) {
+    const std::string count = std::to_string(partition.names.size());
+    words.push_back(partition.kind == Kind::angle        ? count + " incident angles"
+                    : partition.kind == Kind::wavelength ? count + " wavelengths"
+                    : partition.kind == Kind::random     ? count + " random folds"
+                                                         : count + " folds by row");
+  }
+  return joined(words);
+}
+
+/// "--orders 7,4 --powers 1"
+std::string recommended_options(const SelectReport& report) {
+  const Selection& selection = report.selection;
+  return "--orders " + std::to_string(selection.orders->f11) + "," + std::to_string(selection.orders->other) +
+         (report.wavelengths.size() > 1 ? " --powers " + std::to_string(selection.powers) : "");
+}
+
+void print_table(const SelectReport& report, const PartSelection& part) {
+  std::cout << "order powers coefficients   rank  condition        rms        AIC        BIC";
+  for (const Partition& partition : report.partitions) {
+    std::cout << format(" %13s", ("CV " + to_string(partition.kind)).c_str());
+  }
+  std::cout << '\n';
+  for (const Candidate& one : part.candidates) {
+    std::cout << format("%5d %6d %12d %6d %10.4g %10.4g %10.1f %10.1f", one.order, one.powers, one.coefficients,
+                        one.rank, one.condition, one.rms, one.aic, one.bic);
+    for (const HeldOut& held_out : one.held_out) {
+      std::cout << (held_out.undetermined.empty() ? format(" %13.4g", held_out.rms) : format(" %13s", "-"));
+    }
+    const std::string how = status(part, one);
+    std::cout << (how.empty() ? "" : "  " + how) << '\n';
+  }
+}
+
+void print_text(const SelectReport& report) {
+  std::cout << report.data << ": " << counted(report.rows, "row") << " at " << nanometre_list(report.wavelengths)
+            << "\nbasis " << to_string(report.options.family) << ", " << to_string(report.options.mapping)
+            << " mapping, weights " << report.weights << "\nleft out in turn: " << left_out(report.partitions) << '\n';
+  const bool divided = report.wavelengths.size() > 1 || report.options.reflectance;
+  for (const auto& [name, part] : parts(report.selection)) {
+    const bool is_f11 = part == &report.selection.f11;
+    std::cout << (!is_f11 ? "\nThe 15 others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
+    print_table(report, *part);
+    for (const Candidate& one : part->candidates) {
+      if (!one.refusal.empty()) {
+        std::cout << "order " << one.order << (one.powers > 0 ? ", powers " + std::to_string(one.powers) : "")
+                  << " refused: " << one.refusal << '\n';
+      }
+    }
+  }
+  std::cout << '\n'
+            << (report.selection.orders ? "recommended: " + recommended_options(report) : "no recommendation")
+            << "\n  f11     " << report.selection.f11.reason << "\n  others  " << report.selection.other.reason << '\n';
+}
+
+/// Without commas: a field of a CSV file.
+std::string field(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == ',') {
+      text[i] = i + 1 < text.size() && text[i + 1] == ' ' ? ';' : ' ';
+    }
+  }
+  return text;
+}
+
+const HeldOut* of_kind(const SelectReport& report, const Candidate& candidate, Kind kind) {
+  for (std::size_t p = 0; p < report.partitions.size(); ++p) {
+    if (report.partitions[p].kind == kind) {
+      return &candidate.held_out[p];
+    }
+  }
+  return nullptr;
+}
+
+constexpr std::array kinds{Kind::rows, Kind::random, Kind::angle, Kind::wavelength};
+
+void print_csv(const SelectReport& report) {
+  std::cout << "part,order,powers,coefficients,rank,condition,rms,aic,bic";
+  for (const Kind kind : kinds) {
+    std::cout << ",cv_" << to_string(kind);
+  }
+  std::cout << ",status,reason\n";
+  for (const auto& [name, part] : parts(report.selection)) {
+    for (const Candidate& one : part->candidates) {
+      std::cout << name << ',' << one.order << ',' << one.powers << ',' << one.coefficients << ',' << one.rank << ','
+                << exact(one.condition) << ',' << exact(one.rms) << ',' << exact(one.aic) << ',' << exact(one.bic);
+      for (const Kind kind : kinds) {
+        const HeldOut* held_out = of_kind(report, one, kind);
+        std::cout << ',' << (held_out && held_out->undetermined.empty() ? exact(held_out->rms) : "");
+      }
+      std::cout << ',' << status(*part, one) << ',' << field(is_recommended(*part, one) ? part->reason : one.refusal)
+                << '\n';
+    }
+  }
+}
+
+Json cross_validation_json(const SelectReport& report, const Candidate& candidate) {
+  Json json = Json::object();
+  for (std::size_t p = 0; p < report.partitions.size(); ++p) {
+    const HeldOut& held_out = candidate.held_out[p];
+    const Partition& partition = report.partitions[p];
+    if (held_out.undetermined.empty()) {
+      json[to_string(partition.kind)] = {
+          {"rms", held_out.rms}, {"worst", held_out.worst}, {"worst_fold", partition.names[held_out.worst_fold]}};
+    } else {
+      json[to_string(partition.kind)] = {{"rms", nullptr}, {"undetermined", held_out.undetermined}};
+    }
+  }
+  return json;
+}
+
+Json part_json(const SelectReport& report, const PartSelection& part) {
+  Json json = Json::array();
+  for (const Candidate& one : part.candidates) {
+    json.push_back({{"order", one.order},
+                    {"powers", one.powers},
+                    {"coefficients", one.coefficients},
+                    {"rank", one.rank},
+                    {"condition", one.condition},
+                    {"rms", one.rms},
+                    {"aic", one.aic},
+                    {"bic", one.bic},
+                    {"cross_validation", cross_validation_json(report, one)},
+                    {"refused", one.refusal.empty() ? Json() : Json(one.refusal)}});
+  }
+  return json;
+}
+
+void print_json(const SelectReport& report) {
+  Json json{{"data", report.data}, {"rows", report.rows}, {"weights", report.weights}};
+  json["wavelengths_nm"] = Json::array();
+  for (const double wavelength : report.wavelengths) {
+    json["wavelengths_nm"].push_back(nanometres(wavelength));
+  }
+  json["basis"] = to_string(report.options.family);
+  json["mapping"] = to_string(report.options.mapping);
+  json["left_out"] = left_out(report.partitions);
+  const Selection& selection = report.selection;
+  for (const auto& [name, part] : parts(selection)) {
+    json[name] = part_json(report, *part);
+  }
+  json["recommended_orders"] = selection.orders ? Json{selection.orders->f11, selection.orders->other} : Json();
+  json["recommended_powers"] = selection.orders ? Json(selection.powers) : Json();
+  json["reason_f11"] = selection.f11.reason;
+  json["reason_other"] = selection.other.reason;
+  print(json);
+}
+
+}  // namespace
+
+void print(const SelectReport& report, Format format) {
+  (format == Format::text ? print_text : format == Format::csv ? print_csv : print_json)(report);
+}
+
+}  // namespace mmbrdf::program
