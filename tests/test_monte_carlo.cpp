@@ -14,6 +14,7 @@
 #include "mmbrdf/conversion.hpp"
 #include "mmbrdf/fit.hpp"
 #include "mmbrdf/materials.hpp"
+#include "mmbrdf/quadrature.hpp"
 #include "mmbrdf/radiometry.hpp"
 #include "mmbrdf/sensitivity.hpp"
 #include "mmbrdf/simulation.hpp"

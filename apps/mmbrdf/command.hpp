@@ -33,11 +33,12 @@ Run analyze_command(CLI::App& app, const CommandLine& line);
 Run integrate_command(CLI::App& app, const CommandLine& line);
 Run fit_command(CLI::App& app, const CommandLine& line);
 Run select_command(CLI::App& app, const CommandLine& line);
+Run subsets_command(CLI::App& app, const CommandLine& line);
+Run compare_command(CLI::App& app, const CommandLine& line);
+Run report_command(CLI::App& app, const CommandLine& line);
 Run simulate_command(CLI::App& app, const CommandLine& line);
 Run info_command(CLI::App& app, const CommandLine& line);
 Run materials_command(CLI::App& app, const CommandLine& line);
 Run convert_command(CLI::App& app, const CommandLine& line);
-Run compare_command(CLI::App& app, const CommandLine& line);
-Run subsets_command(CLI::App& app, const CommandLine& line);
 
 }  // namespace mmbrdf::program

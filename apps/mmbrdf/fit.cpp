@@ -26,6 +26,13 @@ struct Options {
   Format format = Format::text;
 };
 
+Covariance covariance_from(const std::string& name) {
+  if (name != "residuals" && name != "sandwich") {
+    throw std::invalid_argument("\"" + name + "\": expected residuals or sandwich");
+  }
+  return name == "residuals" ? Covariance::residuals : Covariance::sandwich;
+}
+
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
 void require_valid(const Options& options) {
   blocks(options.basis.family, options.basis.orders);
@@ -44,6 +51,9 @@ void sign(Model& model, const Options& options, long rows, const CommandLine& li
   model.provenance["command"] = line.text({options.data, options.output});
   model.provenance["software"] = software();
   model.provenance["weights"] = to_string(options.weights);
+  if (options.fit.covariance == Covariance::sandwich) {
+    model.provenance["covariance"] = "sandwich";
+  }
   if (!options.attribution.empty()) {
     model.provenance["attribution"] = options.attribution;
   }
@@ -80,21 +90,24 @@ void note_free_combinations(const FitResult& result) {
   }
 }
 
-/// Only weights, which need a first fit, hold all samples in memory.
+/// Weights and sandwiches need a first fit, and with it all samples in memory.
+bool streams(const Options& options) {
+  return options.weights == Weights::none && options.fit.covariance == Covariance::residuals;
+}
+
 FitResult fitted(const Options& options, long& rows) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
   read_samples_at(options.data, options.wavelengths_nm, [&](std::span<const Sample> samples) {
     rows += static_cast<long>(samples.size());
-    if (options.weights == Weights::none) {
+    if (streams(options)) {
       accumulator.add(samples);
     } else {
       all.insert(all.end(), samples.begin(), samples.end());
     }
   });
   try {
-    return options.weights == Weights::none ? accumulator.solve(options.fit)
-                                            : fit(all, options.basis, options.fit, options.weights);
+    return streams(options) ? accumulator.solve(options.fit) : fit(all, options.basis, options.fit, options.weights);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(options.data) + ": " + plain_message(error));
   }
@@ -132,7 +145,7 @@ constexpr const char* footer =
     "together are fitted together, as a block. With several wavelengths, f11 is divided by each one's own reflectance\n"
     "at normal incidence, unless --reflectance gives it; the model keeps that table. Any number of rows takes the "
     "same\n"
-    "memory, but for --weights.\n"
+    "memory, but for --weights and --covariance sandwich.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf fit data.csv -o model.json\n"
@@ -151,6 +164,8 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,NM:R...]",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_weights_option(app, o->weights);
+  add_option(app, "--covariance", o->fit.covariance, covariance_from, "NAME",
+             "residuals, or sandwich: for noise that is not as the weights say [residuals]");
   app.add_flag(
       "--minimum-norm", o->fit.minimum_norm,
       "Accept data that do not determine every coefficient, and\ntake the smallest solution (germer2017: always)");

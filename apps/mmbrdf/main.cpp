@@ -28,12 +28,13 @@ constexpr Command commands[] = {
     {"integrate", "Print reflectances of a model, and its means over finite apertures.", integrate_command},
     {"fit", "Fit a model to measured samples and print how well it fits.", fit_command},
     {"select", "Find the orders and powers that measured samples support.", select_command},
+    {"subsets", "Fit parts of the data apart and say how far the fits agree.", subsets_command},
+    {"compare", "Say how far a model is from samples or from another model.", compare_command},
+    {"report", "Say what a model is and how far it can be trusted.", report_command},
     {"simulate", "Make samples that a model would give, with or without noise.", simulate_command},
     {"info", "Print what a model holds and where it is valid.", info_command},
     {"materials", "List the built-in models.", materials_command},
     {"convert", "Turn a model into another file format or basis.", convert_command},
-    {"compare", "Say how far a model is from samples or from another model.", compare_command},
-    {"subsets", "Fit parts of the data apart and say how far the fits agree.", subsets_command},
 };
 
 constexpr const char* footer =

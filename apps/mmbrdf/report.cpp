@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf report: what a model is and how far it can be trusted. What is said is gathered in report_facts.cpp.
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "describe.hpp"
+#include "files.hpp"
+#include "output.hpp"
+#include "report_facts.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string model, data, output;
+  std::optional<std::vector<double>> wavelengths_nm;
+  Format format = Format::text;
+};
+
+Format report_format_from(const std::string& name) {
+  if (name == "markdown") {
+    return Format::text;
+  }
+  if (name == "json") {
+    return Format::json;
+  }
+  throw std::invalid_argument("\"" + name + "\": expected markdown or json");
+}
+
+/// A cell of a table: | would end it, and a line end would end the row.
+std::string cell(const Json& value) {
+  if (value.is_null()) {
+    return "not known";
+  }
+  if (value.is_boolean()) {
+    return value.get<bool>() ? "yes" : "no";
+  }
+  if (value.is_number_float()) {
+    return format("%.6g", value.get<double>());
+  }
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  for (std::size_t at = 0; (at = text.find_first_of("|\n", at)) != std::string::npos; at += 2) {
+    text.replace(at, 1, text[at] == '|' ? "\\|" : "  ");
+  }
+  return text;
+}
+
+std::string row(const std::vector<std::string>& cells) {
+  std::string text = "|";
+  for (const std::string& one : cells) {
+    text += " " + one + " |";
+  }
+  return text + "\n";
+}
+
+/// An array of objects: their names are the columns.
+std::string table(const Json& rows) {
+  std::vector<std::string> names, line;
+  for (const auto& [name, value] : rows.front().items()) {
+    names.push_back(name);
+    line.emplace_back("---");
+  }
+  std::string text = row(names) + row(line);
+  for (const Json& object : rows) {
+    std::vector<std::string> cells;
+    for (const auto& [name, value] : object.items()) {
+      cells.push_back(cell(value));
+    }
+    text += row(cells);
+  }
+  return text;
+}
+
+/// A field of the report: prose, a list of lines, a table of names and values, or a table.
+std::string section(const Json& value) {
+  if (value.is_string()) {
+    return value.get<std::string>() + "\n";
+  }
+  if (value.empty()) {
+    return "none\n";
+  }
+  std::string text;
+  if (value.is_object()) {
+    text = row({"", ""}) + row({"---", "---"});
+    for (const auto& [name, field] : value.items()) {
+      text += row({name, cell(field)});
+    }
+    return text;
+  }
+  if (value.front().is_object()) {
+    return table(value);
+  }
+  for (const Json& line : value) {
+    text += "- " + line.get<std::string>() + "\n";
+  }
+  return text;
+}
+
+/// "mirror_pairs" is headed "Mirror pairs".
+std::string heading(std::string name) {
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string markdown(const Json& report) {
+  std::string text = "# " + report["title"].get<std::string>() + "\n";
+  for (const auto& [name, value] : report.items()) {
+    if (name != "title") {
+      text += "\n## " + heading(name) + "\n\n" + section(value);
+    }
+  }
+  return text;
+}
+
+void report(const Options& options) {
+  require_model_kept(options.model, options.output);
+  require_kept(options.data, options.output, "data");
+  const Model model = open_model(options.model);
+  std::vector<double> wavelengths = known_wavelengths(model);
+  if (options.wavelengths_nm) {
+    wavelengths = micrometres(*options.wavelengths_nm);
+  }
+  if (wavelengths.empty()) {
+    throw CLI::ValidationError("--wavelength is required",
+                               base_name(options.model) + " does not say to which wavelengths it was fitted");
+  }
+  ReportedModel reported{base_name(options.model), model, wavelengths,
+                         options.wavelengths_nm || knows_wavelength(model)};
+  Json facts = model_facts(reported);
+  if (!options.data.empty()) {
+    add_data_facts(facts, reported, data_name(options.data), samples_at(options.data, options.wavelengths_nm));
+  }
+  if (options.format == Format::text) {
+    return write_text(options.output, markdown(facts));
+  }
+  write_text(options.output, printed(facts));
+}
+
+constexpr const char* footer =
+    "Says what the model was fitted from, where its range ends, whether it is physical on a grid of directions (steps "
+    "of\n"
+    "2.5 and 7.5 degrees), and its reflectances with standard uncertainties of the fit. With samples also: residuals "
+    "by\n"
+    "element, what the data say against reciprocity, mirror symmetry and isotropy, their noise, and outliers.\n"
+    "Warnings come first.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf report ptfe-532\n"
+    "  mmbrdf report sample.json data.csv -o report.md";
+
+}  // namespace
+
+Run report_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_model(app, o->model);
+  add_file(app, "DATA.csv", o->data, " ", "Samples to set beside it; - is standard input");
+  add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
+             "Wavelengths in nm to report on [those that were fitted]");
+  add_file(app, "-o,--output", o->output, "REPORT", "Where the report goes; - is standard output [-]");
+  add_option(app, "--format", o->format, report_format_from, "FORMAT", "markdown or json [markdown]");
+  app.footer(footer);
+  return [o] { report(*o); };
+}
+
+}  // namespace mmbrdf::program
