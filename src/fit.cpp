@@ -253,7 +253,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
     Solution solution = whole.solve(options.rank_tolerance);
     if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
     for (const auto& [e, part] : parts) result.elements[e] = element_fit(e, part, solution.x);
-    FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition()};
+    FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition(), solution.null_space};
     if (solution.degrees_of_freedom() > 0) {
       fitted.covariance = solution.inverse;
       for (double& c : fitted.covariance) c *= solution.variance();

@@ -97,7 +97,8 @@ void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, 
     const MatrixXd half = g * middle * g * small_sample_factor(solution);
     model.blocks[b].covariance = row_major(0.5 * (half + half.transpose()));
   }
-  if (takes_own_reflectance(options)) add_own_reflectance_covariance(result, options.rank_tolerance, &squares);
+  if (takes_own_reflectance(options) && result.solutions.front().degrees_of_freedom() > 0)
+    add_own_reflectance_covariance(result, options.rank_tolerance, &squares);
 }
 
 double FitAccumulator::small_sample_factor(const Solution& solution) {

@@ -89,7 +89,7 @@ std::vector<double> read_covariance(const Field& field, std::size_t size) {
 }
 
 FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
-  field.require_no_other_than({"elements", "modes", "coefficients", "covariance", "rank", "condition"});
+  field.require_no_other_than({"elements", "modes", "coefficients", "covariance", "rank", "condition", "null_space"});
   FittedBlock fitted;
   fitted.block = read_block(field, family);
   fitted.coefficients = field["coefficients"].numbers();
@@ -98,9 +98,13 @@ FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
                 std::to_string(powers + 1) + " for each of the " + std::to_string(modes) + " modes");
   if (field.has("covariance")) fitted.covariance = read_covariance(field["covariance"], size);
   if (field.has("rank")) fitted.rank = field["rank"].integer();
+  if (field.has("null_space")) fitted.null_space = field["null_space"].numbers();
   if (field.has("condition")) fitted.condition = field["condition"].number();
   if (fitted.rank < 0 || static_cast<std::size_t>(fitted.rank) > size)
     field["rank"].refuse(std::to_string(fitted.rank) + " is not in 0..." + std::to_string(size));
+  const std::size_t free = (size - static_cast<std::size_t>(fitted.rank)) * size;
+  if (field.has("null_space"))
+    require_count(field["null_space"], fitted.null_space.size(), free, "one combination for each that is free");
   if (fitted.condition < 0) field["condition"].refuse(field["condition"].shown() + " is negative");
   return fitted;
 }
@@ -299,6 +303,7 @@ ordered_json block_json(const FittedBlock& fitted) {
   if (!fitted.covariance.empty()) result["covariance"] = lower_triangle(fitted.covariance, fitted.coefficients.size());
   if (fitted.rank > 0) result["rank"] = fitted.rank;
   if (fitted.condition > 0) result["condition"] = fitted.condition;
+  if (!fitted.null_space.empty()) result["null_space"] = fitted.null_space;
   return result;
 }
 

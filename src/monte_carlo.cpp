@@ -4,11 +4,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 #include "numbers.hpp"
 #include "random.hpp"
+#include "semidefinite.hpp"
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
 //   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
@@ -53,11 +55,7 @@ MatrixXd joint_covariance(const FittedBlock& fitted, const ReflectanceTable& tab
 MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(joint_covariance(fitted, table));
   const VectorXd& s = solver.eigenvalues();
-  const double lowest = s[0], highest = std::max(s[s.size() - 1], 0.0);
-  if (lowest < -covariance_tolerance * highest)
-    throw std::invalid_argument("the covariance of block " + fitted.block.name +
-                                " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
-                                shortest(highest));
+  require_semidefinite(s, fitted.block.name);
   return solver.eigenvectors() * s.cwiseMax(0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
 }
 
@@ -76,20 +74,20 @@ void require_values(std::span<const double> values, const char* what) {
       throw std::invalid_argument(std::string(what) + ": the value " + shortest(value) + " is not finite");
 }
 
-/// Differences from the mean, divided by the largest of them; and that.
+/// Differences from the mean in units of half the spread, and that. 0 if all values are equal, whatever their mean is
+/// rounded to.
 struct Deviations {
   std::vector<double> relative;
-  double largest = 0;
+  double half_spread = 0;
 };
 
 Deviations deviations(std::span<const double> values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  Deviations result{std::vector<double>(values.size()), *high / 2 - *low / 2};
+  if (result.half_spread == 0) return result;
   const double mean = mean_of(values);
-  Deviations result;
-  for (const double value : values) {
-    result.relative.push_back(value - mean);
-    result.largest = std::max(result.largest, std::abs(value - mean));
-  }
-  for (double& value : result.relative) value = result.largest > 0 ? value / result.largest : 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    result.relative[i] = (values[i] / 2 - mean / 2) / (result.half_spread / 2);
   return result;
 }
 
@@ -186,8 +184,8 @@ Distribution distribution(std::span<const double> values, double coverage, Inter
     for (std::size_t r = 1; r + steps < count; ++r)
       if (sorted[r + steps] - sorted[r] < sorted[low + steps] - sorted[low]) low = r;
   }
-  return {mean_of(values), d.largest * std::sqrt(squares / static_cast<double>(count - 1)), sorted[low],
-          sorted[low + steps]};
+  const double deviation = d.half_spread * std::sqrt(squares / static_cast<double>(count - 1));
+  return {mean_of(values), std::min(deviation, std::numeric_limits<double>::max()), sorted[low], sorted[low + steps]};
 }
 
 double correlation(std::span<const double> values, std::span<const double> others) {

@@ -12,6 +12,7 @@
 
 #include "mmbrdf/radiometry.hpp"
 #include "numbers.hpp"
+#include "semidefinite.hpp"
 
 // Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
@@ -67,14 +68,11 @@ struct BlockAt {
   }
 };
 
-/// Eigenvectors of the covariance with eigenvalue 0: as many as coefficients less rank, for a solution of minimum norm.
+/// Combinations that the data left free, as columns; every one where they are not known.
 MatrixXd free_combinations(const FittedBlock& fitted) {
   const Index size = index(fitted.coefficients.size()), free = size - fitted.rank;
-  if (free == 0) return MatrixXd(size, 0);
-  const Eigen::Map<const MatrixXd> covariance(fitted.covariance.data(), size, size);
-  if (fitted.rank == 0 && !covariance.isZero(0))
-    throw std::invalid_argument("the rank of block " + fitted.block.name + " is not known");
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance).eigenvectors().leftCols(free);
+  if (free > 0 && fitted.null_space.empty()) return MatrixXd::Identity(size, size);
+  return Eigen::Map<const MatrixXd>(fitted.null_space.data(), size, free);
 }
 
 /// Covariance of a(λ), and of R(λ) behind it where that is block 11 and R has a covariance.
@@ -95,16 +93,6 @@ MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, cons
   return result;
 }
 
-void require_covariance(const MatrixXd& covariance, const std::string& block) {
-  const VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<MatrixXd>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
-  const double lowest = eigenvalues(0), highest = std::max(eigenvalues(eigenvalues.size() - 1), 0.0);
-  if (lowest < -covariance_tolerance * highest)
-    throw std::invalid_argument("the covariance of block " + block +
-                                " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
-                                shortest(highest));
-}
-
 BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelength) {
   if (fitted.covariance.empty())
     throw std::invalid_argument("the covariance of block " + fitted.block.name + " is not known");
@@ -121,7 +109,8 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
-  require_covariance(result.covariance, fitted.block.name);
+  require_semidefinite(Eigen::SelfAdjointEigenSolver<MatrixXd>(result.covariance, Eigen::EigenvaluesOnly).eigenvalues(),
+                       fitted.block.name);
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = std::sqrt(squares);
   result.terms.resize(fitted.block.elements.size());
@@ -275,6 +264,7 @@ MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> 
   const bool mixes = blocks_->turns || frame != Frame::xy;
   MatrixXd sum = MatrixXd::Zero(16, blocks_->parameters), one = sum;
   for (const auto& [geometry, weight] : geometries) {
+    if (!std::isfinite(weight)) throw std::invalid_argument("uncertainty: weight " + shortest(weight));
     const Slopes at(*blocks_, geometry);
     if (!mixes) {
       at.add_to(sum, weight);

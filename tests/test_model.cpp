@@ -125,7 +125,7 @@ Mueller sum_in_extended_precision(const Model& model, double wavelength, const G
   };
   const auto k_i = k_table(geometry.incident), k_r = k_table(geometry.reflected);
   std::array<Long, 16> sums{};
-  for (const auto& [block, coefficients, covariance, rank, condition] : model.blocks)
+  for (const auto& [block, coefficients, covariance, rank, condition, null_space] : model.blocks)
     for (std::size_t q = 0; q < block.modes.size(); ++q) {
       Long coefficient = 0;
       for (int p = 0; p <= model.powers; ++p)

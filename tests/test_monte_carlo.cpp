@@ -55,7 +55,7 @@ TEST(Draws, OfWhatIsLinearHaveTheFirstOrderUncertainty) {
     };
     const Mueller m = exact.evaluate(oblique, Frame::sp);
     const Mueller first_order = standard_uncertainty(u.normalized(oblique, Frame::sp));
-    for (const std::size_t e : {0, 1, 5, 11, 15})
+    for (const std::size_t e : {0u, 1u, 5u, 11u, 15u})
       expect(distribution(values(models,
                                  [&](const PreparedModel& draw) {
                                    const Mueller f = draw.evaluate(oblique, Frame::sp);
@@ -175,6 +175,14 @@ TEST(Distribution, HasTheIntervalsOfTheGuide) {
   EXPECT_NEAR(two.standard_deviation, std::sqrt(2), 1e-15);
   EXPECT_EQ(two.low, 1);
   EXPECT_EQ(two.high, 3);
+}
+
+// The mean of ten times 0.1 is not 0.1.
+TEST(Distribution, OfWhatDoesNotVaryHasNoSpreadAndNoCorrelation) {
+  const std::vector<double> tenths(10, 0.1), sevenths(10, 0.7), large{1.7e308, 1.7e308, -1.7e308};
+  EXPECT_EQ(distribution(tenths).standard_deviation, 0);
+  EXPECT_EQ(correlation(tenths, sevenths), 0);
+  EXPECT_TRUE(std::isfinite(distribution(large).standard_deviation));
 }
 
 TEST(Distribution, RefusesWhatHasNone) {

@@ -122,7 +122,7 @@ RC_GTEST_PROP(Sensitivity, OfCoAndCrossPolarizedPartsGivesTheUncertaintyOfTheThe
   MuellerCovariance v = random_covariance(random);
   for (std::size_t e = 1; e < 16; ++e) v(0, e) = v(e, 0) = 0;
   // m22 is a fit of its own in every family, as the formula has it.
-  for (const std::size_t e : {1, 4}) v(5, e) = v(e, 5) = 0;
+  for (const std::size_t e : {1u, 4u}) v(5, e) = v(e, 5) = 0;
   const double f11 = random.between(0.1, 1);
   Mueller m;
   for (double& element : m.elements) element = random.between(-1, 1);

@@ -56,6 +56,8 @@ struct FittedBlock {
   std::vector<double> covariance;    ///< of these coefficients, square and row-major; empty: unknown
   int rank = 0;                      ///< of the fit; 0: unknown
   double condition = 0;              ///< of the fit; 0: unknown
+  std::vector<double> null_space{};  ///< orthonormal combinations of the coefficients that the data left free, (count −
+                                     ///< rank) × count row-major; empty if there are none, or they are not known
 };
 
 /// Highest power of the wavelength that a model may have.

@@ -29,9 +29,9 @@ void require_semidefinite(const Model& model);
 /// The values of a reflectance table that has a covariance are drawn with the coefficients of block 11.
 class Draws {
  public:
-  /// The same seed gives the same draws, and a longer list begins with the shorter. Throws std::invalid_argument for an
-  /// invalid model, a block whose covariance is not known or not positive semidefinite, or unless 2 ≤ count ≤
-  /// max_draws.
+  /// The same seed gives the same draws, and a longer list begins with the shorter, to rounding. Throws
+  /// std::invalid_argument for an invalid model, a block whose covariance is not known or not positive semidefinite, or
+  /// unless 2 ≤ count ≤ max_draws.
   explicit Draws(const Model& model, int count = 1000, unsigned long seed = 0, Rotation rotation = Rotation::covariant);
   static constexpr int max_draws = 1000000;
 

@@ -43,7 +43,8 @@ class PreparedUncertainty {
 
   /// Slopes of the Mueller BRDF in sr⁻¹, and of a weighted sum of it over geometries, such as the mean over an
   /// aperture. The parameters are the coefficients at this wavelength, block after block; behind those of block 11
-  /// comes the reflectance there, if the table has a covariance. Throws std::invalid_argument for an invalid geometry.
+  /// comes the reflectance there, if the table has a covariance. Throws std::invalid_argument for an invalid geometry
+  /// or a weight that is not finite.
   MuellerGradient gradient(const Geometry& geometry, Frame frame = Frame::xy) const;
   MuellerGradient gradient(std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy) const;
 
@@ -56,9 +57,9 @@ class PreparedUncertainty {
 
   /// Whether the data of the fit determine every element there. Where they do not, the uncertainties above are those of
   /// the part that is determined: too small. The rows of the elements over the coefficients may lie in the combinations
-  /// that the data leave free with at most 1e-8 of their length (theory 4.2). Those are the eigenvectors of the
-  /// covariance with eigenvalue 0; where the condition of a deficient fit is above 1e4 they are too inaccurate, and the
-  /// answer may be a false "no". Throws std::invalid_argument for an invalid geometry.
+  /// that the data leave free with at most 1e-8 of their length (theory 4.2). Of a
+  /// deficient fit whose free combinations are not known nothing is. Throws std::invalid_argument for an invalid
+  /// geometry.
   bool estimable(const Geometry& geometry) const;
 
   /// Of the directional-hemispherical reflectance for unpolarized light. Throws as above.

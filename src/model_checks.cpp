@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a model must be, where it holds, and the table of its reflectance. How it is evaluated is in model.cpp.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "mmbrdf/model.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double edge = 1e-9;  // radians and micrometres: angles that went through degrees are still inside
+
+}  // namespace
+
+void require_wavelength(double wavelength) {
+  if (!(wavelength > 0))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is not positive");
+  if (!(wavelength <= max_wavelength))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is more than a metre");
+}
+
+std::vector<double> ReflectanceTable::weights(double wavelength) const {
+  std::vector<double> result(values.size());
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
+  if (values.empty()) return result;
+  if (above == wavelengths.begin() || above == wavelengths.end()) {
+    result[above == wavelengths.begin() ? 0 : values.size() - 1] = 1;
+    return result;
+  }
+  result[i] = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  result[i - 1] = 1 - result[i];
+  return result;
+}
+
+double ReflectanceTable::at(double wavelength) const {
+  if (values.empty()) return 1;
+  double sum = 0;
+  const std::vector<double> weight = weights(wavelength);
+  for (std::size_t i = 0; i < values.size(); ++i) sum += weight[i] * values[i];
+  return sum;
+}
+
+void require_valid(const ReflectanceTable& table) {
+  if (table.wavelengths.size() != table.values.size())
+    throw std::invalid_argument("reflectance table: " + std::to_string(table.wavelengths.size()) + " wavelengths, " +
+                                std::to_string(table.values.size()) + " values");
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    require_wavelength(table.wavelengths[i]);
+    if (i > 0 && table.wavelengths[i] <= table.wavelengths[i - 1])
+      throw std::invalid_argument("reflectance table: wavelength " + shortest(in_nanometres(table.wavelengths[i])) +
+                                  " nm does not rise");
+    if (!(table.values[i] > 0) || !std::isfinite(table.values[i]))
+      throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not positive");
+  }
+  const std::size_t count = table.values.size();
+  if (!table.covariance.empty() && table.covariance.size() != count * count)
+    throw std::invalid_argument("reflectance table: covariance of " + std::to_string(table.covariance.size()) +
+                                " numbers, expected " + std::to_string(count * count));
+  if (table.covariance.empty() && !table.covariance_with_f11.empty())
+    throw std::invalid_argument("reflectance table: a covariance with the coefficients, but none of its own");
+  for (const auto& list : {table.covariance, table.covariance_with_f11})
+    if (!std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }))
+      throw std::invalid_argument("reflectance table: a covariance is not finite");
+}
+
+std::string to_string(Outside outside) {
+  std::string result;
+  const auto append = [&](Outside reason, const char* name) {
+    if (outside & reason) result.append(result.empty() ? "" : "+").append(name);
+  };
+  append(outside_theta_i, "theta_i");
+  append(outside_theta_r, "theta_r");
+  append(outside_wavelength, "wavelength");
+  append(unknown_range, "unknown");
+  return result.empty() ? "ok" : result;
+}
+
+namespace {
+
+void require_valid(const Validity& validity) {
+  double last = 0;
+  for (const double wavelength : validity.wavelengths) {
+    require_wavelength(wavelength);
+    if (wavelength <= last)
+      throw std::invalid_argument("validity: wavelength " + shortest(in_nanometres(wavelength)) + " nm does not rise");
+    last = wavelength;
+  }
+  for (const std::optional<double>& theta : {validity.theta_i_max, validity.theta_r_max})
+    if (theta && !(*theta >= 0 && *theta <= pi / 2 + edge))
+      throw std::invalid_argument("validity: polar angle " + shortest(in_degrees(*theta)) +
+                                  " degrees is not in [0, 90]");
+}
+
+/// The numbers of a block, of which there are `count` coefficients.
+void require_valid(const FittedBlock& fitted, std::size_t count) {
+  const std::string where = "block " + fitted.block.name + ": ";
+  const auto require_size = [&](const std::vector<double>& list, std::size_t expected, const std::string& what) {
+    if (list.size() != expected)
+      throw std::invalid_argument(where + what + std::to_string(list.size()) + " numbers, expected " +
+                                  std::to_string(expected));
+  };
+  if (fitted.coefficients.size() != count)
+    throw std::invalid_argument(where + std::to_string(fitted.coefficients.size()) + " coefficients, expected " +
+                                std::to_string(count));
+  if (fitted.rank < 0 || static_cast<std::size_t>(fitted.rank) > count)
+    throw std::invalid_argument(where + "rank " + std::to_string(fitted.rank) + " of " + std::to_string(count));
+  const std::size_t free = count - static_cast<std::size_t>(fitted.rank);
+  if (!fitted.null_space.empty()) require_size(fitted.null_space, free * count, "null space of ");
+  if (!fitted.covariance.empty()) require_size(fitted.covariance, count * count, "covariance of ");
+  for (const auto* list : {&fitted.coefficients, &fitted.covariance, &fitted.null_space})
+    if (!std::all_of(list->begin(), list->end(), [](double x) { return std::isfinite(x); }))
+      throw std::invalid_argument(where + "a number is not finite");
+  for (std::size_t i = 0; i < (fitted.covariance.empty() ? 0 : count); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (fitted.covariance[i * count + j] != fitted.covariance[j * count + i])
+        throw std::invalid_argument(where + "covariance is not symmetric at " + std::to_string(i + 1) + ", " +
+                                    std::to_string(j + 1));
+}
+
+}  // namespace
+
+void require_valid(const Model& model) {
+  if (model.powers < 0 || model.powers > max_power)
+    throw std::invalid_argument("highest power of the wavelength " + std::to_string(model.powers) + " is not in 0..." +
+                                std::to_string(max_power));
+  std::vector<Mode> modes;
+  for (const FittedBlock& fitted : model.blocks)
+    modes.insert(modes.end(), fitted.block.modes.begin(), fitted.block.modes.end());
+  const std::vector<Block> expected = blocks(model.family, modes);
+  if (expected.empty() || expected.front().name != "11")
+    throw std::invalid_argument("model has no modes of element 11");
+  if (expected.size() != model.blocks.size())
+    throw std::invalid_argument("model: modes are not in the blocks of the family");
+  for (std::size_t b = 0; b < expected.size(); ++b) {
+    const FittedBlock& fitted = model.blocks[b];
+    if (fitted.block.modes != expected[b].modes || fitted.block.elements != expected[b].elements)
+      throw std::invalid_argument("block " + fitted.block.name + ": modes are not in canonical order");
+    require_valid(fitted, fitted.block.modes.size() * (static_cast<std::size_t>(model.powers) + 1));
+  }
+  require_valid(model.reflectance);
+  const std::size_t with_f11 = model.reflectance.covariance.empty()
+                                   ? 0
+                                   : model.reflectance.values.size() * model.blocks.front().coefficients.size();
+  if (model.reflectance.covariance_with_f11.size() != with_f11)
+    throw std::invalid_argument("reflectance table: covariance with the coefficients of " +
+                                std::to_string(model.reflectance.covariance_with_f11.size()) + " numbers, expected " +
+                                std::to_string(with_f11));
+  require_valid(model.validity);
+}
+
+int coefficient_count(const Model& model) {
+  std::size_t count = 0;
+  for (const FittedBlock& fitted : model.blocks) count += fitted.coefficients.size();
+  return static_cast<int>(count);
+}
+
+Orders orders(const Model& model) {
+  std::vector<Block> list;
+  for (const FittedBlock& fitted : model.blocks) list.push_back(fitted.block);
+  return orders(list);
+}
+
+Outside outside(const Validity& validity, double wavelength, const Geometry& geometry) {
+  unsigned result = inside;
+  if (!validity.theta_i_max || !validity.theta_r_max || validity.wavelengths.empty()) result |= unknown_range;
+  if (geometry.incident.theta > validity.theta_i_max.value_or(pi / 2) + edge) result |= outside_theta_i;
+  if (geometry.reflected.theta > validity.theta_r_max.value_or(pi / 2) + edge) result |= outside_theta_r;
+  if (!validity.wavelengths.empty() &&
+      (wavelength < validity.wavelengths.front() - edge || wavelength > validity.wavelengths.back() + edge))
+    result |= outside_wavelength;
+  return static_cast<Outside>(result);
+}
+
+double only_wavelength(const Model& model) {
+  const std::size_t known = model.validity.wavelengths.size();
+  if (model.powers == 0 && known <= 1 && model.reflectance.values.size() <= 1)
+    return known == 1 ? model.validity.wavelengths.front() : 1.0;
+  std::string list;
+  for (const double wavelength : model.validity.wavelengths)
+    list += (list.empty() ? ", fitted at " : ", ") + shortest(in_nanometres(wavelength));
+  throw std::invalid_argument("the model depends on the wavelength" + list + (list.empty() ? "" : " nm") +
+                              ": give one");
+}
+
+}  // namespace mmbrdf

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What every use of a covariance asks of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/uncertainty.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+
+/// Eigenvalues, rising, of the covariance of a block. Throws std::invalid_argument, naming it, as covariance_tolerance
+/// says.
+inline void require_semidefinite(const Eigen::VectorXd& eigenvalues, const std::string& block) {
+  const double lowest = eigenvalues(0), highest = std::max(eigenvalues(eigenvalues.size() - 1), 0.0);
+  if (lowest < -covariance_tolerance * highest)
+    throw std::invalid_argument("the covariance of block " + block +
+                                " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
+                                shortest(highest));
+}
+
+}  // namespace mmbrdf
