@@ -2,6 +2,7 @@
 #include "mmbrdf/comparison.hpp"
 
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -43,11 +44,14 @@ Comparison compare(const Model& model, std::span<const Sample> samples, Rotation
   if (samples.empty()) throw std::invalid_argument("compare: no samples");
   require_valid(samples);
   const std::vector<Mueller> differences = residuals(model, samples, rotation);
+  std::map<double, PreparedModel> prepared;
   Comparison result;
   result.samples = static_cast<long>(samples.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Mueller& d = differences[s];
-    const double f11 = samples[s].f11 - d(0, 0);
+    const double wavelength = samples[s].wavelength;
+    if (!prepared.contains(wavelength)) prepared.emplace(wavelength, prepare(model, wavelength, rotation));
+    const double f11 = prepared.at(wavelength).f11(samples[s].geometry);
     require_positive(f11, samples[s]);
     add(result.f11, d(0, 0), samples[s]);
     add(result.f11_relative, d(0, 0) / f11, samples[s]);

@@ -40,6 +40,9 @@ bool is_grazing(const Direction& direction) { return std::cos(direction.theta) <
 /// cos^a θi and cos^b θr. `infinite` says for which of the two angles 90 degrees is refused, with these words.
 std::pair<double, double> powers(const NoiseLaw& law, const Geometry& g, std::pair<bool, bool> infinite,
                                  const std::string& what) {
+  require_valid(g, "noise law");
+  if (!(law.scale >= 0) || !std::isfinite(law.scale))
+    throw std::invalid_argument("noise law: scale = " + shortest(law.scale) + ", must be finite and not negative");
   if (infinite.first && is_grazing(g.incident)) refuse("theta_i", g.incident.theta, "the " + what + " infinite");
   if (infinite.second && is_grazing(g.reflected)) refuse("theta_r", g.reflected.theta, "the " + what + " infinite");
   const auto power = [](double theta, double exponent) { return std::pow(std::max(std::cos(theta), 0.0), exponent); };
@@ -135,7 +138,7 @@ Vector3d most_likely(const Rows& rows, const Eigen::LLT<Matrix3d>& information) 
 }  // namespace
 
 double standard_deviation(const NoiseLaw& law, const Geometry& geometry) {
-  const auto [a, b] = powers(law, geometry, {law.incident_exponent<0, law.reflected_exponent> 0}, "noise is");
+  const auto [a, b] = powers(law, geometry, {0 > law.incident_exponent, 0 < law.reflected_exponent}, "noise is");
   return law.scale * std::sqrt(a / b);
 }
 

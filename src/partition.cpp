@@ -20,7 +20,8 @@ void require_folds(std::size_t samples, int folds) {
   if (folds < 2 || folds > max_folds)
     throw std::invalid_argument("folds: " + std::to_string(folds) + " is not in 2..." + std::to_string(max_folds));
   if (static_cast<std::size_t>(folds) > samples)
-    throw std::invalid_argument("folds: " + std::to_string(folds) + " of " + std::to_string(samples) + " samples");
+    throw std::invalid_argument("folds: " + std::to_string(folds) + ", more than the " + std::to_string(samples) +
+                                " samples");
 }
 
 Partition numbered_folds(Kind kind, std::size_t samples, int folds) {
@@ -95,6 +96,15 @@ Partition folds_by_wavelength(std::span<const Sample> samples) {
         std::upper_bound(distinct.begin(), distinct.end(), sample.wavelength + wavelength_resolution) -
         distinct.begin() - 1));
   return partition;
+}
+
+std::vector<std::vector<Sample>> parts(std::span<const Sample> samples, const Partition& partition) {
+  if (partition.fold.size() != samples.size())
+    throw std::invalid_argument("parts: a partition of " + std::to_string(partition.fold.size()) +
+                                " samples, there are " + std::to_string(samples.size()));
+  std::vector<std::vector<Sample>> result(partition.names.size());
+  for (std::size_t s = 0; s < samples.size(); ++s) result[partition.fold[s]].push_back(samples[s]);
+  return result;
 }
 
 }  // namespace mmbrdf

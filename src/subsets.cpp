@@ -4,46 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/sensitivity.hpp"
 #include "mmbrdf/uncertainty.hpp"
 #include "numbers.hpp"
-#include "random.hpp"
 
 namespace mmbrdf {
 namespace {
 
 constexpr std::array every_curve{&PolarizedBrdf::ss, &PolarizedBrdf::sp, &PolarizedBrdf::ps, &PolarizedBrdf::pp};
 constexpr std::array<const char*, 4> curve_names{"f_ss", "f_sp", "f_ps", "f_pp"};
-
-/// The samples in this order, dealt out in turn.
-std::vector<std::vector<Sample>> dealt(std::span<const Sample> samples, std::span<const std::size_t> order, int k) {
-  if (k < 2) throw std::invalid_argument("subsets: k = " + std::to_string(k) + ", must be at least 2");
-  const auto count = static_cast<std::size_t>(k);
-  if (count > samples.size())
-    throw std::invalid_argument("subsets: k = " + std::to_string(k) + ", more than the " +
-                                std::to_string(samples.size()) + " samples");
-  std::vector<std::vector<Sample>> parts(count);
-  for (std::size_t s = 0; s < samples.size(); ++s) parts[s % count].push_back(samples[order[s]]);
-  return parts;
-}
-
-std::vector<std::size_t> numbers_up_to(std::size_t count) {
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  return order;
-}
-
-/// Fisher and Yates. std::shuffle is not the same with every compiler.
-std::vector<std::size_t> shuffled(std::size_t count, unsigned long seed) {
-  std::mt19937_64 engine(seed);
-  std::vector<std::size_t> order = numbers_up_to(count);
-  for (std::size_t i = count; i > 1; --i)
-    std::swap(order[i - 1], order[static_cast<std::size_t>(uniform(engine) * static_cast<double>(i))]);
-  return order;
-}
 
 void require_same_rank(const Model& part, const Model& whole) {
   for (std::size_t b = 0; b < whole.blocks.size(); ++b)
@@ -70,14 +42,6 @@ void require_same_length(const PolarizedCurve& curve, const PolarizedCurve& refe
 }
 
 }  // namespace
-
-std::vector<std::vector<Sample>> interleaved_parts(std::span<const Sample> samples, int k) {
-  return dealt(samples, numbers_up_to(samples.size()), k);
-}
-
-std::vector<std::vector<Sample>> random_parts(std::span<const Sample> samples, int k, unsigned long seed) {
-  return dealt(samples, shuffled(samples.size(), seed), k);
-}
 
 SubsetFits fit_parts(std::span<const std::vector<Sample>> parts, const Basis& basis, const FitOptions& options,
                      Weights weights) {
@@ -115,19 +79,13 @@ PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<
 
 PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
                                      Rotation rotation) {
-  constexpr std::array<std::size_t, 4> elements{0, 1, 4, 5};  // 11, 12, 21, 22
   const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength, rotation);
+  const auto [ss, sp, ps, pp] = co_and_cross_polarized_gradients();
   PolarizedCurve curve;
   for (const Geometry& geometry : geometries) {
     const MuellerCovariance covariance = prepared.evaluate(geometry, Frame::sp);
-    const auto uncertainty = [&](double a, double b) {
-      const std::array<double, 4> factors{0.5, 0.5 * a, 0.5 * b, 0.5 * a * b};
-      double variance = 0;
-      for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 4; ++j) variance += factors[i] * factors[j] * covariance(elements[i], elements[j]);
-      return std::sqrt(std::max(variance, 0.0));
-    };
-    curve.push_back({uncertainty(1, 1), uncertainty(1, -1), uncertainty(-1, 1), uncertainty(-1, -1)});
+    curve.push_back({standard_uncertainty(ss, covariance), standard_uncertainty(sp, covariance),
+                     standard_uncertainty(ps, covariance), standard_uncertainty(pp, covariance)});
   }
   return curve;
 }

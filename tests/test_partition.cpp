@@ -44,6 +44,18 @@ TEST(Partition, AtRandomIsEvenAndFollowsTheSeed) {
     EXPECT_NEAR(static_cast<double>(std::count(one.fold.begin(), one.fold.end(), f)), 100 / 3., 1) << f;
 }
 
+TEST(Partition, PartsAreTheSamplesOfEachFoldInTheirOrder) {
+  std::vector<Sample> samples(5);
+  for (std::size_t s = 0; s < 5; ++s) samples[s].f11 = static_cast<double>(s);
+  const auto list = parts(samples, folds_by_row(5, 2));
+  ASSERT_EQ(list.size(), 2U);
+  ASSERT_EQ(list[0].size(), 3U);
+  ASSERT_EQ(list[1].size(), 2U);
+  EXPECT_EQ(list[0][2].f11, 4);
+  EXPECT_EQ(list[1][0].f11, 1);
+  EXPECT_THROW(parts(samples, folds_by_row(4, 2)), std::invalid_argument);
+}
+
 TEST(Partition, ByAngleJoinsWhatAFileHasRounded) {
   std::vector<Sample> samples(5);
   const double angles[] = {45, 0.001, -0.001, 44.998, 30};
@@ -70,7 +82,7 @@ TEST(Partition, RefusesWhatCannotBeLeftOut) {
   const auto says = [](auto action, const std::string& part) {
     EXPECT_NE(message_of(action).find(part), std::string::npos) << message_of(action);
   };
-  says([] { folds_by_row(5, 6); }, "6 of 5 samples");
+  says([] { folds_by_row(5, 6); }, "folds: 6, more than the 5 samples");
   says([] { folds_by_row(5, 1); }, "folds: 1 is not in 2...100");
   says([] { random_folds(1000, 101, 0); }, "folds: 101");
   const std::vector<Sample> random = in_random_directions(3000), few = in_random_directions(300);

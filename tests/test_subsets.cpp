@@ -39,32 +39,6 @@ std::vector<PolarizedCurve> curves(const std::vector<Model>& models, Rotation ro
   return result;
 }
 
-TEST(Subsets, AreDisjointAndTogetherAreAllSamples) {
-  const std::vector<Sample> samples = simulated(10, 0);
-  for (const auto& parts : {interleaved_parts(samples, 3), random_parts(samples, 3, 7)}) {
-    std::vector<double> found, expected;
-    for (const std::vector<Sample>& part : parts) {
-      EXPECT_GE(part.size(), 3u);
-      EXPECT_LE(part.size(), 4u);
-      for (const Sample& s : part) found.push_back(s.f11);
-    }
-    for (const Sample& s : samples) expected.push_back(s.f11);
-    std::sort(found.begin(), found.end());
-    std::sort(expected.begin(), expected.end());
-    EXPECT_EQ(found, expected);
-  }
-  EXPECT_EQ(interleaved_parts(samples, 3)[1][2].geometry, samples[7].geometry);
-}
-
-TEST(Subsets, OfOneSeedAreTheSameAndOfAnotherAreNot) {
-  const std::vector<Sample> samples = simulated(50, 0);
-  const auto first = [&](unsigned long seed) { return random_parts(samples, 2, seed)[0][0].f11; };
-  EXPECT_EQ(first(1), first(1));
-  int others = 0;
-  for (unsigned long seed = 0; seed < 20; ++seed) others += first(seed) == first(1) ? 0 : 1;
-  EXPECT_GT(others, 15);  // by chance 1 of 50 is the same
-}
-
 TEST(Subsets, StatisticsAreThoseOfTheirDefinition) {
   const PolarizedCurve reference{{1, 2, 4, 5}, {1, 1, 1, 1}};
   const std::vector<PolarizedCurve> two{{{1, 2, 4, 5}, {1, 1, 1, 1}}, {{1, 2, 4, 5}, {1, 1, 1.5, 1}}};
@@ -112,7 +86,7 @@ TEST(Subsets, ScatterAsTheCovarianceOfOneFitSays) {
   double observed = 0, predicted = 0;
   for (unsigned long seed = 0; seed < 40; ++seed) {
     const std::vector<Sample> samples = simulate(truth, green, random_geometries(300, seed), 0.01, seed);
-    const SubsetFits fits = fit_parts(interleaved_parts(samples, 3), basis, {}, Weights::speckle);
+    const SubsetFits fits = fit_parts(parts(samples, folds_by_row(samples.size(), 3)), basis, {}, Weights::speckle);
     const PolarizedCurve reference = polarized_curve(fits.whole, 0.532, of_the_paper());
     observed += std::pow(subset_statistics(curves(fits.parts), reference).root_mean_variance, 2);
     predicted += 3 * std::pow(relative_rms(polarized_uncertainty(fits.whole, 0.532, of_the_paper()), reference), 2);
@@ -122,13 +96,11 @@ TEST(Subsets, ScatterAsTheCovarianceOfOneFitSays) {
 
 TEST(Subsets, RefuseWhatHasNoAnswer) {
   const std::vector<Sample> samples = simulated(40, 0);
-  EXPECT_PRED2(has, message_of([&] { interleaved_parts(samples, 1); }), "k = 1, must be at least 2");
-  EXPECT_PRED2(has, message_of([&] { random_parts(samples, 41, 0); }), "k = 41, more than the 40 samples");
-  EXPECT_PRED2(has, message_of([&] { fit_parts(interleaved_parts(samples, 2)); }),
+  EXPECT_PRED2(has, message_of([&] { fit_parts(parts(samples, folds_by_row(samples.size(), 2))); }),
                "part 1 of 2, 20 samples: the data do not determine the model");
   // The published sets always have a solution, of smallest norm: then it is the rank that must not fall.
   EXPECT_PRED2(has, message_of([&] {
-                 fit_parts(interleaved_parts(samples, 2), {Family::germer2017, {7, 4}});
+                 fit_parts(parts(samples, folds_by_row(samples.size(), 2)), {Family::germer2017, {7, 4}});
                }),
                "part 1 of 2, 20 samples: block 11 has rank 20, with all samples 40");
   const PolarizedCurve good{{1, 1, 1, 1}}, zero{{1, 1, 0, 1}};
@@ -149,18 +121,19 @@ TEST(Subsets, RefuseWhatHasNoAnswer) {
 TEST(PublishedSubsets, GiveThePapersNumbersInThePapersWayAndLessInAnIsotropicOne) {
   const std::string file = published("PTFE.data.random.csv");
   if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");
-  const auto parts = interleaved_parts(read_samples(file), 3);
+  const std::vector<Sample> samples = read_samples(file);
+  const auto thirds = parts(samples, folds_by_row(samples.size(), 3));
   const PolarizedCurve reference =
       polarized_curve(read_coefficients(published("PTFE.532.coeff.csv")), 0.532, of_the_paper());
   Basis printed;
   printed.family = Family::germer2017;
   printed.rotation = Rotation::as_printed;
   const SubsetStatistics paper =
-      subset_statistics(curves(fit_parts(parts, printed).parts, Rotation::as_printed), reference);
+      subset_statistics(curves(fit_parts(thirds, printed).parts, Rotation::as_printed), reference);
   EXPECT_NEAR(paper.mean_distance, 0.0059, 5e-5);
   EXPECT_NEAR(paper.largest_distance, 0.0264, 5e-5);
   EXPECT_NEAR(paper.mean_deviation, 0.0052, 5e-5);
-  const SubsetStatistics isotropic = subset_statistics(curves(fit_parts(parts).parts), reference);
+  const SubsetStatistics isotropic = subset_statistics(curves(fit_parts(thirds).parts), reference);
   EXPECT_NEAR(isotropic.mean_distance, 0.0052, 5e-5);
   EXPECT_NEAR(isotropic.largest_distance, 0.024, 5e-4);
   EXPECT_NEAR(isotropic.mean_deviation, 0.0039, 5e-5);
@@ -202,7 +175,8 @@ TEST(PublishedSubsets, OfThirtyRandomSplitsScatterAsTheCovarianceOfOneFitSays) {
   constexpr int splits = 30;
   for (unsigned long seed = 0; seed < splits; ++seed) {
     std::vector<Model> models;
-    for (const std::vector<Sample>& part : random_parts(samples, 3, seed)) models.push_back(fit(part).model);
+    for (const std::vector<Sample>& part : parts(samples, random_folds(samples.size(), 3, seed)))
+      models.push_back(fit(part).model);
     squares += std::pow(subset_statistics(curves(models), reference).root_mean_variance, 2) / splits;
   }
   const double ratio = std::sqrt(squares) / (std::sqrt(3) * relative_rms(uncertainty, reference));

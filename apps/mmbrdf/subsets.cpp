@@ -51,9 +51,9 @@ struct Split {
 
 Split split(const Question& q, const Options& o, unsigned long seed) {
   const Rotation rotation = o.basis.rotation;
-  const SubsetFits fits =
-      fit_parts(o.by_lot() ? random_parts(q.samples, o.parts, seed) : interleaved_parts(q.samples, o.parts), o.basis,
-                o.fit, o.weights);
+  const SubsetFits fits = fit_parts(parts(q.samples, o.by_lot() ? random_folds(q.samples.size(), o.parts, seed)
+                                                                : folds_by_row(q.samples.size(), o.parts)),
+                                    o.basis, o.fit, o.weights);
   Split result;
   for (const Model& part : fits.parts) {
     result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries, rotation));
@@ -207,10 +207,26 @@ void require_valid(const Options& o) {
   if (o.as_printed && o.basis.family != Family::germer2017) {
     throw CLI::ValidationError("--as-printed", "goes with --basis germer2017");
   }
+  if (o.parts < 2 || o.parts > max_folds) {
+    throw std::invalid_argument("--k " + std::to_string(o.parts) + ": is not in 2..." + std::to_string(max_folds));
+  }
   if (o.splits < 1) {
     throw std::invalid_argument("--splits 0: must be at least 1");
   }
+  if (o.splits > 10000) {
+    throw std::invalid_argument("--splits " + std::to_string(o.splits) + ": at most 10000");
+  }
   require_kept(o.data, o.output, "data");
+  require_kept(o.reference, o.output, "reference");
+}
+
+/// Of the directions of the curves, by what the fit to all samples and the reference were fitted to.
+void warn_of_directions(const Model& model, const Question& q, const std::string& name) {
+  std::vector<Sample> asked;
+  for (const Geometry& geometry : q.geometries) {
+    asked.push_back({.wavelength = q.wavelength, .geometry = geometry});
+  }
+  warn_if_outside(model, asked, name);
 }
 
 /// The wavelength at which the fits are compared: the only one, or the one asked for.
@@ -252,6 +268,16 @@ void study(Options o) {
     }
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(o.data) + ": " + plain_message(error));
+  }
+  Model range;
+  range.validity.wavelengths = {q.wavelength};
+  for (const Sample& s : q.samples) {
+    range.validity.theta_i_max = std::max(range.validity.theta_i_max.value_or(0), s.geometry.incident.theta);
+    range.validity.theta_r_max = std::max(range.validity.theta_r_max.value_or(0), s.geometry.reflected.theta);
+  }
+  warn_of_directions(range, q, data_name(o.data));
+  if (q.reference) {
+    warn_of_directions(*q.reference, q, base_name(o.reference));
   }
   write_text(o.output, (o.format == Format::text ? text : o.format == Format::csv ? csv : json)(q, o, splits));
 }

@@ -35,6 +35,10 @@ Partition folds_by_incident_angle(std::span<const Sample> samples, double tolera
 /// One fold for each wavelength. Throws std::invalid_argument for fewer than 2 or more than max_folds wavelengths.
 Partition folds_by_wavelength(std::span<const Sample> samples);
 
+/// The samples of each fold, in the order they had. Throws std::invalid_argument if the partition is of another number
+/// of samples.
+std::vector<std::vector<Sample>> parts(std::span<const Sample> samples, const Partition& partition);
+
 inline constexpr int max_folds = 100;  ///< each holds a triangle for each element and wavelength
 
 }  // namespace mmbrdf

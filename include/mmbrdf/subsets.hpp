@@ -10,15 +10,9 @@
 
 #include "mmbrdf/analysis.hpp"
 #include "mmbrdf/fit.hpp"
+#include "mmbrdf/partition.hpp"
 
 namespace mmbrdf {
-
-/// Sample number s, from 0, goes to part s mod k: the paper's "every other three data points". Throws
-/// std::invalid_argument for k below 2 or more parts than samples.
-std::vector<std::vector<Sample>> interleaved_parts(std::span<const Sample> samples, int k);
-
-/// Parts by lot, whose sizes differ by 1 at most. The same seed gives the same parts. Throws as above.
-std::vector<std::vector<Sample>> random_parts(std::span<const Sample> samples, int k, unsigned long seed);
 
 /// The fit to all samples, and to each part.
 struct SubsetFits {
@@ -26,6 +20,7 @@ struct SubsetFits {
   std::vector<Model> parts;
 };
 
+/// Of parts such as parts(samples, folds_by_row(samples.size(), 3)), the paper's "every other three data points".
 /// Throws std::invalid_argument as fit() does, with the number of the part; and for a part that leaves more
 /// combinations free than all samples do, so that its fit would not be one of the same model.
 SubsetFits fit_parts(std::span<const std::vector<Sample>> parts, const Basis& basis = {},
