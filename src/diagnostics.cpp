@@ -26,10 +26,6 @@ using Table = std::array<double, zernike_count(max_order)>;
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 Index index(std::size_t n) { return static_cast<Index>(n); }
 
-}  // namespace
-
-namespace {
-
 /// Samples of a pair, the one with sin δ > 0 first.
 std::vector<std::pair<std::size_t, std::size_t>> paired(std::span<const Sample> samples) {
   std::array<std::vector<double>, 5> keys;  // wavelength, θi, φi, θr, |δ|
@@ -38,7 +34,9 @@ std::vector<std::pair<std::size_t, std::size_t>> paired(std::span<const Sample> 
     const auto& [i, r] = sample.geometry;
     const double delta = std::remainder(r.phi - i.phi, 2 * std::numbers::pi);
     sides.push_back(std::sin(delta) * std::sin(r.theta));
-    const std::array values{sample.wavelength, i.theta, std::remainder(i.phi, 2 * std::numbers::pi), r.theta,
+    const double phi_i = std::remainder(i.phi, 2 * std::numbers::pi);
+    const bool is_minus_pi = phi_i < -std::numbers::pi + pair_tolerance;  // which is π
+    const std::array values{sample.wavelength, i.theta, is_minus_pi ? phi_i + 2 * std::numbers::pi : phi_i, r.theta,
                             std::abs(delta)};
     for (std::size_t k = 0; k < 5; ++k) keys[k].push_back(values[k]);
   }
@@ -48,16 +46,20 @@ std::vector<std::pair<std::size_t, std::size_t>> paired(std::span<const Sample> 
   for (std::size_t s = 0; s < samples.size(); ++s)
     if (keys[1][s] >= pair_tolerance && std::abs(sides[s]) > pair_tolerance)
       found[{cells[0][s], cells[1][s], cells[2][s], cells[3][s], cells[4][s]}][sides[s] > 0 ? 0 : 1].push_back(s);
-  // Of many random values close to each other a cell has a whole range: what is in one is still to be compared.
-  const auto close = [&](std::size_t a, std::size_t b) {
-    for (std::size_t k = 1; k < 5; ++k)
-      if (std::abs(keys[k][a] - keys[k][b]) > pair_tolerance) return false;
-    return true;
+  // Of many random values close to each other a cell has a whole range: the nearest one is the mirror image.
+  const auto distance = [&](std::size_t a, std::size_t b) {
+    double result = 0;
+    for (std::size_t k = 1; k < 5; ++k) result = std::max(result, std::abs(keys[k][a] - keys[k][b]));
+    return result;
   };
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (const auto& [cell, both] : found)
-    for (std::size_t q = 0; q < std::min(both[0].size(), both[1].size()); ++q)
-      if (close(both[0][q], both[1][q])) pairs.emplace_back(both[0][q], both[1][q]);
+  for (auto& [cell, both] : found)
+    for (const std::size_t first : both[0]) {
+      const auto nearest = std::ranges::min_element(both[1], {}, [&](std::size_t s) { return distance(first, s); });
+      if (nearest == both[1].end() || distance(first, *nearest) > pair_tolerance) continue;
+      pairs.emplace_back(first, *nearest);
+      both[1].erase(nearest);
+    }
   return pairs;
 }
 
@@ -121,8 +123,10 @@ void require_matching(std::span<const Sample> samples, const FitResult& result, 
   if (!weights.empty() && weights.size() != samples.size())
     throw std::invalid_argument("sample diagnostics: " + std::to_string(weights.size()) + " weights for " +
                                 std::to_string(samples.size()) + " samples");
-  if (static_cast<std::size_t>(result.elements[0].rows) > samples.size() ||
-      result.solutions.size() != result.model.blocks.size())
+  const auto weighs = [&](std::size_t s) { return weights.empty() || weights[s](0, 0) > 0; };
+  long rows = 0;  // an accumulator does not count rows of weight 0
+  for (std::size_t s = 0; s < samples.size(); ++s) rows += weighs(s) ? 1 : 0;
+  if (result.elements[0].rows != rows || result.solutions.size() != result.model.blocks.size())
     throw std::invalid_argument("sample diagnostics: " + std::to_string(samples.size()) +
                                 " samples, the model was fitted to " + std::to_string(result.elements[0].rows));
 }
@@ -194,7 +198,7 @@ namespace {
 void take_in(ModelDiagnostics& result, const Geometry& geometry, const PreparedModel& prepared) {
   const Mueller f = prepared.evaluate(geometry);
   ++result.geometries;
-  if (f(0, 0) < 0) ++result.negative_f11;
+  if (!(f(0, 0) > 0)) ++result.not_positive_f11;
   if (f(0, 0) < result.f11.value) result.f11 = {f(0, 0), geometry};
   if (f(0, 0) == 0) return;
   const double margin = realizability_margin(normalized(f));

@@ -188,7 +188,8 @@ FTest compared(const Problem& problem, const Block& block, const std::vector<Col
   for (const double wavelength : problem.wavelengths) {
     const LeastSquares rows = rows_at(problem, wavelength, block, columns, with_harmonics);
     const LeastSquares base = rows.restricted(modes);
-    const Solution large = rows.solve(), small = base.solve();
+    const double tolerance = FitOptions{}.rank_tolerance;
+    const Solution large = rows.solve(tolerance), small = base.solve(tolerance);
     test.rows += large.rows;
     test.extra += large.rank - small.rank;
     test.freedom += large.degrees_of_freedom();

@@ -93,19 +93,19 @@ void add_realizability(Json& facts, const ReportedModel& reported) {
                       {"unrealizable", d.unrealizable},
                       {"smallest_margin", d.margin.value},
                       {"margin_at", at(d.margin.geometry)},
-                      {"negative_f11", d.negative_f11},
+                      {"f11_not_positive", d.not_positive_f11},
                       {"smallest_f11", d.f11.value},
                       {"largest_dhr", d.dhr},
                       {"dhr_at_theta_i_deg", degrees(d.dhr_theta_i)}});
       const std::string where = (fitted ? "within the fitted angles at " : "up to the horizon at ") +
                                 (reported.known_wavelengths ? nm(wavelength) : "its wavelength");
       if (d.unrealizable > 0) {
-        warn_in(facts, std::to_string(d.unrealizable) + " of " + counted(d.geometries, "matrix") + " " + where +
+        warn_in(facts, std::to_string(d.unrealizable) + " of " + std::to_string(d.geometries) + " matrices " + where +
                            " cannot exist; the smallest eigenvalue / f11 is " + format("%.3g", d.margin.value) +
                            " at " + at(d.margin.geometry));
       }
-      if (d.negative_f11 > 0) {
-        warn_in(facts, "f11 is negative at " + std::to_string(d.negative_f11) + " of " +
+      if (d.not_positive_f11 > 0) {
+        warn_in(facts, "f11 is not positive at " + std::to_string(d.not_positive_f11) + " of " +
                            counted(d.geometries, "direction") + " " + where + ", down to " +
                            format("%.3g sr^-1 at ", d.f11.value) + at(d.f11.geometry));
       }
@@ -279,6 +279,12 @@ void warn_of_range(Json& facts, const ReportedModel& reported) {
   if (const std::string line = unknown_range_line(reported.name, reported.model.validity); !line.empty()) {
     warn_in(facts, line);
   }
+  for (const double wavelength : reported.wavelengths) {
+    if (outside(reported.model.validity, wavelength, {}) & outside_wavelength) {
+      warn_in(facts, nm(wavelength) + " lies outside the fitted range: what is said of it is extrapolated from " +
+                         nanometre_list(reported.model.validity.wavelengths));
+    }
+  }
   if (!has_covariance(reported.model)) {
     warn_in(facts, "the covariance of the coefficients is not known, and no uncertainty with it");
   }
@@ -307,8 +313,18 @@ Json model_facts(const ReportedModel& reported) {
 
 void add_data_facts(Json& facts, const ReportedModel& reported, const std::string& data,
                     std::span<const Sample> samples) {
-  facts["data"] =
-      Json{{"name", data}, {"samples", samples.size()}, {"wavelengths", nanometre_list(wavelengths(samples))}};
+  facts["data"] = Json{{"name", data},
+                       {"samples", samples.size()},
+                       {"wavelengths", nanometre_list(wavelengths(samples))},
+                       {"residuals and noise", "of the model as it is"},
+                       {"symmetries, leverage and outliers", "of fits of its basis to these samples, without weights"}};
+  const auto leaves = [&](const Sample& s) {
+    return leaves_known_range(outside(reported.model.validity, s.wavelength, s.geometry));
+  };
+  if (const auto count = std::count_if(samples.begin(), samples.end(), leaves); count > 0) {
+    warn_in(facts, std::to_string(count) + " of " + counted(static_cast<long>(samples.size()), "sample") +
+                       " lie outside the range that the model was fitted to: their residuals are of extrapolations");
+  }
   add_residuals(facts, reported, samples);
   add_symmetries(facts, reported, samples);
   add_noise(facts, reported, samples);

@@ -104,12 +104,12 @@ struct ModelDiagnostics {
   };
   double wavelength = 0, theta_max = 0;
   int geometries = 0;
-  Extreme margin;        ///< smallest coherency eigenvalue of M / f11: negative is not realizable (Cloude 1986)
-  int unrealizable = 0;  ///< how many are negative
-  Extreme f11;           ///< smallest, sr⁻¹
-  int negative_f11 = 0;  ///< how many are
-  double dhr = 0;        ///< largest directional-hemispherical reflectance, in steps of 0.5 degrees: above 1, the model
-                         ///< or the scale of its data creates energy
+  Extreme margin;            ///< smallest coherency eigenvalue of M / f11: negative is not realizable (Cloude 1986)
+  int unrealizable = 0;      ///< how many are negative
+  Extreme f11;               ///< smallest, sr⁻¹
+  int not_positive_f11 = 0;  ///< how many are
+  double dhr = 0;  ///< largest directional-hemispherical reflectance, in steps of 0.5 degrees: above 1, the model
+                   ///< or the scale of its data creates energy
   double dhr_theta_i = 0;
 };
 
