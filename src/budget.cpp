@@ -53,10 +53,16 @@ Mueller detector_slope(const PreparedModel& model, const Geometry& geometry) {
   return polar_slope(model, geometry, &Geometry::reflected) - std::tan(theta) * model.evaluate(geometry, Frame::sp);
 }
 
-/// Independent errors with one variance are so in every frame: axes turn by orthogonal matrices.
-std::vector<Mueller> calibration_effects(const PreparedModel& model, const Geometry& geometry, double uncertainty) {
-  std::vector<Mueller> result(15);
-  for (std::size_t e = 1; e < 16; ++e) result[e - 1].elements[e] = uncertainty * model.f11(geometry);
+/// Of the elements in the sp frame, that of the polarimeter, so that one draw of errors is one instrument at all
+/// geometries. Independent errors with one variance are so in every frame: axes turn by orthogonal matrices.
+std::vector<Mueller> calibration_effects(const PreparedModel& model, const Geometry& geometry, double uncertainty,
+                                         Frame frame) {
+  std::vector<Mueller> result;
+  for (std::size_t e = 1; e < 16; ++e) {
+    Mueller effect;
+    effect.elements[e] = uncertainty * model.f11(geometry);
+    result.push_back(change_frame(effect, geometry, Frame::sp, frame));
+  }
   return result;
 }
 
@@ -82,9 +88,9 @@ ErrorOf error_from(const std::string& name) {
 std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, const Geometry& geometry, Frame frame) {
   require_valid(geometry, "budget");
   const double u = term.uncertainty;
-  if (!(u >= 0 && std::isfinite(u)))
-    throw std::invalid_argument("budget: uncertainty " + shortest(u) + " of " + term.name +
-                                ", must be finite and not negative");
+  if (!(u >= 0 && u <= largest_term))
+    throw std::invalid_argument("budget: uncertainty " + shortest(u) + " of " + term.name + ", must be in [0, " +
+                                shortest(largest_term) + "]");
   const auto in_frame = [&](const Mueller& slope_sp) {
     return std::vector<Mueller>{u * change_frame(slope_sp, geometry, Frame::sp, frame)};
   };
@@ -98,7 +104,7 @@ std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, 
     case ErrorOf::azimuth:
       return in_frame(azimuth_slope(model, geometry));
     case ErrorOf::calibration:
-      return calibration_effects(model, geometry, u);
+      return calibration_effects(model, geometry, u, frame);
   }
   throw std::invalid_argument("budget: there is no such ErrorOf");
 }

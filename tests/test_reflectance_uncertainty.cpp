@@ -72,14 +72,14 @@ TEST(ReflectanceUncertainty, OfAMeanOverAperturesIsThatOfItsSlopes) {
   const PreparedUncertainty prepared = prepare_uncertainty(model, 0.532);
   const Aperture source = Aperture::cone({radians(8), 0}, 0.1);
   const Aperture receiver = Aperture::ring(radians(40), radians(50));
-  const Mueller u = standard_uncertainty(average_covariance(prepared, source, receiver));
+  const Mueller u = standard_uncertainty(average_covariance(prepared, source, receiver, 6));
   for (const auto& [row, column] : {std::pair(0, 0), std::pair(1, 1)})
     expect_equal(u(row, column), by_differences(model, [&, i = row, j = column](const Model& m) {
                    return average(prepare(m, 0.532), source, receiver).mueller(i, j);
                  }));
   const Geometry g{{radians(45), 0}, {0, 0}};
   const Mueller point = standard_uncertainty(
-      average_covariance(prepared, Aperture::direction(g.incident), Aperture::direction(g.reflected)));
+      average_covariance(prepared, Aperture::direction(g.incident), Aperture::direction(g.reflected), 1));
   const Mueller expected = standard_uncertainty(prepared.evaluate(g));
   for (std::size_t e = 0; e < 16; ++e) EXPECT_NEAR(point.elements[e], expected.elements[e], 1e-12) << e;
 }

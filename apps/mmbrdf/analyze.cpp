@@ -59,8 +59,9 @@ Stokes stokes_from(const std::string& text) {
 int draws_from(const std::string& text) {
   const int count = whole_number(text);
   constexpr int most = 100000;  // 1 GB
-  if (count < 2 || count > most) {
-    throw std::invalid_argument("\"" + text + "\": expected 2 to " + std::to_string(most));
+  constexpr int least = 100;    // fewer have no 95 % interval
+  if (count < least || count > most) {
+    throw std::invalid_argument("\"" + text + "\": expected " + std::to_string(least) + " to " + std::to_string(most));
   }
   return count;
 }
@@ -182,6 +183,9 @@ constexpr const char* footer =
     "has\n"
     "no meaning (f11 is not positive) or its uncertainty is not known.\n"
     "\n"
+    "A scan of theta_r without --reflected runs in the plane of incidence: forward (phi_r = phi_i + 180) for\n"
+    "theta_r > 0, back towards the source for theta_r < 0.\n"
+    "\n"
     "Uncertainties are those of the fit, in first order, and of the terms: KIND is scale (relative), theta_i, theta_r "
     "or\n"
     "azimuth (degrees), calibration (of each element divided by f11). Errors of terms are independent of each other,\n"
@@ -215,7 +219,8 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--seed", o->analysis.seed, seed, "S", "Whole number that chooses the draws [0]")->needs(draws);
   app.add_flag("--strict", o->analysis.strict, "Refuse what is not known to be inside the fitted range");
   add_as_printed(app, *o);
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text; csv for files and scans]");
+  add_option(app, "--format", o->format, format_from, "FORMAT",
+             "text, csv or json for one geometry [text]; csv for files and scans");
   app.footer(footer);
   return [o] { analyze(*o); };
 }

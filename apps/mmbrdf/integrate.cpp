@@ -147,7 +147,9 @@ IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides
     row.values.push_back(factor * mean.mueller.elements[e]);
   }
   if (at.uncertainty) {
-    const Mueller u = standard_uncertainty(average_covariance(*at.uncertainty, source, receiver));
+    const int few =
+        average(prepare(at.model, at.wavelength), source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
+    const Mueller u = standard_uncertainty(average_covariance(*at.uncertainty, source, receiver, few));
     for (std::size_t e = 0; e < elements; ++e) {
       row.uncertainties.push_back(factor * u.elements[e]);
     }
@@ -255,12 +257,49 @@ Integrated integrated(const Model& model, Quantity quantity, const Options& opti
   return result;
 }
 
+/// Whether the data of the fit determine the model all over the directions of a quantity, as far as that is known.
+bool determined(const Model& model, Quantity quantity, const Options& options) {
+  std::vector<std::pair<Aperture, Aperture>> pairs;
+  if (options.geometry) {
+    pairs.emplace_back(aperture_of(options.geometry->source, source_phi_deg),
+                       aperture_of(options.geometry->receiver, receiver_phi_deg));
+  } else if (quantity == Quantity::bhr) {
+    pairs.emplace_back(Aperture::hemisphere(), Aperture::hemisphere());
+  } else {
+    for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0})) {
+      pairs.emplace_back(Aperture::direction({radians(std::abs(theta_deg)), 0}), Aperture::hemisphere());
+    }
+  }
+  const double wavelength = wavelengths_of(model, options).front();  // the rank of a fit is one for all
+  const std::optional<PreparedUncertainty> prepared = uncertainty_of(model, wavelength);
+  constexpr int few = 2;  // a rule whose nodes lie all over the apertures
+  return !prepared || std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    const std::vector<WeightedGeometry> nodes = mean_rule(pair.first, pair.second, few);
+    return std::all_of(nodes.begin(), nodes.end(),
+                       [&](const WeightedGeometry& node) { return prepared->estimable(node.geometry); });
+  });
+}
+
+void check_determined(const Model& model, Quantity quantity, const Options& options) {
+  if (determined(model, quantity, options)) {
+    return;
+  }
+  const std::string message =
+      "the data of the fit do not determine the model in these directions: values are those of its smallest solution, "
+      "and uncertainties are too small";
+  if (options.strict) {
+    throw std::runtime_error(message);
+  }
+  warn(message);
+}
+
 void integrate(const Options& options) {
   const Quantity quantity = checked_quantity(options);
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   const Integrated result = integrated(model, quantity, options);
   check_range(result, model.validity, options.strict);
+  check_determined(model, quantity, options);
   if (!knows_uncertainty(model)) {
     warn(result.model + " has no covariance: uncertainties are not known");
   }
@@ -276,7 +315,10 @@ const std::string footer =
         "\n") +
     sides_help +
     "\n"
-    "u_ columns are standard uncertainties of the fit alone, empty where the model has no covariance.\n"
+    "u_ columns are standard uncertainties of the fit alone, empty where the model has no covariance. A hemisphere\n"
+    "always reaches beyond the fitted angles: it is not flagged for that, the share beyond is told. The CSV of dhr, "
+    "hdr\n"
+    "and bhr has no column validity: use --strict.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf integrate ptfe --quantity dhr --wavelength 532 --theta 0,8,45,60,75 --format csv\n"

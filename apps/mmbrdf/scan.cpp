@@ -22,9 +22,10 @@ void set(Question& question, const std::string& variable, double value) {
     question.wavelength_nm = value;
     return;
   }
-  std::optional<DirectionDegrees>& direction = variable.ends_with("_i") ? question.incident : question.reflected;
-  if (!direction) {
-    direction = DirectionDegrees{};
+  const bool incident = variable.ends_with("_i");
+  std::optional<DirectionDegrees>& direction = incident ? question.incident : question.reflected;
+  if (!direction) {  // theta_r alone runs in the plane of incidence, forward where it is positive
+    direction = DirectionDegrees{0, incident ? 0 : question.incident.value_or(DirectionDegrees{}).phi + 180};
   }
   (variable.starts_with("theta") ? direction->theta : direction->phi) = value;
 }

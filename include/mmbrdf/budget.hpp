@@ -31,13 +31,14 @@ ErrorOf error_from(const std::string& name);
 struct TypeBTerm {
   std::string name;  ///< for the table: "reference plaque"
   ErrorOf what = ErrorOf::scale;
-  double uncertainty = 0;  ///< standard (k = 1)
+  double uncertainty = 0;  ///< standard (k = 1), in [0, largest_term]: beyond, first order means nothing
 };
+inline constexpr double largest_term = 10;
 
 /// How F in sr⁻¹ changes with errors of one standard uncertainty: one matrix for each error, 15 for calibration. Where
 /// the polarimeter sits on the arms, an error of an angle turns its axes along: slopes are of the matrix in the sp
-/// frame, by central differences (relative error 1e-7), and at 90 degrees one-sided.
-/// Throws std::invalid_argument for an invalid geometry, an uncertainty that is negative or not finite, and for theta_r
+/// frame, by central differences (relative error 1e-7), one-sided within 1e-4 of 90 degrees (5e-5).
+/// Throws std::invalid_argument for an invalid geometry, an uncertainty out of range, and for theta_r
 /// where cos θr < grazing_limit: F_measured has no limit there.
 std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, const Geometry& geometry,
                              Frame frame = Frame::xy);

@@ -19,9 +19,9 @@ double hemispherical_directional_uncertainty(const Model& model, const PreparedU
 
 double bihemispherical_uncertainty(const Model& model, const PreparedUncertainty& prepared);
 
-/// Covariance of the mean matrix over two apertures, sr⁻², frame xy. An uncertainty needs few digits: 4 nodes give them
-/// for orders up to 7, 4 whatever the apertures, and more cost time.
+/// Covariance of the mean matrix over two apertures, sr⁻², frame xy. `nodes` as in mean_rule: those of
+/// an Average, or fewer, since an uncertainty needs few digits.
 MuellerCovariance average_covariance(const PreparedUncertainty& prepared, const Aperture& source,
-                                     const Aperture& receiver, int nodes = 4);
+                                     const Aperture& receiver, int nodes);
 
 }  // namespace mmbrdf
