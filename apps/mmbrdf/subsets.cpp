@@ -224,7 +224,7 @@ void require_valid(const Options& o) {
 void warn_of_directions(const Model& model, const Question& q, const std::string& name) {
   std::vector<Sample> asked;
   for (const Geometry& geometry : q.geometries) {
-    asked.push_back({.wavelength = q.wavelength, .geometry = geometry});
+    asked.push_back({q.wavelength, geometry, 1, identity()});
   }
   warn_if_outside(model, asked, name);
 }
