@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Calibration of a polarimeter with redundant references: the eigenvalue calibration method (Compain, Poirier and
+/// Drevillon, Appl. Opt. 38, 3490 (1999)), refined to maximum likelihood, with the covariance of the instrument.
+///
+/// References are measured with nothing between the arms, with a polarizer at several dial angles, and with a coated
+/// wafer in specular reflection at several angles of incidence. None of their properties need be known, but for three
+/// facts: eight instruments explain the same readings exactly, apart by independent signs of S2, S3 and S4. Which one
+/// it is follows from (1) the sense of the polarizer's dial, (2) which of the wafer's two reflectances is that of s and
+/// (3) the sign of its Δ: the last two come from a film model, or are stated with the reference.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/elements.hpp"
+#include "mmbrdf/polarimeter.hpp"
+
+namespace mmbrdf {
+
+enum class ReferenceKind {
+  empty,      ///< the arms aligned, nothing between them: M = 1
+  polarizer,  ///< in transmission, the arms aligned
+  wafer,      ///< in specular reflection
+};
+
+/// "empty", "polarizer", "wafer"; the opposite throws std::invalid_argument for another name.
+std::string to_string(ReferenceKind kind);
+ReferenceKind reference_kind_from(const std::string& name);
+
+struct Reference {
+  ReferenceKind kind = ReferenceKind::empty;
+  double angle = 0;              ///< radians: the polarizer's dial, or the angle of incidence on the wafer
+  std::vector<double> readings;  ///< in the order of polarimeter.hpp
+  int s_exceeds_p = 0;           ///< wafer: +1 if |rs| > |rp|, −1 if not, 0 if the film model shall tell
+  int delta_sign = 0;            ///< wafer: the sign of Δ in (−π, π], 0 if the film model shall tell
+};
+
+struct CalibrationOptions {
+  std::size_t generator_states = 4;
+  std::size_t analyzer_states = 4;
+  double wavelength = 0;  ///< micrometres
+  int dial_sense = 1;     ///< +1: the azimuth of the polarizer grows with its dial, from e1 towards e2; −1: it falls
+  double extinction = 0;  ///< of the polarizer, for the linear solution
+  std::optional<Film> film;          ///< the wafer; its thickness is fitted, from ±20 % around this one
+  bool refine = true;                ///< maximum likelihood behind the linear solution
+  bool fit_polarizer_phase = false;  ///< besides its extinction, in the refinement
+  ReadingNoise noise{.dark = 0, .shot = 0, .relative = 1e-3};  ///< weights of the refinement: proportions count
+};
+
+/// What a reference turned out to be.
+struct FittedReference {
+  ReferenceKind kind = ReferenceKind::empty;
+  double angle = 0;
+  double gain = 1;                 ///< empty: of all its readings, with mean 1 over the empty ones
+  DiattenuatorRetarder element;    ///< polarizer, wafer: tau, psi and delta
+  Mueller expected;                ///< its matrix divided by element 11
+  Mueller measured;                ///< the same from its readings
+  double eigenvalue_mismatch = 0;  ///< wafer: |λ1 λ2 − |λ3|²| / max², 0 for one that does not depolarize
+};
+
+/// Root mean square of the differences between the measured and the expected matrices of references, each divided by
+/// element 11, over the fifteen other elements.
+struct FigureOfMerit {
+  double total = 0;
+  double corrected = 0;  ///< total × √(readings / degrees of freedom)
+  double empty = 0, polarizer = 0, wafer = 0;
+  Mueller elements;  ///< element by element
+};
+
+/// A calibrated instrument at one wavelength, and what it was calibrated from.
+struct Calibration {
+  double wavelength = 0;  ///< micrometres
+  Polarimeter polarimeter;
+  /// Of the components of w_1, …, a_1, … (see Reduction), scaled by the misfit; empty without refinement. The scale
+  /// that A and W share is fixed: the first components of w have mean 1.
+  std::vector<double> covariance;
+  double polarizer_offset = 0;  ///< azimuth of the polarizer at dial 0, radians, in [0, π)
+  double extinction = 0;        ///< of the polarizer
+  double polarizer_phase = 0;
+  double film_thickness = 0;  ///< micrometres; 0 without a film
+  std::vector<FittedReference> references;
+  FigureOfMerit figure_of_merit;
+  double singular_ratio = 0;   ///< s16/s15 of the stacked equations: misfit of the linear solution
+  double identifiability = 0;  ///< s15/s1: how far the references are from leaving a second solution
+  double generator_condition = 0, analyzer_condition = 0;
+  double chi_squared = 0;  ///< of the refinement, in units of the given noise
+  long degrees_of_freedom = 0;
+  std::map<std::string, std::string> provenance;  ///< as in Model
+};
+
+/// Below this identifiability there is more than one solution for what can be measured.
+inline constexpr double least_identifiability = 1e-4;
+
+/// Throws std::invalid_argument, naming the reference by its number from 1, for a wrong number of readings, or one that
+/// is not finite; and, saying what is missing, for references that cannot determine the instrument: no empty one, no
+/// polarizer, no wafer, one dial angle only, an identifiability below least_identifiability, fewer than four
+/// independent states, or a wafer whose signs nothing tells.
+Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options);
+
+/// The eight instruments that explain the same readings: the signs of the
+/// components 2, 3 and 4 of all states, W → D W, A → A D.
+Polarimeter with_signs(const Polarimeter& polarimeter, int s2, int s3, int s4);
+
+}  // namespace mmbrdf

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A polarimeter: what states it makes and analyses, and the Mueller matrix that its readings stand for.
+///
+/// A reading is B_qp = a_q · M w_p: analysis state q, generator state p, dark-subtracted, divided by the monitor of the
+/// incident power and by the gain. In matrices B = A M W, with the rows a_q and the columns w_p. Readings stand in
+/// row-major order: all generator states of the first analysis state first. Both arms have the axes (⊥, ∥) of the
+/// scattering plane, and the matrix is in Frame::scattering_plane.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/uncertainty.hpp"
+
+namespace mmbrdf {
+
+struct Polarimeter {
+  std::vector<Stokes> generator;  ///< w_p: the light of each generator state
+  std::vector<Stokes> analyzer;   ///< a_q: what each analysis state responds to
+  std::size_t readings() const { return generator.size() * analyzer.size(); }
+};
+
+/// A polarizer along ⊥ and behind it a retarder at each of these azimuths (radians); the analyzer mirrors it:
+/// w = retarder(azimuth) (1, 1, 0, 0), a = ½ (1, 1, 0, 0) retarder(azimuth).
+Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuths);
+
+/// Ratio of the largest to the smallest of the four singular values: √3 at best; infinite for fewer than four
+/// independent states.
+double condition_number(std::span<const Stokes> states);
+
+/// Azimuths of a retarder behind a polarizer that make this condition number smallest, rising and symmetric about 0, in
+/// [−π/2, π/2]: for four states of the best plate, 131.81 degrees, ±15.12 and ±51.69 degrees. The best end of a simplex
+/// search from 40 starts, the same each time. Throws std::invalid_argument for a retardance that is not finite or a
+/// multiple of π (there are no four independent states), and for fewer than 4 states or more than 16.
+std::vector<double> optimal_angles(double retardance, int states);
+
+/// The readings of a matrix.
+std::vector<double> readings(const Polarimeter& polarimeter, const Mueller& m);
+
+/// σ² of a reading B: dark² + shot · |B| + (relative · B)². In units of the readings.
+struct ReadingNoise {
+  double dark = 0;
+  double shot = 0;
+  double relative = 0;
+};
+double variance(const ReadingNoise& noise, double reading);
+
+/// Readings to matrices, by the pseudo-inverses of A and W: M = A⁺ B W⁺, the least-squares solution.
+class Reduction {
+ public:
+  /// `covariance` is that of the instrument: of the components of w_1, w_2, …, a_1, a_2, …, row-major; none if it is
+  /// not known, or exact. Throws std::invalid_argument for states that are not finite, fewer than four independent
+  /// ones, a covariance of another size, or one that is not symmetric and positive semidefinite (covariance_tolerance).
+  explicit Reduction(const Polarimeter& polarimeter, std::span<const double> covariance = {});
+
+  /// Throws std::invalid_argument for another number of readings than the instrument has, or one that is not finite.
+  Mueller mueller(std::span<const double> readings) const;
+
+  /// Of the sixteen elements, from independent readings with these variances. Throws as mueller(), and for a negative
+  /// variance.
+  MuellerCovariance from_readings(std::span<const double> variances) const;
+
+  /// Of the sixteen elements, from the instrument: the same errors in every matrix that it measures. 0 if the
+  /// covariance is not given. dM = −A⁺ dA M − M dW W⁺.
+  MuellerCovariance from_instrument(const Mueller& m) const;
+
+  /// Slopes of the elements over the components of w_1, …, a_1, …: 16 × 4 (states), row-major.
+  std::vector<double> slopes(const Mueller& m) const;
+
+ private:
+  struct Inverses;
+  std::shared_ptr<const Inverses> inverses_;
+};
+
+/// Covariance of (f11, m_12 … m_44), that is of M11 and the other elements divided by it, from that of the elements.
+/// Throws std::invalid_argument unless M11 is positive.
+MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m);
+
+/// The sample whose Mueller matrix, relative to the collinear beam and in Frame::scattering_plane, is m:
+/// f = m / (solid_angle · cos θr). Throws std::invalid_argument unless solid_angle (sr) and M11 are positive, θr below
+/// 90 degrees and the geometry valid.
+Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, double solid_angle);
+
+}  // namespace mmbrdf

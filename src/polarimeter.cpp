@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/polarimeter.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "mmbrdf/elements.hpp"
+#include "numbers.hpp"
+#include "random.hpp"
+#include "semidefinite.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix4d;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Index index(std::size_t n) { return static_cast<Index>(n); }
+
+/// 4 × states, a state in each column.
+MatrixXd columns(std::span<const Stokes> states) {
+  MatrixXd result(4, index(states.size()));
+  for (std::size_t s = 0; s < states.size(); ++s)
+    result.col(index(s)) = Eigen::Map<const Eigen::Vector4d>(states[s].data());
+  return result;
+}
+
+Stokes transposed(const Mueller& m, const Stokes& row) { return transpose(m) * row; }
+
+std::vector<double> mirrored(std::span<const double> positive, int states) {
+  std::vector<double> azimuths(states % 2 == 1 ? 1 : 0);
+  for (const double a : positive)
+    azimuths.insert(azimuths.end(), {std::remainder(a, std::numbers::pi), -std::remainder(a, std::numbers::pi)});
+  std::sort(azimuths.begin(), azimuths.end());
+  return azimuths;
+}
+
+/// Nelder and Mead: the corner of a simplex where the function is smallest, once all corners are within 1e-10 of it.
+template <class F>
+VectorXd smallest_of(const F& function, VectorXd start, double step) {
+  const Index n = start.size();
+  std::vector<std::pair<double, VectorXd>> simplex{{function(start), start}};
+  for (Index k = 0; k < n; ++k) {
+    VectorXd corner = start;
+    corner(k) += step;
+    simplex.emplace_back(function(corner), corner);
+  }
+  const auto below = [](const auto& a, const auto& b) { return a.first < b.first; };
+  for (int moves = 0; moves < 2000; ++moves) {
+    std::sort(simplex.begin(), simplex.end(), below);
+    const VectorXd best = simplex.front().second;
+    if (std::all_of(simplex.begin(), simplex.end(), [&](const auto& c) { return (c.second - best).norm() < 1e-10; }))
+      break;
+    VectorXd centre = VectorXd::Zero(n);
+    for (Index k = 0; k < n; ++k) centre += simplex[static_cast<std::size_t>(k)].second / static_cast<double>(n);
+    auto& worst = simplex.back();
+    const VectorXd away = centre - worst.second;
+    const auto at = [&](double distance) {
+      const VectorXd corner = centre + distance * away;
+      return std::pair{function(corner), corner};
+    };
+    auto moved = at(1);
+    if (moved.first < simplex.front().first) {
+      const auto further = at(2);
+      worst = further.first < moved.first ? further : moved;
+    } else if (moved.first < simplex[static_cast<std::size_t>(n) - 1].first) {
+      worst = moved;
+    } else if (const auto nearer = at(moved.first < worst.first ? 0.5 : -0.5);
+               nearer.first < std::min(moved.first, worst.first)) {
+      worst = nearer;
+    } else {
+      for (auto& [value, corner] : simplex) {
+        corner = (corner + best) / 2;
+        value = function(corner);
+      }
+    }
+  }
+  return std::min_element(simplex.begin(), simplex.end(), below)->second;
+}
+
+}  // namespace
+
+Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuths) {
+  Polarimeter result;
+  for (const double azimuth : azimuths) {
+    const Mueller plate = retarder(retardance, azimuth);
+    result.generator.push_back(plate * Stokes{1, 1, 0, 0});
+    result.analyzer.push_back(transposed(plate, {0.5, 0.5, 0, 0}));
+  }
+  return result;
+}
+
+double condition_number(std::span<const Stokes> states) {
+  if (states.size() < 4) return std::numeric_limits<double>::infinity();
+  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(columns(states)).singularValues();
+  return s(3) > 0 ? s(0) / s(3) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> optimal_angles(double retardance, int states) {
+  if (states < 4 || states > 16)
+    throw std::invalid_argument("optimal angles: " + std::to_string(states) + " states are not in 4...16");
+  if (!std::isfinite(retardance) || std::abs(std::sin(retardance)) < 1e-6)
+    throw std::invalid_argument("optimal angles: a retardance of " + shortest(degrees(retardance)) +
+                                " degrees makes no four independent states");
+  const auto condition = [&](const VectorXd& positive) {
+    const std::vector<double> azimuths = mirrored({positive.data(), static_cast<std::size_t>(positive.size())}, states);
+    const double value = condition_number(ideal_polarimeter(retardance, azimuths).generator);
+    return std::isfinite(value) ? value : 1e300;
+  };
+  std::mt19937_64 engine(1);
+  VectorXd best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int start = 0; start < 40; ++start) {
+    VectorXd from(states / 2);
+    for (double& angle : from) angle = uniform(engine) * std::numbers::pi / 2;
+    const VectorXd end = smallest_of(condition, from, 0.2);
+    if (const double value = condition(end); value < least - 1e-9) {
+      least = value;
+      best = end;
+    }
+  }
+  return mirrored({best.data(), static_cast<std::size_t>(best.size())}, states);
+}
+
+std::vector<double> readings(const Polarimeter& polarimeter, const Mueller& m) {
+  std::vector<double> result;
+  for (const Stokes& a : polarimeter.analyzer)
+    for (const Stokes& w : polarimeter.generator) {
+      const Stokes out = m * w;
+      result.push_back(a[0] * out[0] + a[1] * out[1] + a[2] * out[2] + a[3] * out[3]);
+    }
+  return result;
+}
+
+double variance(const ReadingNoise& noise, double reading) {
+  const double relative = noise.relative * reading;
+  return noise.dark * noise.dark + noise.shot * std::abs(reading) + relative * relative;
+}
+
+struct Reduction::Inverses {
+  MatrixXd generator;   ///< W⁺, states × 4
+  MatrixXd analyzer;    ///< A⁺, 4 × states
+  MatrixXd covariance;  ///< of the instrument; 0 × 0: none
+};
+
+namespace {
+
+/// Of a 4 × states matrix.
+MatrixXd pseudo_inverse(const MatrixXd& states, const char* of) {
+  if (!states.allFinite()) throw std::invalid_argument(std::string(of) + ": a state is not finite");
+  const Eigen::JacobiSVD<MatrixXd> svd(states, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const VectorXd& s = svd.singularValues();
+  if (s.size() < 4 || !(s(3) > 1e-12 * s(0)))
+    throw std::invalid_argument(std::string(of) + ": " + std::to_string(states.cols()) +
+                                " states, not four independent ones");
+  return svd.matrixV() * s.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+}
+
+MuellerCovariance covariance_of(const MatrixXd& matrix) {
+  MuellerCovariance result;
+  Eigen::Map<RowMajor>(result.values.data(), 16, 16) = (matrix + matrix.transpose()) / 2;
+  return result;
+}
+
+}  // namespace
+
+Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> covariance) {
+  auto inverses = std::make_shared<Inverses>();
+  inverses->generator = pseudo_inverse(columns(polarimeter.generator), "generator");
+  inverses->analyzer = pseudo_inverse(columns(polarimeter.analyzer), "analyzer").transpose();
+  const Index size = 4 * index(polarimeter.generator.size() + polarimeter.analyzer.size());
+  if (!covariance.empty()) {
+    if (index(covariance.size()) != size * size)
+      throw std::invalid_argument("instrument: covariance of " + std::to_string(covariance.size()) +
+                                  " numbers, expected " + std::to_string(size * size));
+    inverses->covariance = Eigen::Map<const MatrixXd>(covariance.data(), size, size);
+    if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
+      throw std::invalid_argument("instrument: the covariance is not symmetric and finite");
+    require_semidefinite(
+        Eigen::SelfAdjointEigenSolver<MatrixXd>(inverses->covariance, Eigen::EigenvaluesOnly).eigenvalues(),
+        "instrument");
+  }
+  inverses_ = std::move(inverses);
+}
+
+Mueller Reduction::mueller(std::span<const double> readings) const {
+  const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
+  if (index(readings.size()) != analyzers * generators)
+    throw std::invalid_argument("reduction: " + std::to_string(readings.size()) + " readings, the instrument has " +
+                                std::to_string(analyzers * generators));
+  const Eigen::Map<const RowMajor> b(readings.data(), analyzers, generators);
+  if (!b.allFinite()) throw std::invalid_argument("reduction: a reading is not finite");
+  Mueller m;
+  Eigen::Map<RowMajor>(m.elements.data(), 4, 4) = inverses_->analyzer * b * inverses_->generator;
+  return m;
+}
+
+MuellerCovariance Reduction::from_readings(std::span<const double> variances) const {
+  const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
+  if (index(variances.size()) != analyzers * generators)
+    throw std::invalid_argument("reduction: " + std::to_string(variances.size()) + " variances, the instrument has " +
+                                std::to_string(analyzers * generators) + " readings");
+  MatrixXd sum = MatrixXd::Zero(16, 16);
+  for (Index q = 0; q < analyzers; ++q)
+    for (Index p = 0; p < generators; ++p) {
+      const double variance = variances[static_cast<std::size_t>(q * generators + p)];
+      if (!(variance >= 0) || !std::isfinite(variance))
+        throw std::invalid_argument("reduction: a variance of " + shortest(variance));
+      VectorXd slope(16);
+      for (Index e = 0; e < 16; ++e) slope(e) = inverses_->analyzer(e / 4, q) * inverses_->generator(p, e % 4);
+      sum += variance * slope * slope.transpose();
+    }
+  return covariance_of(sum);
+}
+
+std::vector<double> Reduction::slopes(const Mueller& m) const {
+  const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(m.elements.data());
+  std::vector<double> result(static_cast<std::size_t>(16 * 4 * (analyzers + generators)));
+  Eigen::Map<RowMajor> at(result.data(), 16, 4 * (analyzers + generators));
+  for (Index e = 0; e < 16; ++e)
+    for (Index k = 0; k < 4; ++k) {
+      for (Index p = 0; p < generators; ++p) at(e, 4 * p + k) = -matrix(e / 4, k) * inverses_->generator(p, e % 4);
+      for (Index q = 0; q < analyzers; ++q)
+        at(e, 4 * (generators + q) + k) = -inverses_->analyzer(e / 4, q) * matrix(k, e % 4);
+    }
+  return result;
+}
+
+MuellerCovariance Reduction::from_instrument(const Mueller& m) const {
+  if (inverses_->covariance.size() == 0) return {};
+  const std::vector<double> slope = slopes(m);
+  const Eigen::Map<const RowMajor> at(slope.data(), 16, inverses_->covariance.rows());
+  return covariance_of(at * inverses_->covariance * at.transpose());
+}
+
+MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m) {
+  const double f = m(0, 0);
+  if (!(f > 0)) throw std::invalid_argument("normalized: M11 is " + shortest(f));
+  MatrixXd slope = MatrixXd::Identity(16, 16) / f;
+  slope(0, 0) = 1;
+  for (Index e = 1; e < 16; ++e) slope(e, 0) = -m.elements[static_cast<std::size_t>(e)] / (f * f);
+  const Eigen::Map<const RowMajor> given(covariance.values.data(), 16, 16);
+  return covariance_of(slope * given * slope.transpose());
+}
+
+Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, double solid_angle) {
+  require_valid(geometry, "sample");
+  if (!(solid_angle > 0) || !std::isfinite(solid_angle))
+    throw std::invalid_argument("sample: a solid angle of " + shortest(solid_angle) + " sr");
+  if (!(m(0, 0) > 0)) throw std::invalid_argument("sample: M11 is " + shortest(m(0, 0)));
+  const double cosine = std::cos(geometry.reflected.theta);
+  if (!(cosine > 1e-9)) throw std::invalid_argument("sample: theta_r is 90 degrees");
+  return {wavelength, geometry, m(0, 0) / (solid_angle * cosine),
+          change_frame(normalized(m), geometry, Frame::scattering_plane, Frame::xy)};
+}
+
+}  // namespace mmbrdf
