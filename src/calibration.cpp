@@ -1,2 +1,204 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "calibration_parts.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace calibration {
+
+Mueller leaky_polarizer(double azimuth, double leak_real, double leak_imaginary) {
+  const double extinction = leak_real * leak_real + leak_imaginary * leak_imaginary;
+  Mueller m = diagonal((1 + extinction) / 2, (1 + extinction) / 2, leak_real, leak_real);
+  m(0, 1) = m(1, 0) = (1 - extinction) / 2;
+  m(3, 2) = leak_imaginary;
+  m(2, 3) = -leak_imaginary;
+  return rotated(m, azimuth);
+}
+
+Mueller reference_matrix(const Unknowns& unknowns, std::span<const Reference> references, std::size_t i,
+                         const CalibrationOptions& options) {
+  if (references[i].kind == ReferenceKind::empty) return identity();
+  if (references[i].kind == ReferenceKind::wafer) return mueller(unknowns.elements[i]);
+  return leaky_polarizer(unknowns.offset + options.dial_sense * references[i].angle, unknowns.leak_real,
+                         unknowns.leak_imaginary);
+}
+
+}  // namespace calibration
+
+namespace {
+
+using calibration::Unknowns;
+
+constexpr std::array<const char*, 3> kind_names{"empty", "polarizer", "wafer"};
+
+void require_valid(const CalibrationOptions& options) {
+  if (options.generator_states < 4 || options.analyzer_states < 4)
+    throw std::invalid_argument("calibration: fewer than four states");
+  if (options.dial_sense != 1 && options.dial_sense != -1)
+    throw std::invalid_argument("calibration: a dial sense of " + std::to_string(options.dial_sense) + ", not 1 or -1");
+  if (!(options.extinction >= 0 && options.extinction < 1))
+    throw std::invalid_argument("calibration: extinction " + shortest(options.extinction) + " is not in [0, 1)");
+  const auto& [dark, shot, relative] = options.noise;
+  if (!(dark >= 0 && shot >= 0 && relative >= 0 && dark + shot + relative > 0 && std::isfinite(dark + shot + relative)))
+    throw std::invalid_argument("calibration: the noise of the readings must be finite, and positive somewhere");
+  if (options.film) reflection(*options.film, options.wavelength, 0);
+}
+
+void require_valid(const Reference& reference, std::size_t number, const CalibrationOptions& options) {
+  const std::string which = "reference " + std::to_string(number) + ": ";
+  if (reference.readings.size() != options.generator_states * options.analyzer_states)
+    throw std::invalid_argument(which + std::to_string(reference.readings.size()) + " readings, expected " +
+                                std::to_string(options.generator_states * options.analyzer_states));
+  for (const double reading : reference.readings)
+    if (!std::isfinite(reading)) throw std::invalid_argument(which + "a reading is not finite");
+  if (!std::isfinite(reference.angle)) throw std::invalid_argument(which + "its angle is not finite");
+  if (reference.kind != ReferenceKind::wafer) return;
+  if (!(reference.angle >= 0 && reference.angle < std::numbers::pi / 2))
+    throw std::invalid_argument(which + "an angle of incidence of " + shortest(degrees(reference.angle)) + " degrees");
+  if (!options.film && (reference.s_exceeds_p == 0 || reference.delta_sign == 0))
+    throw std::invalid_argument(
+        which + "a wafer without signs: give a film, or state whether s exceeds p and the sign of delta");
+}
+
+/// Directions of a polarizer that differ: 180 degrees are none.
+std::size_t dial_angles(std::span<const Reference> references) {
+  std::vector<double> angles;
+  for (const Reference& reference : references) {
+    if (reference.kind != ReferenceKind::polarizer) continue;
+    const auto same = [&](double a) {
+      return std::abs(std::remainder(a - reference.angle, std::numbers::pi)) < radians(1);
+    };
+    if (std::none_of(angles.begin(), angles.end(), same)) angles.push_back(reference.angle);
+  }
+  return angles.size();
+}
+
+/// Says what is missing.
+void require_enough(std::span<const Reference> references) {
+  const auto count = [&](ReferenceKind kind) {
+    return std::count_if(references.begin(), references.end(), [&](const Reference& r) { return r.kind == kind; });
+  };
+  if (count(ReferenceKind::empty) == 0)
+    throw std::invalid_argument("no empty reference: the arms aligned, nothing between");
+  if (count(ReferenceKind::polarizer) == 0)
+    throw std::invalid_argument("no reference with a polarizer: wafers alone leave four solutions mixed");
+  if (count(ReferenceKind::wafer) == 0)
+    throw std::invalid_argument("no reference with a wafer: polarizers alone leave the scale and sign of S4 open");
+  if (dial_angles(references) < 2)
+    throw std::invalid_argument("one dial angle of the polarizer only: that leaves its sense open");
+}
+
+FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> references, std::size_t i,
+                       const Reduction& reduction, const CalibrationOptions& options) {
+  const Reference& reference = references[i];
+  FittedReference result;
+  result.kind = reference.kind;
+  result.angle = reference.angle;
+  result.expected = normalized(calibration::reference_matrix(unknowns, references, i, options));
+  const Mueller measured = reduction.mueller(reference.readings);
+  result.measured = normalized(measured);
+  if (reference.kind == ReferenceKind::empty) result.gain = unknowns.gains[i];
+  if (reference.kind == ReferenceKind::wafer) {
+    result.element = unknowns.elements[i];
+    // Of (A1): λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
+    const Mueller& m = result.measured;
+    const double first = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), second = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
+    result.eigenvalue_mismatch = std::abs(first - second);
+  }
+  if (reference.kind == ReferenceKind::polarizer) {
+    const double real = unknowns.leak_real, imaginary = unknowns.leak_imaginary;
+    result.element = {unknowns.gains[i] * (1 + real * real + imaginary * imaginary) / 2,
+                      std::atan(std::hypot(real, imaginary)), std::atan2(imaginary, real)};
+  }
+  return result;
+}
+
+FigureOfMerit figure_of_merit(std::span<const FittedReference> references, double correction) {
+  FigureOfMerit result;
+  std::array<double, 3> sums{}, counts{};
+  for (const FittedReference& reference : references) {
+    const auto kind = static_cast<std::size_t>(reference.kind);
+    ++counts[kind];
+    for (std::size_t e = 1; e < 16; ++e) {
+      const double d = reference.measured.elements[e] - reference.expected.elements[e];
+      sums[kind] += d * d;
+      result.elements.elements[e] += d * d;
+    }
+  }
+  const auto count = static_cast<double>(references.size());
+  for (double& element : result.elements.elements) element = std::sqrt(element / count);
+  result.total = std::sqrt((sums[0] + sums[1] + sums[2]) / (15 * count));
+  result.corrected = result.total * correction;
+  result.empty = std::sqrt(sums[0] / (15 * counts[0]));
+  result.polarizer = std::sqrt(sums[1] / (15 * counts[1]));
+  result.wafer = std::sqrt(sums[2] / (15 * counts[2]));
+  return result;
+}
+
+std::vector<Stokes> states(const Eigen::MatrixXd& columns) {
+  std::vector<Stokes> result(static_cast<std::size_t>(columns.cols()));
+  for (Eigen::Index s = 0; s < columns.cols(); ++s)
+    for (Eigen::Index k = 0; k < 4; ++k)
+      result[static_cast<std::size_t>(s)][static_cast<std::size_t>(k)] = columns(k, s);
+  return result;
+}
+
+}  // namespace
+
+std::string to_string(ReferenceKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
+
+ReferenceKind reference_kind_from(const std::string& name) {
+  const auto found = std::find(kind_names.begin(), kind_names.end(), name);
+  if (found == kind_names.end())
+    throw std::invalid_argument("reference " + in_quotes(name) + ": must be empty, polarizer or wafer");
+  return static_cast<ReferenceKind>(found - kind_names.begin());
+}
+
+Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options) {
+  require_valid(options);
+  for (std::size_t i = 0; i < references.size(); ++i) require_valid(references[i], i + 1, options);
+  require_enough(references);
+  const long freedom = calibration::degrees_of_freedom(references, options);
+  if (options.refine && freedom < 1)
+    throw std::invalid_argument("fewer readings than unknowns: add references, or do without the refinement");
+  Unknowns unknowns = calibration::solve_linear(references, options);
+  Calibration result;
+  result.wavelength = options.wavelength;
+  result.degrees_of_freedom = freedom;
+  if (options.refine) {
+    calibration::Refinement refinement = calibration::refine(unknowns, references, options);
+    result.covariance = std::move(refinement.covariance);
+    result.chi_squared = refinement.chi_squared;
+  }
+  result.polarimeter = {states(unknowns.generator), states(unknowns.analyzer)};
+  result.polarizer_offset = unknowns.offset - std::numbers::pi * std::floor(unknowns.offset / std::numbers::pi);
+  result.extinction = unknowns.leak_real * unknowns.leak_real + unknowns.leak_imaginary * unknowns.leak_imaginary;
+  result.polarizer_phase = std::atan2(unknowns.leak_imaginary, unknowns.leak_real);
+  result.film_thickness = unknowns.film_thickness;
+  result.singular_ratio = unknowns.singular_ratio;
+  result.identifiability = unknowns.identifiability;
+  result.generator_condition = condition_number(result.polarimeter.generator);
+  result.analyzer_condition = condition_number(result.polarimeter.analyzer);
+  const Reduction reduction(result.polarimeter);
+  for (std::size_t i = 0; i < references.size(); ++i)
+    result.references.push_back(fitted(unknowns, references, i, reduction, options));
+  const auto readings = static_cast<double>(references.size() * result.polarimeter.readings());
+  const double correction = freedom > 0 ? std::sqrt(readings / static_cast<double>(freedom)) : 0;
+  result.figure_of_merit = figure_of_merit(result.references, correction);
+  return result;
+}
+
+Polarimeter with_signs(const Polarimeter& polarimeter, int s2, int s3, int s4) {
+  Polarimeter result = polarimeter;
+  for (std::vector<Stokes>* arm : {&result.generator, &result.analyzer})
+    for (Stokes& state : *arm) state = diagonal(1, s2, s3, s4) * state;
+  return result;
+}
+
+}  // namespace mmbrdf

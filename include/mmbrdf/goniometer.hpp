@@ -3,6 +3,7 @@
 /// is no instrument. All is reproducible: the same seed gives the same readings with every compiler.
 #pragma once
 
+#include <random>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct Imperfections {
   double azimuth = radians(1.5);   ///< of the plate, state by state
   double diattenuation = 0.01;     ///< of the plate, along its axis
   double circular_retardance = radians(0.3);
-  double depolarization = 0.004;         ///< of each state: its polarized part is smaller by |this|
-  double detector_diattenuation = 0.01;  ///< of the detector: components 2 and 3 of its sensitivity
+  double depolarization = 0.004;  ///< of each state: its polarized part is smaller by |this|
+  double stray = 0.01;  ///< light of another polarization that the detector sees: components 2 and 3 of its response
 };
 
 struct GoniometerOptions {
@@ -29,8 +30,8 @@ struct GoniometerOptions {
   double extinction = 1e-5;
   Film film{1.4607, 1.0, {4.15, 0.044}};  ///< SiO2 on Si at 532 nm, 1 µm
   double dial_error = 0;                  ///< of the polarizer, radians
-  double gain_change = 0.02;              ///< relative, from one measurement to the next
-  double drift = 0;                       ///< relative, linear within one measurement, not seen by the monitor
+  double gain_change = 0.02;              ///< relative, from one reference measurement to the next
+  double drift = 0;  ///< relative, linear over the readings of one measurement, not seen by the monitor
   ReadingNoise noise{.dark = 0, .shot = 0, .relative = 1e-3};
   double speckle = 0;             ///< relative, of each reading of a model, independent: × √(cos θi / cos θr)
   double solid_angle = 1.114e-4;  ///< of the receiver, sr
@@ -49,7 +50,7 @@ class Goniometer {
   /// at angles of incidence from 30 to 75 degrees. Throws std::invalid_argument for a count below 1.
   std::vector<Reference> references(double wavelength, int count, unsigned long seed) const;
 
-  /// Readings of any matrix, with the noise of the readings.
+  /// Readings of any matrix, with the noise and the drift of the instrument.
   std::vector<double> readings(const Mueller& m, unsigned long seed) const;
 
   /// Readings of a model, with noise and speckle: for each geometry those of F · solid_angle · cos θr in
@@ -58,6 +59,9 @@ class Goniometer {
                                             unsigned long seed) const;
 
  private:
+  /// Adds to the readings what an instrument adds; `speckle` is relative.
+  void disturb(std::vector<double>& readings, double speckle, double gain, std::mt19937_64& engine) const;
+
   GoniometerOptions options_;
   Polarimeter polarimeter_;
 };
