@@ -66,17 +66,13 @@ void require_valid(const Reference& reference, std::size_t number, const Calibra
         which + "a wafer without signs: give a film, or state whether s exceeds p and the sign of delta");
 }
 
-/// Directions of a polarizer that differ: 180 degrees are none.
-std::size_t dial_angles(std::span<const Reference> references) {
-  std::vector<double> angles;
-  for (const Reference& reference : references) {
-    if (reference.kind != ReferenceKind::polarizer) continue;
-    const auto same = [&](double a) {
-      return std::abs(std::remainder(a - reference.angle, std::numbers::pi)) < radians(1);
-    };
-    if (std::none_of(angles.begin(), angles.end(), same)) angles.push_back(reference.angle);
-  }
-  return angles.size();
+/// Turning the dial the other way leaves directions that are 90 degrees apart as they are.
+bool tells_sense(std::span<const Reference> references) {
+  const auto polarizer = [](const Reference& r) { return r.kind == ReferenceKind::polarizer; };
+  const auto first = std::find_if(references.begin(), references.end(), polarizer);
+  return std::any_of(first, references.end(), [&](const Reference& r) {
+    return polarizer(r) && std::abs(std::remainder(r.angle - first->angle, std::numbers::pi / 2)) > radians(1);
+  });
 }
 
 /// Says what is missing.
@@ -90,8 +86,9 @@ void require_enough(std::span<const Reference> references) {
     throw std::invalid_argument("no reference with a polarizer: wafers alone leave four solutions mixed");
   if (count(ReferenceKind::wafer) == 0)
     throw std::invalid_argument("no reference with a wafer: polarizers alone leave the scale and sign of S4 open");
-  if (dial_angles(references) < 2)
-    throw std::invalid_argument("one dial angle of the polarizer only: that leaves its sense open");
+  if (!tells_sense(references))
+    throw std::invalid_argument(
+        "all dial angles of the polarizer are 0 or 90 degrees apart: that leaves its sense open");
 }
 
 FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> references, std::size_t i,

@@ -219,7 +219,6 @@ class Stack {
     rows.topRows(16) = triangle_;
     Index next = 16;
     for (const std::size_t i : polarizers_) {
-      Unknowns at_offset;
       const double azimuth = offset + options_.dial_sense * references_[i].angle;
       const Mueller m = unknowns_.gains[i] * leaky_polarizer(azimuth, unknowns_.leak_real, unknowns_.leak_imaginary);
       rows.middleRows(next, 16) = equations(matrix(m), c_[i]);
@@ -240,23 +239,32 @@ class Stack {
 
 double ratio(const Eigen::JacobiSVD<MatrixXd>& svd) { return svd.singularValues()(15) / svd.singularValues()(14); }
 
+/// Without references that tie S4 to S2 and S3, the equations are solved by states of S4 alone.
+void require_unique(const VectorXd& s, const Matrix4d& w) {
+  const VectorXd parts = Eigen::JacobiSVD<MatrixXd>(w).singularValues();
+  if (!(parts(3) > 1e-6 * parts(0)))
+    throw std::invalid_argument(
+        "the references leave more than one instrument: nothing ties the components of its states to each other; add "
+        "dial angles of the polarizer or wafers that turn linear into elliptic polarization");
+  if (!(s(14) / s(0) > least_identifiability))
+    throw std::invalid_argument("the references leave more than one instrument: s15/s1 is " + shortest(s(14) / s(0)) +
+                                ", must be above " + shortest(least_identifiability) +
+                                "; add dial angles of the polarizer or angles of incidence");
+}
+
 void find_states(Unknowns& unknowns, const EmptyBeam& empty, const Eigen::JacobiSVD<MatrixXd>& svd) {
   const VectorXd& s = svd.singularValues();
   unknowns.singular_ratio = ratio(svd);
   unknowns.identifiability = s(14) / s(0);
-  if (!(unknowns.identifiability > least_identifiability))
-    throw std::invalid_argument("the references leave more than one instrument: s15/s1 is " +
-                                shortest(unknowns.identifiability) + ", must be above " +
-                                shortest(least_identifiability) +
-                                "; add dial angles of the polarizer or angles of incidence");
   Matrix4d w = Eigen::Map<const Matrix4d>(svd.matrixV().col(15).eval().data());
+  require_unique(s, w);
   unknowns.generator = w * empty.generator.transpose();
   const double scale = unknowns.generator.row(0).mean();
   unknowns.generator /= scale;
   w /= scale;
   const Matrix4d inverse = w.inverse();
   if (!unknowns.generator.allFinite() || !inverse.allFinite())
-    throw std::invalid_argument("the references determine no instrument: generator states without intensity");
+    throw std::invalid_argument("the references determine no instrument: its states have no intensity");
   unknowns.analyzer = (empty.analyzer * empty.projected * inverse).transpose();
 }
 
@@ -290,7 +298,8 @@ Unknowns solve_linear(std::span<const Reference> references, const CalibrationOp
   const auto misfit = [&](double offset) { return ratio(stack.at(offset)); };
   const double offset = scanned(misfit, 0, half_turn, 180, 1e-12);
   unknowns.offset = offset - half_turn * std::floor(offset / half_turn);
-  find_states(unknowns, empty, stack.at(unknowns.offset));
+  const Eigen::JacobiSVD<MatrixXd> best = stack.at(unknowns.offset);
+  find_states(unknowns, empty, best);
   return unknowns;
 }
 

@@ -2,3 +2,301 @@
 #include "mmbrdf/calibration.hpp"
 
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include "cases.hpp"
+#include "mmbrdf/goniometer.hpp"
+
+using namespace mmbrdf;
+
+namespace {
+
+constexpr double wavelength = 0.532;
+
+/// Imperfections as they are by default, all else perfect.
+GoniometerOptions quiet() {
+  GoniometerOptions options;
+  options.extinction = 0;
+  options.gain_change = 0;
+  options.noise = {};
+  return options;
+}
+
+CalibrationOptions with_film(bool refine = true) {
+  CalibrationOptions options;
+  options.wavelength = wavelength;
+  options.film = GoniometerOptions{}.film;
+  options.refine = refine;
+  return options;
+}
+
+/// Twenty matrices: diattenuator-retarders in front of depolarizers, turned.
+std::vector<Mueller> test_matrices() {
+  std::vector<Mueller> result;
+  for (int n = 0; n < 20; ++n) {
+    const Mueller depolarizer = diagonal(1, 0.2 + 0.03 * n, 0.8 - 0.02 * n, 0.1 + 0.03 * n);
+    const Mueller element = rotated(mueller({1, 0.5 + 0.01 * n, 0.3 * n}), 0.2 * n);
+    result.push_back(normalized(element * rotator(0.1 * n) * depolarizer * rotator(-0.3 * n)));
+  }
+  return result;
+}
+
+/// Root mean square error of the fifteen normalised elements of the test matrices.
+double error(const Polarimeter& found, const Polarimeter& truth) {
+  const Reduction reduction(found);
+  double sum = 0;
+  const std::vector<Mueller> matrices = test_matrices();
+  for (const Mueller& m : matrices) {
+    const Mueller difference = normalized(reduction.mueller(readings(truth, m))) - m;
+    for (const double d : difference.elements) sum += d * d;
+  }
+  return std::sqrt(sum / (15 * static_cast<double>(matrices.size())));
+}
+
+double largest_difference(const Polarimeter& a, const Polarimeter& b) {
+  double largest = 0;
+  for (std::size_t s = 0; s < a.generator.size(); ++s)
+    for (std::size_t k = 0; k < 4; ++k)
+      largest = std::max(
+          {largest, std::abs(a.generator[s][k] - b.generator[s][k]), std::abs(a.analyzer[s][k] - b.analyzer[s][k])});
+  return largest;
+}
+
+/// With first components of w of mean 1, as calibrations have them.
+Polarimeter scaled(Polarimeter p) {
+  double mean = 0;
+  for (const Stokes& w : p.generator) mean += w[0] / static_cast<double>(p.generator.size());
+  for (Stokes& w : p.generator)
+    for (double& x : w) x /= mean;
+  for (Stokes& a : p.analyzer)
+    for (double& x : a) x *= mean;
+  return p;
+}
+
+std::string refusal(std::span<const Reference> references, const CalibrationOptions& options) {
+  try {
+    calibrate(references, options);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing was thrown";
+}
+
+std::vector<Reference> only(std::vector<Reference> references, const std::function<bool(const Reference&)>& keep) {
+  std::erase_if(references, [&](const Reference& r) { return !keep(r); });
+  return references;
+}
+
+}  // namespace
+
+// 1e-12: rounding of 1e-16 times condition numbers of the order of 1000.
+TEST(Calibration, OfReadingsWithoutNoiseIsExact) {
+  for (const double extinction : {0., 1e-5})
+    for (const bool refine : {false, true}) {
+      GoniometerOptions made = quiet();
+      made.extinction = extinction;
+      const Goniometer goniometer(made, 3);
+      CalibrationOptions options = with_film(refine);
+      options.extinction = extinction;
+      options.film->thickness = 0.9;  // is found
+      const Calibration found = calibrate(goniometer.references(wavelength, 18, 4), options);
+      EXPECT_LT(error(found.polarimeter, goniometer.polarimeter()), 1e-12);
+      EXPECT_LT(largest_difference(found.polarimeter, scaled(goniometer.polarimeter())), 1e-12);
+      EXPECT_LT(found.singular_ratio, 1e-12);
+      EXPECT_LT(found.figure_of_merit.total, 1e-12);
+      EXPECT_NEAR(found.polarizer_offset, made.polarizer_offset, 1e-12);
+      EXPECT_NEAR(found.extinction, extinction, 1e-12);
+      EXPECT_NEAR(found.film_thickness, 1, 1e-8);
+      EXPECT_GT(found.identifiability, 0.2);
+      EXPECT_EQ(found.degrees_of_freedom, 742);
+    }
+}
+
+// Compain's limits: an extinction of 1e-5 that is not known makes elements wrong by some 1e-5; the refinement finds it.
+TEST(Calibration, RefinementFindsTheExtinctionOfThePolarizer) {
+  GoniometerOptions made = quiet();
+  made.extinction = 1e-5;
+  const Goniometer goniometer(made, 3);
+  const std::vector<Reference> references = goniometer.references(wavelength, 18, 4);
+  const Calibration linear = calibrate(references, with_film(false)), refined = calibrate(references, with_film());
+  const double ignored = error(linear.polarimeter, goniometer.polarimeter());
+  EXPECT_TRUE(ignored > 5e-6 && ignored < 1e-4) << ignored;
+  EXPECT_NEAR(linear.figure_of_merit.total, 1.3e-3, 0.1e-3);
+  EXPECT_LT(error(refined.polarimeter, goniometer.polarimeter()), 1e-12);
+  EXPECT_NEAR(refined.extinction, 1e-5, 1e-12);
+  EXPECT_LT(refined.figure_of_merit.total, 1e-12);
+}
+
+TEST(Calibration, RefinementFindsThePhaseOfThePolarizer) {
+  const Goniometer goniometer(quiet(), 3);
+  std::vector<Reference> references = goniometer.references(wavelength, 18, 4);
+  for (Reference& r : references)
+    if (r.kind == ReferenceKind::polarizer)
+      r.readings = readings(goniometer.polarimeter(), polarizer(radians(23) + r.angle, 1e-4, 0.7));
+  CalibrationOptions options = with_film();
+  options.fit_polarizer_phase = true;
+  const Calibration found = calibrate(references, options);
+  EXPECT_LT(error(found.polarimeter, goniometer.polarimeter()), 1e-12);
+  EXPECT_NEAR(found.polarizer_phase, 0.7, 1e-9);
+  EXPECT_EQ(found.degrees_of_freedom, 741);
+}
+
+// The limits are those of the specification, for another instrument with imperfections of the same size.
+TEST(Calibration, OfNoisyReadingsIsAsGoodAsTheNumberOfReferencesPromisesAndScattersAsItsCovarianceSays) {
+  constexpr int seeds = 40;
+  double linear_error = 0, refined_error = 0, linear_merit = 0, refined_merit = 0, reduced = 0;
+  double observed = 0, predicted = 0;
+  GoniometerOptions made = quiet();
+  made.gain_change = 0.02;
+  made.noise.relative = 1e-3;
+  for (unsigned long seed = 1; seed <= seeds; ++seed) {
+    const Goniometer goniometer(made, seed);
+    const std::vector<Reference> references = goniometer.references(wavelength, 18, seed);
+    const Calibration linear = calibrate(references, with_film(false)), refined = calibrate(references, with_film());
+    linear_error += error(linear.polarimeter, goniometer.polarimeter()) / seeds;
+    refined_error += error(refined.polarimeter, goniometer.polarimeter()) / seeds;
+    linear_merit += linear.figure_of_merit.total / seeds;
+    refined_merit += refined.figure_of_merit.total / seeds;
+    reduced += refined.chi_squared / static_cast<double>(refined.degrees_of_freedom) / seeds;
+    const Reduction reduction(refined.polarimeter, refined.covariance);
+    for (const Mueller& m : test_matrices()) {
+      const Mueller found = reduction.mueller(readings(goniometer.polarimeter(), m));
+      const Mueller difference = normalized(found) - m;
+      const Mueller u = standard_uncertainty(normalized(reduction.from_instrument(found), found));
+      for (std::size_t e = 1; e < 16; ++e) {
+        observed += difference.elements[e] * difference.elements[e];
+        predicted += u.elements[e] * u.elements[e];
+      }
+    }
+  }
+  RecordProperty("linear_error", std::to_string(linear_error));
+  RecordProperty("refined_error", std::to_string(refined_error));
+  RecordProperty("observed_over_predicted", std::to_string(std::sqrt(observed / predicted)));
+  EXPECT_LT(linear_error, 2e-4);
+  EXPECT_LT(refined_error, 1e-4);
+  EXPECT_NEAR(linear_merit, 7.5e-4, 0.75e-4);
+  EXPECT_NEAR(refined_merit, 7.5e-4, 0.75e-4);
+  EXPECT_NEAR(reduced, 1, 4 * std::sqrt(2. / 742 / seeds));
+  EXPECT_NEAR(std::sqrt(observed / predicted), 1, 0.1);
+}
+
+// Signs of S2, S3 and S4: which wafer amplitude is that of s, the sense of the dial, the sign of delta.
+TEST(Calibration, HasEightExactSolutionsWhichThreeFactsTellApart) {
+  const Goniometer goniometer(quiet(), 5);
+  std::vector<Reference> stated = goniometer.references(wavelength, 18, 6);
+  for (Reference& r : stated) {
+    if (r.kind != ReferenceKind::wafer) continue;
+    const DiattenuatorRetarder wafer = reflection(GoniometerOptions{}.film, wavelength, r.angle);
+    r.s_exceeds_p = wafer.psi < std::numbers::pi / 4 ? 1 : -1;
+    r.delta_sign = wafer.delta > 0 ? 1 : -1;
+  }
+  CalibrationOptions options = with_film();
+  options.film.reset();
+  for (const int exchange : {1, -1})
+    for (const int opposite : {1, -1})
+      for (const int sense : {1, -1}) {
+        std::vector<Reference> references = stated;
+        for (Reference& r : references) {
+          r.s_exceeds_p *= exchange;
+          r.delta_sign *= opposite;
+        }
+        options.dial_sense = sense;
+        const Calibration found = calibrate(references, options);
+        const Polarimeter expected =
+            with_signs(scaled(goniometer.polarimeter()), exchange, exchange * sense, exchange * sense * opposite);
+        EXPECT_LT(largest_difference(found.polarimeter, expected), 1e-12) << exchange << opposite << sense;
+        EXPECT_LT(found.singular_ratio, 1e-12);
+        EXPECT_LT(found.figure_of_merit.total, 1e-12);
+      }
+}
+
+TEST(Calibration, TakesMoreThanFourStates) {
+  GoniometerOptions made = quiet();
+  made.azimuths = optimal_angles(made.retardance, 6);
+  const Goniometer goniometer(made, 7);
+  CalibrationOptions options = with_film();
+  options.generator_states = options.analyzer_states = 6;
+  const Calibration found = calibrate(goniometer.references(wavelength, 10, 8), options);
+  EXPECT_LT(error(found.polarimeter, goniometer.polarimeter()), 1e-12);
+  EXPECT_LT(largest_difference(found.polarimeter, scaled(goniometer.polarimeter())), 1e-12);
+}
+
+// Three azimuths of the polarizer and one wafer are enough, and poorer: s15/s1 says so.
+TEST(Calibration, OfFewReferencesIsLessDetermined) {
+  const Goniometer goniometer(quiet(), 9);
+  const auto all = goniometer.references(wavelength, 18, 10);
+  int wafers = 0;
+  const auto few = only(all, [&](const Reference& r) {
+    if (r.kind == ReferenceKind::polarizer)
+      return r.angle < radians(5) || std::abs(r.angle - radians(65)) < radians(26);
+    return r.kind == ReferenceKind::empty || ++wafers == 1;
+  });
+  const Calibration many = calibrate(all, with_film()), less = calibrate(few, with_film());
+  EXPECT_LT(less.identifiability, many.identifiability / 2);
+  EXPECT_LT(error(less.polarimeter, goniometer.polarimeter()), 1e-10);  // the smaller that ratio, the more rounding
+}
+
+// An error of the dial shows in the figure of merit.
+TEST(Calibration, FigureOfMeritShowsErrorsOfTheReferences) {
+  GoniometerOptions made = quiet();
+  made.dial_error = radians(0.05);
+  const Goniometer goniometer(made, 11);
+  const Calibration found = calibrate(goniometer.references(wavelength, 18, 12), with_film(false));
+  EXPECT_NEAR(error(found.polarimeter, goniometer.polarimeter()), 8.5e-5, 0.5 * 8.5e-5);
+  EXPECT_NEAR(found.figure_of_merit.total, 5e-4, 2.5e-4);
+  const FigureOfMerit& m = found.figure_of_merit;
+  EXPECT_NEAR(3 * m.total * m.total, m.empty * m.empty + m.polarizer * m.polarizer + m.wafer * m.wafer, 1e-15);
+  EXPECT_GT(m.polarizer, m.empty);
+}
+
+TEST(Calibration, SaysWhatIsMissing) {
+  const Goniometer goniometer(quiet(), 1);
+  const auto all = goniometer.references(wavelength, 18, 2);
+  const auto without = [&](ReferenceKind kind) {
+    return only(all, [=](const Reference& r) { return r.kind != kind; });
+  };
+  EXPECT_EQ(refusal(without(ReferenceKind::empty), with_film()),
+            "no empty reference: the arms aligned, nothing between");
+  EXPECT_EQ(refusal(without(ReferenceKind::polarizer), with_film()),
+            "no reference with a polarizer: wafers alone leave four solutions mixed");
+  EXPECT_EQ(refusal(without(ReferenceKind::wafer), with_film()),
+            "no reference with a wafer: polarizers alone leave the scale and sign of S4 open");
+  EXPECT_EQ(refusal(only(all,
+                         [](const Reference& r) {
+                           return r.kind != ReferenceKind::polarizer || r.angle == 0 ||
+                                  std::abs(r.angle - radians(90)) < 0.01;
+                         }),
+                    with_film()),
+            "all dial angles of the polarizer are 0 or 90 degrees apart: that leaves its sense open");
+  CalibrationOptions no_film = with_film();
+  no_film.film.reset();
+  EXPECT_EQ(refusal(all, no_film),
+            "reference 37: a wafer without signs: give a film, or state whether s exceeds p and the sign of delta");
+  auto wrong = all;
+  wrong[2].readings.pop_back();
+  EXPECT_EQ(refusal(wrong, with_film()), "reference 3: 15 readings, expected 16");
+  wrong = all;
+  wrong[2].readings[4] = std::nan("");
+  EXPECT_EQ(refusal(wrong, with_film()), "reference 3: a reading is not finite");
+  for (Reference& r : wrong) r.readings.assign(16, 1);
+  EXPECT_EQ(refusal(wrong, with_film()),
+            "the readings of the empty beam have fewer than four independent states: generator and analyzer need four "
+            "each");
+}
+
+TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
+  const Goniometer goniometer(quiet(), 1);
+  auto references = goniometer.references(wavelength, 18, 2);
+  for (Reference& r : references)
+    if (r.kind == ReferenceKind::wafer) {
+      r.readings = readings(goniometer.polarimeter(), polarizer(0));
+      r.s_exceeds_p = r.delta_sign = 1;
+    }
+  EXPECT_TRUE(
+      refusal(references, with_film()).starts_with("the references leave more than one instrument: nothing ties "));
+}

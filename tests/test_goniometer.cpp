@@ -2,3 +2,124 @@
 #include "mmbrdf/goniometer.hpp"
 
 #include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "cases.hpp"
+#include "mmbrdf/materials.hpp"
+
+using namespace mmbrdf;
+
+namespace {
+
+GoniometerOptions silent() {
+  GoniometerOptions options;
+  options.gain_change = 0;
+  options.noise = {};
+  return options;
+}
+
+const std::array<Geometry, 3> geometries{{{{0.7, 0}, {0.5, 3.1}}, {{0.2, 1}, {1.2, 2}}, {{0, 0}, {0.3, 0.4}}}};
+
+}  // namespace
+
+TEST(Goniometer, WithoutImperfectionsIsTheIdealPolarimeter) {
+  GoniometerOptions options = silent();
+  options.imperfections = {0, 0, 0, 0, 0, 0};
+  const Goniometer goniometer(options, 1);
+  const Polarimeter ideal = ideal_polarimeter(options.retardance, optimal_angles(options.retardance, 4));
+  for (std::size_t s = 0; s < 4; ++s)
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(goniometer.polarimeter().generator[s][k], ideal.generator[s][k], 1e-14);  // rounding
+      EXPECT_NEAR(goniometer.polarimeter().analyzer[s][k], ideal.analyzer[s][k], 1e-14);
+    }
+}
+
+TEST(Goniometer, IsAnotherForAnotherSeedAndStillWellConditioned) {
+  const Polarimeter a = Goniometer(silent(), 1).polarimeter(), b = Goniometer(silent(), 2).polarimeter(),
+                    again = Goniometer(silent(), 1).polarimeter();
+  EXPECT_EQ(a.generator, again.generator);
+  EXPECT_NE(a.generator, b.generator);
+  EXPECT_NE(a.analyzer, b.analyzer);
+  for (const Polarimeter& p : {a, b}) EXPECT_LT(condition_number(p.generator), 2.5);
+}
+
+// The whole way back: readings of a model without noise, reduced with the true instrument, are its matrices.
+TEST(Goniometer, ReadingsOfAModelReduceToItsSamples) {
+  const Goniometer goniometer(silent(), 3);
+  const PreparedModel model = prepare(material("ptfe-532"), 0.532);
+  const Reduction reduction(goniometer.polarimeter());
+  const auto all = goniometer.readings(model, geometries, 4);
+  for (std::size_t g = 0; g < geometries.size(); ++g) {
+    const Sample found = sample(reduction.mueller(all[g]), 0.532, geometries[g], goniometer.options().solid_angle);
+    const Mueller expected = model.evaluate(geometries[g]);
+    EXPECT_NEAR(found.f11, expected(0, 0), 1e-13);  // rounding, times condition numbers
+    for (std::size_t e = 0; e < 16; ++e)
+      EXPECT_NEAR(found.normalized.elements[e], normalized(expected).elements[e], 1e-13) << g << ' ' << e;
+  }
+}
+
+TEST(Goniometer, HasTheNoiseThatItsOptionsSay) {
+  GoniometerOptions options = silent();
+  options.noise.relative = 1e-3;
+  const Goniometer goniometer(options, 5);
+  const std::vector<double> exact = readings(goniometer.polarimeter(), identity());
+  double sum = 0;
+  constexpr int repetitions = 500;
+  for (unsigned long seed = 0; seed < repetitions; ++seed) {
+    const std::vector<double> noisy = goniometer.readings(identity(), seed);
+    for (std::size_t r = 0; r < 16; ++r) sum += std::pow((noisy[r] / exact[r] - 1) / 1e-3, 2);
+  }
+  EXPECT_NEAR(sum / (16 * repetitions), 1, 4 * std::sqrt(2. / (16 * repetitions)));
+}
+
+// Speckle is √(cos θi / cos θr) times what it is at the normal.
+TEST(Goniometer, HasTheSpeckleOfItsGeometry) {
+  GoniometerOptions options = silent();
+  options.speckle = 0.01;
+  const Goniometer goniometer(options, 6);
+  const PreparedModel model = prepare(material("ptfe-532"), 0.532);
+  const std::vector<Geometry> same(500, Geometry{{radians(60), 0}, {radians(75), 2}});
+  const auto noisy = goniometer.readings(model, same, 7);
+  const auto exact = Goniometer(silent(), 6).readings(model, same, 7);
+  double sum = 0;
+  for (std::size_t g = 0; g < same.size(); ++g)
+    for (std::size_t r = 0; r < 16; ++r) sum += std::pow(noisy[g][r] / exact[g][r] - 1, 2);
+  const double expected = 1e-4 * 0.5 / std::cos(radians(75));
+  EXPECT_NEAR(sum / 8000 / expected, 1, 4 * std::sqrt(2. / 8000));
+}
+
+TEST(Goniometer, DriftRunsThroughAMeasurement) {
+  GoniometerOptions options = silent();
+  options.drift = 0.16;
+  const std::vector<double> drifting = Goniometer(options, 8).readings(identity(), 9),
+                            still = Goniometer(silent(), 8).readings(identity(), 9);
+  for (int r = 0; r < 16; ++r)
+    EXPECT_NEAR(drifting[static_cast<std::size_t>(r)] / still[static_cast<std::size_t>(r)], 1 + 0.01 * (r - 7.5),
+                1e-14);
+}
+
+TEST(Goniometer, ChangesItsGainBetweenReferences) {
+  GoniometerOptions options = silent();
+  options.gain_change = 0.02;
+  const auto changed = Goniometer(options, 8).references(0.532, 18, 9),
+             same = Goniometer(silent(), 8).references(0.532, 18, 9);
+  ASSERT_EQ(changed.size(), 54U);
+  const double gain = changed[20].readings[0] / same[20].readings[0];
+  EXPECT_GT(std::abs(gain - 1), 1e-4);
+  for (std::size_t r = 0; r < 16; ++r) EXPECT_NEAR(changed[20].readings[r] / same[20].readings[r], gain, 1e-12);
+}
+
+TEST(Goniometer, RefusesWhatItCannotBe) {
+  GoniometerOptions options;
+  options.noise.dark = -1;
+  EXPECT_THROW(Goniometer(options, 1), std::invalid_argument);
+  options = {};
+  options.solid_angle = 0;
+  EXPECT_THROW(Goniometer(options, 1), std::invalid_argument);
+  const Goniometer goniometer({}, 1);
+  EXPECT_THROW(goniometer.references(0.532, 0, 1), std::invalid_argument);
+  const std::array<Geometry, 1> grazing{{{{0.5, 0}, {radians(90), 0}}}};
+  EXPECT_THROW(goniometer.readings(prepare(material("ptfe-532"), 0.532), grazing, 1), std::invalid_argument);
+}
