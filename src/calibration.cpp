@@ -146,6 +146,27 @@ std::vector<Stokes> states(const Eigen::MatrixXd& columns) {
   return result;
 }
 
+/// Of the mean gain of the empty references, from their scatter.
+double scale_uncertainty(const Unknowns& unknowns, std::span<const Reference> references) {
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    if (references[i].kind != ReferenceKind::empty) continue;
+    squares += (unknowns.gains[i] - 1) * (unknowns.gains[i] - 1);  // the mean is 1
+    ++count;
+  }
+  return count > 1 ? std::sqrt(squares / (count * (count - 1))) : 0;
+}
+
+/// All matrices are wrong by one factor: A → (1 + ε) A.
+void add_scale(std::vector<double>& covariance, const Eigen::MatrixXd& analyzer, Eigen::Index generator_components,
+               double uncertainty) {
+  const Eigen::Map<const Eigen::VectorXd> a(analyzer.data(), analyzer.size());
+  const Eigen::Index size = generator_components + analyzer.size();
+  const Eigen::MatrixXd added = uncertainty * uncertainty * a * a.transpose();
+  Eigen::Map<Eigen::MatrixXd>(covariance.data(), size, size).bottomRightCorner(analyzer.size(), analyzer.size()) +=
+      (added + added.transpose()) / 2;
+}
+
 }  // namespace
 
 std::string to_string(ReferenceKind kind) { return kind_names[static_cast<std::size_t>(kind)]; }
@@ -171,6 +192,8 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   if (options.refine) {
     calibration::Refinement refinement = calibration::refine(unknowns, references, options);
     result.covariance = std::move(refinement.covariance);
+    result.scale_uncertainty = scale_uncertainty(unknowns, references);
+    add_scale(result.covariance, unknowns.analyzer, unknowns.generator.size(), result.scale_uncertainty);
     result.chi_squared = refinement.chi_squared;
   }
   result.polarimeter = {states(unknowns.generator), states(unknowns.analyzer)};

@@ -148,6 +148,7 @@ struct Reduction::Inverses {
   MatrixXd generator;   ///< W⁺, states × 4
   MatrixXd analyzer;    ///< A⁺, 4 × states
   MatrixXd covariance;  ///< of the instrument; 0 × 0: none
+  MatrixXd errors;      ///< its square root: an independent error in each column
 };
 
 namespace {
@@ -183,9 +184,12 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
     inverses->covariance = Eigen::Map<const MatrixXd>(covariance.data(), size, size);
     if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
       throw std::invalid_argument("instrument: the covariance is not symmetric and finite");
-    require_semidefinite(
-        Eigen::SelfAdjointEigenSolver<MatrixXd>(inverses->covariance, Eigen::EigenvaluesOnly).eigenvalues(),
-        "instrument");
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverses->covariance);
+    require_semidefinite(solver.eigenvalues(), "instrument");
+    const double least = 1e-14 * solver.eigenvalues()(size - 1);
+    const Index none = (solver.eigenvalues().array() <= least).count();
+    inverses->errors =
+        solver.eigenvectors().rightCols(size - none) * solver.eigenvalues().tail(size - none).cwiseSqrt().asDiagonal();
   }
   inverses_ = std::move(inverses);
 }
@@ -239,6 +243,16 @@ MuellerCovariance Reduction::from_instrument(const Mueller& m) const {
   const std::vector<double> slope = slopes(m);
   const Eigen::Map<const RowMajor> at(slope.data(), 16, inverses_->covariance.rows());
   return covariance_of(at * inverses_->covariance * at.transpose());
+}
+
+std::vector<Mueller> Reduction::errors(const Mueller& m) const {
+  std::vector<Mueller> result(static_cast<std::size_t>(inverses_->errors.cols()));
+  if (result.empty()) return result;
+  const std::vector<double> slope = slopes(m);
+  const MatrixXd all = Eigen::Map<const RowMajor>(slope.data(), 16, inverses_->errors.rows()) * inverses_->errors;
+  for (std::size_t k = 0; k < result.size(); ++k)
+    Eigen::Map<Eigen::Matrix<double, 16, 1>>(result[k].elements.data()) = all.col(index(k));
+  return result;
 }
 
 MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m) {

@@ -75,11 +75,13 @@ struct FigureOfMerit {
 struct Calibration {
   double wavelength = 0;  ///< micrometres
   Polarimeter polarimeter;
-  /// Of the components of w_1, …, a_1, … (see Reduction), scaled by the misfit; empty without refinement. The scale
-  /// that A and W share is fixed: the first components of w have mean 1.
+  /// Of the components of w_1, …, a_1, … (see Reduction), scaled by the misfit; empty without refinement. How A and W
+  /// share their scale is fixed: the first components of w have mean 1. What scale they have together is that of the
+  /// empty references, and as uncertain as scale_uncertainty.
   std::vector<double> covariance;
-  double polarizer_offset = 0;  ///< azimuth of the polarizer at dial 0, radians, in [0, π)
-  double extinction = 0;        ///< of the polarizer
+  double scale_uncertainty = 0;  ///< relative: of the mean of the empty references, from their scatter; 0 for only one
+  double polarizer_offset = 0;   ///< azimuth of the polarizer at dial 0, radians, in [0, π)
+  double extinction = 0;         ///< of the polarizer
   double polarizer_phase = 0;
   double film_thickness = 0;  ///< micrometres; 0 without a film
   std::vector<FittedReference> references;

@@ -68,6 +68,10 @@ class Reduction {
   /// covariance is not given. dM = −A⁺ dA M − M dW W⁺.
   MuellerCovariance from_instrument(const Mueller& m) const;
 
+  /// What independent errors of the instrument, each of one standard deviation, do to a matrix that it measures: one
+  /// change for each. The sum of their products is from_instrument(m). Empty if the covariance is not given.
+  std::vector<Mueller> errors(const Mueller& m) const;
+
   /// Slopes of the elements over the components of w_1, …, a_1, …: 16 × 4 (states), row-major.
   std::vector<double> slopes(const Mueller& m) const;
 

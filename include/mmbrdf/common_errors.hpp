@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Errors that all samples of a fit share, such as those of the instrument's calibration: more samples do not average
+/// them out, and no residual shows them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/model.hpp"
+#include "mmbrdf/polarimeter.hpp"
+
+namespace mmbrdf {
+
+/// How samples change with one error of one standard deviation: one matrix for each sample in the xy frame, the change
+/// of f11 in sr⁻¹ as element 11, those of the normalised elements as the others.
+using SampleChanges = std::vector<Mueller>;
+
+/// The independent errors of a polarimeter, and what each does to these samples, all of which it measured. Empty if the
+/// reduction has no covariance.
+std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::span<const Sample> samples);
+
+/// Adds to the covariance of a fitted model what common errors do to its coefficients: with X and W the rows and
+/// weights of the fit, da = (XᵀWX)⁺ XᵀW dy and Σ da daᵀ. Weights are those of the fit, as FitAccumulator::add takes
+/// them; empty means 1. What such an error correlates between blocks is not kept. Throws std::invalid_argument for a
+/// model with powers of the wavelength or a reflectance table (an instrument is calibrated for one wavelength), one
+/// whose covariance is not known, samples of another wavelength than the first, or sizes that do not agree.
+void add_common_errors(Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
+                       std::span<const Mueller> weights = {});
+
+}  // namespace mmbrdf

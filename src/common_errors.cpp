@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/common_errors.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/uncertainty.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+void require_fitting(const Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
+                     std::span<const Mueller> weights) {
+  if (model.powers != 0 || !model.reflectance.values.empty())
+    throw std::invalid_argument("common errors: the model is of more than one wavelength");
+  if (samples.empty()) throw std::invalid_argument("common errors: no samples");
+  for (const Sample& sample : samples)
+    if (std::abs(sample.wavelength - samples[0].wavelength) > wavelength_resolution)
+      throw std::invalid_argument("common errors: samples of more than one wavelength");
+  for (const SampleChanges& error : errors)
+    if (error.size() != samples.size())
+      throw std::invalid_argument("common errors: " + std::to_string(error.size()) + " changes of " +
+                                  std::to_string(samples.size()) + " samples");
+  if (!weights.empty() && weights.size() != samples.size())
+    throw std::invalid_argument("common errors: " + std::to_string(weights.size()) + " weights of " +
+                                std::to_string(samples.size()) + " samples");
+}
+
+/// XᵀWX and XᵀW dy of one block, a column for each error.
+struct Normal {
+  MatrixXd matrix, vectors;
+};
+
+std::vector<Normal> empty_normals(const Model& model, std::size_t errors) {
+  std::vector<Normal> result;
+  for (const FittedBlock& fitted : model.blocks) {
+    const auto size = static_cast<Index>(fitted.coefficients.size());
+    result.push_back({MatrixXd::Zero(size, size), MatrixXd::Zero(size, static_cast<Index>(errors))});
+  }
+  return result;
+}
+
+/// F = f11 m, and only block 11 moves f11: the slopes of m are those of F over f11.
+void add_sample(std::vector<Normal>& normals, const Model& model, const MuellerGradient& gradient, double f11,
+                std::span<const Mueller> changes, const Mueller* weights) {
+  const Eigen::Map<const RowMajor> slopes(gradient.values.data(), 16, static_cast<Index>(gradient.values.size() / 16));
+  Index first = 0;
+  for (std::size_t b = 0; b < normals.size(); ++b) {
+    auto& [matrix, vectors] = normals[b];
+    for (const auto& [row, column] : model.blocks[b].block.elements) {
+      const int e = 4 * row + column;
+      const Eigen::VectorXd x = slopes.row(e).segment(first, matrix.rows()).transpose() / (e == 0 ? 1 : f11);
+      const double weight = weights ? (*weights)(row, column) : 1;
+      matrix.selfadjointView<Eigen::Lower>().rankUpdate(x, weight);
+      for (std::size_t k = 0; k < changes.size(); ++k)
+        vectors.col(static_cast<Index>(k)) += weight * changes[k](row, column) * x;
+    }
+    first += matrix.rows();
+  }
+}
+
+}  // namespace
+
+std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::span<const Sample> samples) {
+  std::vector<SampleChanges> result;
+  for (const Sample& sample : samples) {
+    const Mueller m = change_frame(sample.normalized, sample.geometry, Frame::xy, Frame::scattering_plane);
+    const std::vector<Mueller> changes = reduction.errors(m);
+    result.resize(changes.size());
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      const double relative = changes[k](0, 0);  // M11 is 1
+      Mueller change = change_frame(changes[k] - relative * m, sample.geometry, Frame::scattering_plane, Frame::xy);
+      change(0, 0) = relative * sample.f11;
+      result[k].push_back(change);
+    }
+  }
+  return result;
+}
+
+void add_common_errors(Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
+                       std::span<const Mueller> weights) {
+  require_fitting(model, samples, errors, weights);
+  const PreparedModel values = prepare(model, samples[0].wavelength);
+  const PreparedUncertainty slopes = prepare_uncertainty(model, samples[0].wavelength);
+  std::vector<Normal> normals = empty_normals(model, errors.size());
+  std::vector<Mueller> changes(errors.size());
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    // As in the fit: germer2017 is fitted at phi_i = 0.
+    const double turn = model.family == Family::germer2017 ? -samples[s].geometry.incident.phi : 0;
+    for (std::size_t k = 0; k < errors.size(); ++k) changes[k] = turned(errors[k][s], turn);
+    const Geometry geometry = turn == 0 ? samples[s].geometry : at_zero_azimuth(samples[s]).geometry;
+    add_sample(normals, model, slopes.gradient(geometry), values.evaluate(geometry)(0, 0), changes,
+               weights.empty() ? nullptr : &weights[s]);
+  }
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const Index size = normals[b].matrix.rows();
+    const MatrixXd whole = normals[b].matrix.selfadjointView<Eigen::Lower>();
+    const MatrixXd moved = whole.completeOrthogonalDecomposition().solve(normals[b].vectors);
+    const MatrixXd added = moved * moved.transpose();
+    Eigen::Map<MatrixXd>(model.blocks[b].covariance.data(), size, size) += (added + added.transpose()) / 2;
+  }
+}
+
+}  // namespace mmbrdf
