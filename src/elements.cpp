@@ -45,7 +45,7 @@ Complex with_layer(Complex outer, Complex inner, Complex round_trip) {
 
 }  // namespace
 
-Mueller turned(const Mueller& element, double azimuth) { return rotator(-azimuth) * element * rotator(azimuth); }
+Mueller rotated(const Mueller& element, double azimuth) { return rotator(-azimuth) * element * rotator(azimuth); }
 
 Mueller mueller(const DiattenuatorRetarder& element) {
   const auto& [tau, psi, delta] = element;
@@ -62,13 +62,13 @@ Mueller polarizer(double azimuth, double extinction, double phase) {
     throw std::invalid_argument("polarizer: extinction " + shortest(extinction) + " is not in [0, 1]");
   if (!std::isfinite(azimuth) || !std::isfinite(phase))
     throw std::invalid_argument("polarizer: an angle is not finite");
-  return turned(mueller({(1 + extinction) / 2, std::atan(std::sqrt(extinction)), phase}), azimuth);
+  return rotated(mueller({(1 + extinction) / 2, std::atan(std::sqrt(extinction)), phase}), azimuth);
 }
 
 Mueller retarder(double retardance, double azimuth) {
   if (!std::isfinite(retardance) || !std::isfinite(azimuth))
     throw std::invalid_argument("retarder: an angle is not finite");
-  return turned(mueller({1, std::numbers::pi / 4, retardance}), azimuth);
+  return rotated(mueller({1, std::numbers::pi / 4, retardance}), azimuth);
 }
 
 DiattenuatorRetarder reflection(const Film& film, double wavelength, double theta_i) {

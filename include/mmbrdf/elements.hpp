@@ -10,7 +10,7 @@
 namespace mmbrdf {
 
 /// The same element turned by `azimuth` from e1 towards e2: rotator(−azimuth) · element · rotator(azimuth).
-Mueller turned(const Mueller& element, double azimuth);
+Mueller rotated(const Mueller& element, double azimuth);
 
 /// An element that keeps e1 and e2 apart, with amplitudes r1 and r2 on them: r2 / r1 = tan psi · exp(i delta).
 struct DiattenuatorRetarder {
