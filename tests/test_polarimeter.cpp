@@ -157,7 +157,8 @@ TEST(OptimalAngles, OfFourStatesOfTheBestPlateAreThoseOfSabatke) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(degrees(angles[k]), degrees(best_azimuths[k]), 0.01);
 }
 
-// Three pairs reach √3 as two do; a state at 0 with two pairs does not: √(10/3) is the least.
+// √3 needs states that are a spherical 2-design: there are some of four and of six points, none of five. √(10/3) is
+// what the search finds for five.
 TEST(OptimalAngles, OfMoreStatesComeNearRoot3WhereSymmetryLetsThem) {
   EXPECT_NEAR(best_condition(131.81, 6), std::sqrt(3), 1e-4);
   EXPECT_NEAR(best_condition(131.81, 5), std::sqrt(10.0 / 3), 1e-4);
