@@ -300,3 +300,23 @@ TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
   EXPECT_TRUE(
       refusal(references, with_film()).starts_with("the references leave more than one instrument: nothing ties "));
 }
+
+// With gains that change by 2 % from one reference to the next, the mean of 18 is known to 0.5 %, and says so.
+TEST(Calibration, KnowsHowUncertainItsScaleIs) {
+  GoniometerOptions made = quiet();
+  made.gain_change = 0.02;
+  made.noise.relative = 1e-3;
+  double sum = 0, observed = 0, predicted = 0;
+  constexpr int seeds = 25;
+  for (unsigned long seed = 1; seed <= seeds; ++seed) {
+    const Goniometer goniometer(made, seed);
+    const Calibration found = calibrate(goniometer.references(wavelength, 18, seed), with_film());
+    const Reduction reduction(found.polarimeter, found.covariance);
+    const Mueller m = reduction.mueller(readings(goniometer.polarimeter(), identity()));
+    observed += std::pow(m(0, 0) - 1, 2) / seeds;
+    predicted += reduction.from_instrument(m)(0, 0) / seeds;
+    sum += found.scale_uncertainty / seeds;
+  }
+  EXPECT_NEAR(sum, 0.02 / std::sqrt(18.), 0.0005);                             // 1/√36 of it, over √25
+  EXPECT_NEAR(std::sqrt(observed / predicted), 1, 3 / std::sqrt(2. * seeds));  // the scatter of such a ratio
+}

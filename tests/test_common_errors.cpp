@@ -115,10 +115,10 @@ TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
 }
 
 // Raw readings of a simulated instrument with imperfections, noise and speckle, calibrated from its own references,
-// reduced and fitted. Of 100 instruments 95 % intervals contain the truth. The errors of one fit at ten geometries are
-// correlated: shares of single elements scatter by 2 %.
-TEST(CommonErrors, OfTheWholeChainAreKnownAndScatterIsWhatItsUncertaintySays) {
-  const unsigned long seeds = getenv("SEEDS") ? strtoul(getenv("SEEDS"), nullptr, 10) : 100ul;  //TMP
+// reduced and fitted, for 100 instruments. Ten geometries of one fit are far from independent: with 400 instruments all
+// shares lie in 94.0 … 96.1 %, and with 100 a share scatters by 1.2 % and the errors over their uncertainties by 4 %.
+TEST(CommonErrors, LeaveTheTruthInsideTheIntervalsOfTheWholeChainWithItsScatter) {
+  constexpr unsigned long seeds = 100;
   const Model true_model = material("ptfe-532");
   const PreparedModel truth = prepare(true_model, wavelength);
   const std::vector<Geometry> measured = random_geometries(400, 5), asked = random_geometries(10, 6, radians(65));
@@ -154,7 +154,14 @@ TEST(CommonErrors, OfTheWholeChainAreKnownAndScatterIsWhatItsUncertaintySays) {
       dhr_squares += std::pow(error / u_dhr, 2) * 0.1 / static_cast<double>(seeds);
     }
   }
-  for (std::size_t e = 0; e < 16; ++e)
-    std::printf("%zu%zu %.3f %.3f\n", e / 4 + 1, e % 4 + 1, inside[e], std::sqrt(squares[e]));
-  std::printf("dhr %.3f %.3f\n", dhr_inside, std::sqrt(dhr_squares));
+  double pooled = dhr_inside / 17;
+  for (std::size_t e = 0; e < 16; ++e) {
+    RecordProperty("inside_" + std::to_string(e), std::to_string(inside[e]));
+    pooled += inside[e] / 17;
+    EXPECT_NEAR(inside[e], 0.95, 0.036) << e;
+    EXPECT_NEAR(std::sqrt(squares[e]), 1, 0.16) << e;
+  }
+  EXPECT_NEAR(dhr_inside, 0.95, 0.036);
+  EXPECT_NEAR(std::sqrt(dhr_squares), 1, 0.16);
+  EXPECT_NEAR(pooled, 0.95, 0.02);
 }
