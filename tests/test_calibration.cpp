@@ -176,6 +176,7 @@ TEST(Calibration, OfNoisyReadingsIsAsGoodAsTheNumberOfReferencesPromisesAndScatt
   }
   RecordProperty("linear_error", std::to_string(linear_error));
   RecordProperty("refined_error", std::to_string(refined_error));
+  RecordProperty("figures_of_merit", std::to_string(linear_merit) + ", " + std::to_string(refined_merit));
   RecordProperty("observed_over_predicted", std::to_string(std::sqrt(observed / predicted)));
   EXPECT_LT(linear_error, 2e-4);
   EXPECT_LT(refined_error, 1e-4);
