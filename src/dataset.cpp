@@ -2,6 +2,7 @@
 #include "mmbrdf/dataset.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -13,6 +14,8 @@
 
 namespace mmbrdf {
 namespace {
+
+constexpr double counts = 1e-12;  // coefficient of a rotation: below it is the rounding of a sine that is 0
 
 bool same_wavelength(double a, double b) { return std::abs(a - b) <= wavelength_resolution; }
 
@@ -37,6 +40,36 @@ Direction from_cosines(double x, double y) { return direction({x, y, std::sqrt(1
 double distance(const Direction& a, const Direction& b) {
   const Vector3 u = unit_vector(a), v = unit_vector(b);
   return std::hypot(u[0] - v[0], u[1] - v[1], u[2] - v[2]);
+}
+
+void require_valid_elements(const Sample& sample, const std::string& name) {
+  for (std::size_t e = 0; e < 16; ++e) {
+    const double value = e == 0 ? sample.f11 : sample.normalized.elements[e], u = sample.uncertainty.elements[e];
+    if (!std::isfinite(value))
+      throw std::invalid_argument(name + ": " + sample_element(e) + " = " + shortest(value) + ", must be finite");
+    if (!(u >= 0) || !std::isfinite(u))
+      throw std::invalid_argument(name + ": u_" + sample_element(e) + " = " + shortest(u) +
+                                  ", must be finite and not negative");
+  }
+}
+
+/// Of turned(m, angle) from those of m, uncorrelated; 0 where one that counts is 0.
+Mueller turned_uncertainty(const Mueller& uncertainty, double angle) {
+  Mueller squares;
+  std::array<bool, 16> known;
+  known.fill(true);
+  for (std::size_t from = 0; from < 16; ++from) {
+    Mueller unit;
+    unit.elements[from] = 1;
+    const Mueller slopes = turned(unit, angle);
+    for (std::size_t to = 0; to < 16; ++to) {
+      const double part = slopes.elements[to] * uncertainty.elements[from];
+      squares.elements[to] += part * part;
+      if (std::abs(slopes.elements[to]) > counts && uncertainty.elements[from] == 0) known[to] = false;
+    }
+  }
+  for (std::size_t e = 0; e < 16; ++e) squares.elements[e] = known[e] ? std::sqrt(squares.elements[e]) : 0;
+  return squares;
 }
 
 Direction random_direction(std::mt19937_64& engine, double theta_max) {
@@ -72,18 +105,18 @@ std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<co
   return kept;
 }
 
+bool has_uncertainty(const Sample& sample) {
+  const auto& all = sample.uncertainty.elements;
+  return std::any_of(all.begin(), all.end(), [](double u) { return u != 0; });
+}
+
 void require_valid(std::span<const Sample> samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& sample = samples[i];
     const std::string name = "sample " + std::to_string(i + 1);
     require_wavelength(sample, i);
     require_valid(sample.geometry, name.c_str());
-    if (!std::isfinite(sample.f11))
-      throw std::invalid_argument(name + ": f11 = " + shortest(sample.f11) + ", must be finite");
-    for (std::size_t e = 0; e < 16; ++e)
-      if (!std::isfinite(sample.normalized.elements[e]))
-        throw std::invalid_argument(name + ": m" + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1) + " = " +
-                                    shortest(sample.normalized.elements[e]) + ", must be finite");
+    require_valid_elements(sample, name);
   }
 }
 
@@ -91,6 +124,7 @@ Sample at_zero_azimuth(const Sample& sample) {
   const double phi = sample.geometry.incident.phi;
   Sample result = sample;
   result.normalized = turned(sample.normalized, -phi);
+  if (has_uncertainty(sample)) result.uncertainty = turned_uncertainty(sample.uncertainty, -phi);
   result.geometry.incident.phi = 0;
   result.geometry.reflected.phi -= phi;
   return result;

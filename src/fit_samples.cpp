@@ -61,6 +61,16 @@ std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& mo
   return weights;
 }
 
+Mueller data_weights_of(const Sample& sample, double reflectance) {
+  Mueller weights;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const double u = sample.uncertainty.elements[e] / (e == 0 ? reflectance : 1);
+    if (!(u > 0)) throw std::invalid_argument("the uncertainty of " + sample_element(e) + " is not known");
+    weights.elements[e] = 1 / (u * u);
+  }
+  return weights;
+}
+
 /// Which of the fitted wavelengths it is.
 std::size_t place(const Model& model, double wavelength) {
   const std::vector<double>& list = model.validity.wavelengths;
@@ -94,6 +104,20 @@ std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Mode
   return noise_weights(samples, model, {});
 }
 
+std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& basis,
+                                  const ReflectanceTable& reflectance) {
+  const bool turns = basis.family == Family::germer2017 && basis.rotation == Rotation::covariant;
+  std::vector<Mueller> weights;
+  for (const Sample& sample : samples) {
+    try {
+      weights.push_back(data_weights_of(turns ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("weights: sample " + std::to_string(weights.size() + 1) + ": " + error.what());
+    }
+  }
+  return weights;
+}
+
 FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
   FitAccumulator accumulator(basis);
   accumulator.add(samples);
@@ -102,10 +126,12 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
   std::vector<NoiseEstimate> noise;
   if (weights == Weights::estimated)
     noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples, basis.rotation));
-  if (weights != Weights::none) {
+  if (weights == Weights::data) list = data_weights(samples, basis, result.model.reflectance);
+  if (weights == Weights::speckle || weights == Weights::estimated)
     list = weights_of(samples, result.model, [&](double wavelength) {
       return noise.empty() ? NoiseLaw{} : noise[place(result.model, wavelength)].law;
     });
+  if (weights != Weights::none) {
     accumulator = FitAccumulator(basis);
     accumulator.add(samples, list);
     result = accumulator.solved(options);

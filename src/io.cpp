@@ -20,10 +20,6 @@ namespace {
 
 // ---- samples --------------------------------------------------------------------------------------------------------
 
-std::string element_name(std::size_t element) {
-  return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
-}
-
 /// A value whose square and sums of squares are finite, as any measured one is.
 double measured(const CsvReader& reader, int column) {
   constexpr double beyond_all = 1e100;
@@ -47,14 +43,50 @@ std::array<int, 16> element_columns(const CsvReader& reader, int& m11) {
         "by it; a table of elements that are not divided cannot be read as samples");
   if (columns[0] < 0) throw reader.error("no column f11 (nor f_r11), the unpolarized BRDF in 1/sr");
   for (std::size_t e = 1; e < columns.size(); ++e) {
-    const std::string number = element_name(e);
-    const std::string own = std::string("m").append(number);
-    const std::string published = std::string("f_r").append(number).append("/f_r11");
+    const std::string own = sample_element(e);
+    const std::string published = std::string("f_r").append(own, 1).append("/f_r11");
     const std::string_view names[] = {own, published};
     columns[e] = reader.find(names);
     if (columns[e] < 0) throw reader.error("no column " + own + " (nor " + published + "), the element divided by f11");
   }
   return columns;
+}
+
+/// The columns of their standard uncertainties, all or none.
+std::array<int, 16> uncertainty_columns(const CsvReader& reader) {
+  std::array<int, 16> columns;
+  std::array<std::string, 16> names;
+  for (std::size_t e = 0; e < columns.size(); ++e) {
+    names[e] = std::string("u_").append(sample_element(e));
+    const std::string_view name[] = {names[e]};
+    columns[e] = reader.find(name);
+  }
+  const auto is_there = [](int column) { return column >= 0; };
+  const auto there = std::find_if(columns.begin(), columns.end(), is_there);
+  const auto missing = std::find_if_not(columns.begin(), columns.end(), is_there);
+  if (there != columns.end() && missing != columns.end())
+    throw reader.error("column " + names[static_cast<std::size_t>(there - columns.begin())] + ", but no " +
+                       names[static_cast<std::size_t>(missing - columns.begin())] +
+                       ": uncertainties are needed of all sixteen elements, or of none");
+  return columns;
+}
+
+double uncertainty(const CsvReader& reader, int column) {
+  const double value = measured(reader, column);
+  if (value < 0)
+    throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + std::string(reader.field(column)) +
+                       ": an uncertainty must not be negative");
+  return value;
+}
+
+/// Whether all samples have uncertainties.
+bool have_uncertainties(std::span<const Sample> samples) {
+  if (std::none_of(samples.begin(), samples.end(), has_uncertainty)) return false;
+  const auto without = std::find_if_not(samples.begin(), samples.end(), has_uncertainty);
+  if (without != samples.end())
+    throw std::invalid_argument("write_samples: sample " + std::to_string(without - samples.begin() + 1) +
+                                " has no uncertainties, but others have");
+  return true;
 }
 
 // ---- coefficients ---------------------------------------------------------------------------------------------------
@@ -148,7 +180,11 @@ std::ifstream open_input(const std::string& path) {
 }
 
 SampleReader::SampleReader(std::istream& in, const std::string& name)
-    : name_(name), reader_(in, name), geometry_(reader_), elements_(element_columns(reader_, m11_)) {}
+    : name_(name),
+      reader_(in, name),
+      geometry_(reader_),
+      elements_(element_columns(reader_, m11_)),
+      uncertainties_(uncertainty_columns(reader_)) {}
 
 bool SampleReader::next(Sample& sample) {
   if (!reader_.next()) {
@@ -161,6 +197,8 @@ bool SampleReader::next(Sample& sample) {
   sample.f11 = measured(reader_, elements_[0]);
   sample.normalized.elements[0] = 1;
   for (std::size_t e = 1; e < elements_.size(); ++e) sample.normalized.elements[e] = measured(reader_, elements_[e]);
+  for (std::size_t e = 0; e < uncertainties_.size(); ++e)
+    sample.uncertainty.elements[e] = uncertainties_[e] < 0 ? 0 : uncertainty(reader_, uncertainties_[e]);
   if (m11_ >= 0 && reader_.number(m11_) != 1)
     throw reader_.error("m11: " + std::string(reader_.field(m11_)) +
                         ": must be 1 next to f11, as elements are divided by it");
@@ -186,8 +224,10 @@ void write_samples(const std::string& path, std::span<const Sample> samples) {
 
 void write_samples(std::ostream& out, std::span<const Sample> samples) {
   require_valid(samples);
+  const bool with_uncertainties = have_uncertainties(samples);
   out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11";
-  for (std::size_t e = 1; e < 16; ++e) out << ",m" << element_name(e);
+  for (std::size_t e = 1; e < 16; ++e) out << ',' << sample_element(e);
+  for (std::size_t e = 0; e < 16 && with_uncertainties; ++e) out << ",u_" << sample_element(e);
   out << '\n';
   for (const Sample& sample : samples) {
     out << shortest(in_nanometres(sample.wavelength));
@@ -195,6 +235,7 @@ void write_samples(std::ostream& out, std::span<const Sample> samples) {
       out << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
     out << ',' << shortest(sample.f11);
     for (std::size_t e = 1; e < 16; ++e) out << ',' << shortest(sample.normalized.elements[e]);
+    for (std::size_t e = 0; e < 16 && with_uncertainties; ++e) out << ',' << shortest(sample.uncertainty.elements[e]);
     out << '\n';
   }
 }

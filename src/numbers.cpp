@@ -91,6 +91,10 @@ std::string rounded(double value, int digits) {
   return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr};
 }
 
+std::string sample_element(std::size_t element) {
+  return (element == 0 ? "f" : "m") + std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
+}
+
 double in_degrees(double angle) {
   return roundest(degrees(angle), [=](double value) { return radians(value) == angle; });
 }

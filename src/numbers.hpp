@@ -2,6 +2,7 @@
 // Numbers as text in files: independent of the locale, and read back to the same bits.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,9 @@ std::string shortest(double value);
 
 /// At most this many significant digits, for messages.
 std::string rounded(double value, int digits);
+
+/// What samples hold, as their columns are called: "f11", "m12" … "m44" for 0, 1 … 15.
+std::string sample_element(std::size_t element);
 
 /// Degrees with the fewest digits for which radians() gives `angle` again; where no number of degrees does, the
 /// nearest.

@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -22,6 +23,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+constexpr double least_singular = 1e-12;  // relative to the largest: below, rounding alone could have made it
+
 Index index(std::size_t n) { return static_cast<Index>(n); }
 
 /// 4 × states, a state in each column.
@@ -31,6 +34,9 @@ MatrixXd columns(std::span<const Stokes> states) {
     result.col(index(s)) = Eigen::Map<const Eigen::Vector4d>(states[s].data());
   return result;
 }
+
+/// Whether rows of a 4 × states matrix with these singular values are independent.
+bool has_rank_four(const VectorXd& singular_values) { return singular_values(3) > least_singular * singular_values(0); }
 
 Stokes transposed(const Mueller& m, const Stokes& row) { return transpose(m) * row; }
 
@@ -42,47 +48,62 @@ std::vector<double> mirrored(std::span<const double> positive, int states) {
   return azimuths;
 }
 
+using Corner = std::pair<double, VectorXd>;  // the value of a function, and where it has it
+
+/// The corners of a simplex with their smallest first: is it within 1e-10 of all others?
+bool is_point(const std::vector<Corner>& simplex) {
+  return std::all_of(simplex.begin(), simplex.end(),
+                     [&](const Corner& c) { return (c.second - simplex.front().second).norm() < 1e-10; });
+}
+
+/// A move of Nelder and Mead: the worst corner reflected, further, nearer, or else all drawn to the best.
+template <class F>
+void move(std::vector<Corner>& simplex, const F& function) {
+  const std::size_t n = simplex.size() - 1;
+  VectorXd centre = VectorXd::Zero(index(n));
+  for (std::size_t k = 0; k < n; ++k) centre += simplex[k].second / static_cast<double>(n);
+  Corner& worst = simplex.back();
+  const VectorXd away = centre - worst.second;
+  const auto at = [&](double distance) {
+    const VectorXd corner = centre + distance * away;
+    return Corner{function(corner), corner};
+  };
+  const Corner moved = at(1);
+  if (moved.first < simplex.front().first) {
+    const Corner further = at(2);
+    worst = further.first < moved.first ? further : moved;
+  } else if (moved.first < simplex[n - 1].first) {
+    worst = moved;
+  } else if (const Corner nearer = at(moved.first < worst.first ? 0.5 : -0.5);
+             nearer.first < std::min(moved.first, worst.first)) {
+    worst = nearer;
+  } else {
+    const VectorXd best = simplex.front().second;
+    for (auto& [value, corner] : simplex) {
+      corner = (corner + best) / 2;
+      value = function(corner);
+    }
+  }
+}
+
 /// Nelder and Mead: the corner of a simplex where the function is smallest, once all corners are within 1e-10 of it.
 template <class F>
-VectorXd smallest_of(const F& function, VectorXd start, double step) {
-  const Index n = start.size();
-  std::vector<std::pair<double, VectorXd>> simplex{{function(start), start}};
-  for (Index k = 0; k < n; ++k) {
+VectorXd smallest_of(const F& function, const VectorXd& start, double step) {
+  std::vector<Corner> simplex{{function(start), start}};
+  for (Index k = 0; k < start.size(); ++k) {
     VectorXd corner = start;
     corner(k) += step;
     simplex.emplace_back(function(corner), corner);
   }
-  const auto below = [](const auto& a, const auto& b) { return a.first < b.first; };
-  for (int moves = 0; moves < 2000; ++moves) {
-    std::sort(simplex.begin(), simplex.end(), below);
-    const VectorXd best = simplex.front().second;
-    if (std::all_of(simplex.begin(), simplex.end(), [&](const auto& c) { return (c.second - best).norm() < 1e-10; }))
-      break;
-    VectorXd centre = VectorXd::Zero(n);
-    for (Index k = 0; k < n; ++k) centre += simplex[static_cast<std::size_t>(k)].second / static_cast<double>(n);
-    auto& worst = simplex.back();
-    const VectorXd away = centre - worst.second;
-    const auto at = [&](double distance) {
-      const VectorXd corner = centre + distance * away;
-      return std::pair{function(corner), corner};
-    };
-    auto moved = at(1);
-    if (moved.first < simplex.front().first) {
-      const auto further = at(2);
-      worst = further.first < moved.first ? further : moved;
-    } else if (moved.first < simplex[static_cast<std::size_t>(n) - 1].first) {
-      worst = moved;
-    } else if (const auto nearer = at(moved.first < worst.first ? 0.5 : -0.5);
-               nearer.first < std::min(moved.first, worst.first)) {
-      worst = nearer;
-    } else {
-      for (auto& [value, corner] : simplex) {
-        corner = (corner + best) / 2;
-        value = function(corner);
-      }
-    }
+  const auto sort = [&] {
+    std::sort(simplex.begin(), simplex.end(), [](const Corner& a, const Corner& b) { return a.first < b.first; });
+  };
+  sort();
+  for (int moves = 0; moves < 2000 && !is_point(simplex); ++moves) {
+    move(simplex, function);
+    sort();
   }
-  return std::min_element(simplex.begin(), simplex.end(), below)->second;
+  return simplex.front().second;
 }
 
 }  // namespace
@@ -98,9 +119,10 @@ Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuth
 }
 
 double condition_number(std::span<const Stokes> states) {
-  if (states.size() < 4) return std::numeric_limits<double>::infinity();
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(columns(states)).singularValues();
-  return s(3) > 0 ? s(0) / s(3) : std::numeric_limits<double>::infinity();
+  const MatrixXd matrix = columns(states);
+  if (states.size() < 4 || !matrix.allFinite()) return std::numeric_limits<double>::infinity();
+  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(matrix).singularValues();
+  return has_rank_four(s) ? s(0) / s(3) : std::numeric_limits<double>::infinity();
 }
 
 std::vector<double> optimal_angles(double retardance, int states) {
@@ -154,12 +176,13 @@ namespace {
 
 /// Of a 4 × states matrix.
 MatrixXd pseudo_inverse(const MatrixXd& states, const char* of) {
-  if (!states.allFinite()) throw std::invalid_argument(std::string(of) + ": a state is not finite");
+  const auto refusal = [&](const std::string& what) { return std::invalid_argument(of + (": " + what)); };
+  const std::string too_few = std::to_string(states.cols()) + " states, not four independent ones";
+  if (!states.allFinite()) throw refusal("a state is not finite");
+  if (states.cols() < 4) throw refusal(too_few);
   const Eigen::JacobiSVD<MatrixXd> svd(states, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const VectorXd& s = svd.singularValues();
-  if (s.size() < 4 || !(s(3) > 1e-12 * s(0)))
-    throw std::invalid_argument(std::string(of) + ": " + std::to_string(states.cols()) +
-                                " states, not four independent ones");
+  if (!has_rank_four(s)) throw refusal(too_few);
   return svd.matrixV() * s.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
 }
 

@@ -34,6 +34,7 @@ std::vector<Mueller> weights_of(std::span<const Sample> samples, const Selection
                        .minimum_norm = true,
                        .rank_tolerance = options.rank_tolerance};
   const FitResult first = fit(samples, lowest, how, weights == Weights::estimated ? weights : Weights::none);
+  if (weights == Weights::data) return data_weights(samples, lowest, first.model.reflectance);
   if (first.noise.empty()) return speckle_weights(samples, first.model);
   std::vector<Mueller> result(samples.size());
   std::vector<double> wavelengths;

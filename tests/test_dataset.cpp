@@ -92,6 +92,18 @@ TEST(Samples, ThatAreInvalidAreRefusedWithTheirNumber) {
             "sample 3: theta_r = 91 degrees, must be in 0…90");
   EXPECT_EQ(refusal([](Sample& s) { s.f11 = nan_value; }), "sample 3: f11 = nan, must be finite");
   EXPECT_EQ(refusal([](Sample& s) { s.normalized(1, 3) = nan_value; }), "sample 3: m24 = nan, must be finite");
+  EXPECT_EQ(refusal([](Sample& s) { s.uncertainty(0, 0) = nan_value; }),
+            "sample 3: u_f11 = nan, must be finite and not negative");
+  EXPECT_EQ(refusal([](Sample& s) { s.uncertainty(3, 3) = -0.1; }),
+            "sample 3: u_m44 = -0.1, must be finite and not negative");
+}
+
+TEST(Samples, HaveAnUncertaintyIfThatOfAnyElementIsKnown) {
+  Sample sample = sample_at(0.5);
+  EXPECT_FALSE(has_uncertainty(sample));
+  sample.uncertainty(2, 1) = 1e-3;
+  EXPECT_TRUE(has_uncertainty(sample));
+  EXPECT_TRUE(has_uncertainty(at_wavelengths(std::vector<Sample>{sample}, std::vector<double>{0.5}).front()));
 }
 
 TEST(Germer2017Grid, Has1824GeometriesAtSixIncidentAngles) {
@@ -200,4 +212,58 @@ TEST(Sample, AtZeroAzimuthKeepsItsMatrixInTheSpFrame) {
   const Mueller before = change_frame(sample.normalized, sample.geometry, Frame::xy, Frame::sp);
   const Mueller after = change_frame(turned_sample.normalized, turned_sample.geometry, Frame::xy, Frame::sp);
   for (std::size_t e = 0; e < 16; ++e) EXPECT_NEAR(after.elements[e], before.elements[e], frame_error);
+}
+
+namespace {
+
+Sample with_uncertainty(double phi_i) {
+  Sample sample = sample_at(0.5);
+  sample.geometry = {{0.7, phi_i}, {1.2, -0.4}};
+  for (std::size_t e = 0; e < 16; ++e) {
+    const auto number = static_cast<double>(e);
+    sample.normalized.elements[e] = e == 0 ? 1 : std::sin(number);
+    sample.uncertainty.elements[e] = 1e-3 * (1 + number / 10);
+  }
+  return sample;
+}
+
+}  // namespace
+
+// Each element of the turned sample is linear in those of the sample, so a change of one shows its coefficient.
+TEST(Sample, AtZeroAzimuthHasTheUncertaintiesOfUncorrelatedElements) {
+  const Sample sample = with_uncertainty(2.1);
+  const Mueller before = at_zero_azimuth(sample).normalized;
+  Mueller squares;
+  for (std::size_t from = 1; from < 16; ++from) {
+    Sample changed = sample;
+    changed.normalized.elements[from] += sample.uncertainty.elements[from];
+    const Mueller after = at_zero_azimuth(changed).normalized;
+    for (std::size_t to = 0; to < 16; ++to) squares.elements[to] += std::pow((after - before).elements[to], 2);
+  }
+  const Mueller turned_uncertainty = at_zero_azimuth(sample).uncertainty;
+  EXPECT_EQ(turned_uncertainty(0, 0), sample.uncertainty(0, 0));
+  // Differences of elements near 1: a few roundings of 1e-16.
+  for (std::size_t e = 1; e < 16; ++e)
+    EXPECT_NEAR(turned_uncertainty.elements[e], std::sqrt(squares.elements[e]), 1e-15) << e;
+}
+
+TEST(Sample, AtZeroAzimuthKeepsItsUncertaintiesWhereItIsTurnedByHalfTurnsOrNot) {
+  for (const double phi_i : {0.0, pi, -pi}) {
+    const Sample sample = with_uncertainty(phi_i), after = at_zero_azimuth(sample);
+    for (std::size_t e = 0; e < 16; ++e)  // sin 2π is 2e-16
+      EXPECT_NEAR(after.uncertainty.elements[e], sample.uncertainty.elements[e], 1e-17);
+  }
+}
+
+TEST(Sample, AtZeroAzimuthDoesNotKnowWhatDependsOnAnUnknownUncertainty) {
+  Sample sample = with_uncertainty(2.1);
+  sample.uncertainty(0, 1) = 0;
+  const Mueller after = at_zero_azimuth(sample).uncertainty;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      EXPECT_EQ(after(row, column) == 0, row == 0 && (column == 1 || column == 2)) << row << column;
+  sample.geometry.incident.phi = pi;  // 12 and 13 do not mix
+  EXPECT_GT(at_zero_azimuth(sample).uncertainty(0, 2), 0);
+  sample.uncertainty = {};
+  EXPECT_FALSE(has_uncertainty(at_zero_azimuth(sample)));
 }

@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "cases.hpp"
 #include "files.hpp"
 #include "published.hpp"
 
@@ -110,6 +111,56 @@ TEST(Samples, OfRoundAnglesAreWrittenRound) {
   const std::string text = own("532,15,180,30,-120,0.3");
   write_samples(folder / "s.csv", samples_in(text));
   EXPECT_TRUE(contents(folder / "s.csv").starts_with(std::string(own_header) + "532,15,180,30,-120,0.3,0.12,"));
+}
+
+/// A file of one sample with these columns behind its elements.
+std::string with_columns(const std::string& names, const std::string& values) {
+  std::string header = own_header, row = elements;
+  header.insert(header.size() - 1, names);
+  row.insert(row.size() - 1, values);
+  return header + "532,10,20,30,40,0.3" + row;
+}
+
+constexpr const char* uncertainty_names =
+    ",u_f11,u_m12,u_m13,u_m14,u_m21,u_m22,u_m23,u_m24,u_m31,u_m32,u_m33,u_m34,u_m41,u_m42,u_m43,u_m44";
+constexpr const char* uncertainty_values =
+    ",1e-3,.012,.013,.014,.021,.022,.023,0,.031,.032,.033,.034,.041,.042,.043,.044";
+
+TEST(Samples, HaveTheUncertaintiesOfTheirColumnsOrNone) {
+  const auto samples = samples_in(with_columns(uncertainty_names, uncertainty_values));
+  const Mueller expected{{.001, .012, .013, .014, .021, .022, .023, 0, .031, .032, .033, .034, .041, .042, .043, .044}};
+  EXPECT_EQ(samples[0].uncertainty, expected);
+  EXPECT_TRUE(same(samples, samples_in(own("532,10,20,30,40,0.3"))));
+  EXPECT_FALSE(has_uncertainty(samples_in(own("532,10,20,30,40,0.3"))[0]));
+}
+
+TEST(Samples, WithUncertaintiesAreWrittenAndReadTheSame) {
+  const std::vector<Sample> samples = samples_in(with_columns(uncertainty_names, uncertainty_values));
+  std::ostringstream out;
+  write_samples(out, samples);
+  EXPECT_NE(out.str().find(std::string("m44") + uncertainty_names + "\n"), std::string::npos);
+  EXPECT_EQ(samples_in(out.str())[0].uncertainty, samples[0].uncertainty);
+}
+
+TEST(Samples, OfWhichOnlySomeHaveUncertaintiesAreNotWritten) {
+  const Folder folder;
+  const std::vector<Sample> samples{samples_in(with_columns(uncertainty_names, uncertainty_values))[0],
+                                    samples_in(own("532,10,20,30,40,0.3"))[0]};
+  EXPECT_EQ(message_of([&] { write_samples(folder / "s.csv", samples); }),
+            "write_samples: sample 2 has no uncertainties, but others have");
+  EXPECT_EQ(folder.files(), 0);
+}
+
+TEST(Samples, WithUncertaintiesThatAreWrongAreRefusedWithFileLineAndValue) {
+  const auto refusal = [](const std::string& names, const std::string& values) {
+    return complaint([&] { samples_in(with_columns(names, values)); });
+  };
+  const std::string names = uncertainty_names, values = uncertainty_values;
+  EXPECT_TRUE(says(refusal(",u_f11", ",0.1"), {"d.csv:1: column u_f11, but no u_m12: ", "all sixteen"}));
+  EXPECT_TRUE(says(refusal(names.substr(6), values.substr(5)), {"d.csv:1: column u_m12, but no u_f11: "}));
+  EXPECT_TRUE(
+      says(refusal(names, values.substr(0, values.rfind(',')) + ",-0.1"), {"d.csv:2: u_m44: -0.1: ", "negative"}));
+  EXPECT_TRUE(says(refusal(names, values.substr(0, values.rfind(',')) + ",inf"), {"d.csv:2: u_m44: 'inf'"}));
 }
 
 TEST(Samples, ArePublishedAtFourWavelengthsWithSixIncidentAngles) {

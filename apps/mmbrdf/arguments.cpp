@@ -171,16 +171,26 @@ Grid grid_from(const std::string& text) {
 }
 
 Weights weights_from(const std::string& name) {
-  for (const Weights weights : {Weights::none, Weights::speckle, Weights::estimated}) {
+  for (const Weights weights : {Weights::none, Weights::speckle, Weights::data, Weights::estimated}) {
     if (name == to_string(weights)) {
       return weights;
     }
   }
-  throw wrong(name, "none, speckle or estimated");
+  throw wrong(name, "none, speckle, data or estimated");
 }
 
 std::string to_string(Weights weights) {
-  return weights == Weights::none ? "none" : weights == Weights::speckle ? "speckle" : "estimated";
+  switch (weights) {
+    case Weights::none:
+      return "none";
+    case Weights::speckle:
+      return "speckle";
+    case Weights::data:
+      return "data";
+    case Weights::estimated:
+      return "estimated";
+  }
+  throw std::invalid_argument("Weights: no weights have the number " + std::to_string(static_cast<int>(weights)));
 }
 
 Frame frame_from(const std::string& name) {
@@ -272,9 +282,10 @@ void add_basis_option(CLI::App& app, Basis& basis) {
 }
 
 void add_weights_option(CLI::App& app, Weights& weights) {
-  add_option(
-      app, "--weights", weights, weights_from, "NAME",
-      "none, speckle: cos(theta_r)/cos(theta_i), or estimated\nfrom what an unweighted fit leaves of 14 and 41 [none]");
+  add_option(app, "--weights", weights, weights_from, "NAME",
+             "none, speckle: cos(theta_r)/cos(theta_i), data: 1/u^2 of the\nsamples' own uncertainties, or estimated "
+             "from what an\n"
+             "unweighted fit leaves of 14 and 41 [none]");
 }
 
 }  // namespace mmbrdf::program

@@ -11,7 +11,7 @@ namespace mmbrdf::program {
 
 struct FitReport {
   std::string data;     ///< name of the data file
-  std::string weights;  ///< none, speckle or estimated
+  std::string weights;  ///< none, speckle, data or estimated
   long rows;
   const FitResult& result;
 };

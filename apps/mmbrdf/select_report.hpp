@@ -13,7 +13,7 @@ namespace mmbrdf::program {
 
 struct SelectReport {
   std::string data;     ///< name of the data file
-  std::string weights;  ///< none or speckle
+  std::string weights;  ///< none, speckle, data or estimated
   long rows;
   std::vector<double> wavelengths;  ///< micrometres
   const SelectionOptions& options;

@@ -17,7 +17,12 @@ struct Sample {
   Geometry geometry;
   double f11 = 0;      ///< unpolarized BRDF in sr⁻¹
   Mueller normalized;  ///< f_ij / f11; element 11 is 1
+  /// Standard uncertainties: element 11 of f11 in sr⁻¹, the others of f_ij / f11. 0: not known.
+  Mueller uncertainty{};
 };
+
+/// Whether the uncertainty of any of its elements is known.
+bool has_uncertainty(const Sample& sample);
 
 /// The distinct wavelengths, rising. Values are distinct if they differ by more than wavelength_resolution.
 /// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive and finite.
@@ -29,10 +34,12 @@ inline constexpr double wavelength_resolution = 1e-7;  ///< micrometres; files g
 std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<const double> wavelengths);
 
 /// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive, an invalid
-/// geometry or a number that is not finite.
+/// geometry, a number that is not finite or an uncertainty below 0.
 void require_valid(std::span<const Sample> samples);
 
-/// The sample as an isotropic specimen would give it at phi_i = 0: in axes turned with the plane of incidence.
+/// The sample as an isotropic specimen would give it at phi_i = 0: in axes turned with the plane of incidence. Its
+/// uncertainties are turned as if the errors of its elements were uncorrelated, as a sample holds no correlations:
+/// u'² = Σ c² u², c the coefficients of the rotation. Where one that counts is not known, neither is the result.
 Sample at_zero_azimuth(const Sample& sample);
 
 /// The group of each value, counted from 0 in rising order: values belong together if no gap between them exceeds the

@@ -46,6 +46,8 @@ enum class Weights {
   none,  ///< every row counts the same
   speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1).
             ///< f11 is then fitted twice: the first, unweighted fit tells what σ is relative to.
+  data,  ///< 1/u² of the samples' own uncertainties u, all of which must be known: data_weights(), with the reflectance
+         ///< of the first, unweighted fit.
   estimated,  ///< 1/σ² of the law that estimate_noise() finds, at each wavelength, in what the first fit leaves of the
               ///< elements 14 and 41; as above otherwise.
 };
@@ -167,6 +169,12 @@ std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model&
 
 /// The same for the speckle law with scale 1: w = cos θr / cos θi.
 std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model);
+
+/// 1/u² of the samples' uncertainties: for f11 / reflectance (reflectance / u)², and turned as at_zero_azimuth() turns
+/// them where the basis turns samples. Throws std::invalid_argument, with the sample's number, for an uncertainty that
+/// is not known.
+std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& basis = {},
+                                  const ReflectanceTable& reflectance = {});
 
 /// Measured − model for each sample, as in FitResult.
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,

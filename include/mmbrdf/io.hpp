@@ -104,17 +104,19 @@ class SampleReader {
   CsvReader reader_;
   GeometryColumns geometry_;
   int m11_ = -1;
-  std::array<int, 16> elements_;
+  std::array<int, 16> elements_, uncertainties_;  // columns; −1: none
   long rows_ = 0;
 };
 
 /// Samples in the layout of the published data, or with the project's own column names (docs/formats.md). Throws
-/// std::runtime_error, as the classes above do, and for a file without rows or with elements that are not normalised.
+/// std::runtime_error, as the classes above do, for a file without rows or with elements that are not normalised, and
+/// for uncertainties that are negative or not there for all elements. Without their columns they are 0, not known.
 std::vector<Sample> read_samples(const std::string& path);
 std::vector<Sample> read_samples(std::istream& in, const std::string& name);
 
 /// The project's own columns: wavelength_nm, angles in degrees, f11, m12 … m44, with as many digits as it takes:
-/// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place.
+/// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place. Behind them u_f11, u_m12
+/// … u_m44, if the samples have uncertainties. Throws std::invalid_argument for invalid samples, or if only some have.
 void write_samples(const std::string& path, std::span<const Sample> samples);
 void write_samples(std::ostream& out, std::span<const Sample> samples);
 

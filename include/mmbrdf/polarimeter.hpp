@@ -29,7 +29,7 @@ struct Polarimeter {
 Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuths);
 
 /// Ratio of the largest to the smallest of the four singular values: √3 at best; infinite for fewer than four
-/// independent states.
+/// independent states, or for one that is not finite.
 double condition_number(std::span<const Stokes> states);
 
 /// Azimuths of a retarder behind a polarizer that make this condition number smallest, rising and symmetric about 0, in
