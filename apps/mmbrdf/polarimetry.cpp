@@ -53,7 +53,7 @@ void print_quality(const Calibration& c) {
              format("generator %.3f, analyzer %.3f (best 1.732)", c.generator_condition, c.analyzer_condition));
   print_merit(c.figure_of_merit);
   print_line("misfit", format("s16/s15 %.3e, identifiability s15/s1 %.3e", c.singular_ratio, c.identifiability));
-  print_line("chi^2/dof", c.degrees_of_freedom > 0
+  print_line("chi^2/dof", !c.covariance.empty()
                               ? format("%.3f, %ld degrees of freedom",
                                        c.chi_squared / static_cast<double>(c.degrees_of_freedom), c.degrees_of_freedom)
                               : "not refined");
