@@ -38,8 +38,11 @@ using calibration::Unknowns;
 constexpr std::array<const char*, 3> kind_names{"empty", "polarizer", "wafer"};
 
 void require_valid(const CalibrationOptions& options) {
-  if (options.generator_states < 4 || options.analyzer_states < 4)
-    throw std::invalid_argument("calibration: fewer than four states");
+  for (const auto& [arm, states] :
+       {std::pair("generator", options.generator_states), {"analyzer", options.analyzer_states}})
+    if (states < 4)
+      throw std::invalid_argument("calibration: " + std::to_string(states) + " states of the " + arm +
+                                  ", four are needed");
   if (options.dial_sense != 1 && options.dial_sense != -1)
     throw std::invalid_argument("calibration: a dial sense of " + std::to_string(options.dial_sense) + ", not 1 or -1");
   if (!(options.extinction >= 0 && options.extinction < 1))

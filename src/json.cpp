@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "json_field.hpp"
+#include "json_text.hpp"
 #include "mmbrdf/io.hpp"
 #include "numbers.hpp"
 
@@ -33,16 +33,6 @@ ordered_json units() {
 
 // ---- reading --------------------------------------------------------------------------------------------------------
 
-/// Runs a check of the library on what a field says; its complaint becomes one about the field.
-template <class Check>
-auto checked(const Field& field, Check check) {
-  try {
-    return check();
-  } catch (const std::invalid_argument& e) {
-    field.refuse(e.what());
-  }
-}
-
 Mode read_mode(const Field& field, Family family) {
   const std::vector<Field> items = field.items();
   if (items.size() != 5) field.refuse("must be [function, n, m, k, l]");
@@ -67,25 +57,6 @@ Block read_block(const Field& field, Family family) {
   if (field["elements"].text() != canonical[0].name)
     field["elements"].refuse(field["elements"].shown() + ", but the modes feed " + canonical[0].name);
   return std::move(canonical[0]);
-}
-
-void require_count(const Field& field, std::size_t count, std::size_t needed, const std::string& what) {
-  if (count != needed)
-    field.refuse(std::to_string(count) + " numbers in place of " + std::to_string(needed) + ", " + what);
-}
-
-/// The square matrix from its lower triangle.
-std::vector<double> read_covariance(const Field& field, std::size_t size) {
-  const std::vector<double> triangle = field.numbers();
-  require_count(field, triangle.size(), size * (size + 1) / 2, "the lower triangle");
-  std::vector<double> square(size * size);
-  auto value = triangle.begin();
-  for (std::size_t row = 0; row < size; ++row)
-    for (std::size_t column = 0; column <= row; ++column)
-      square[row * size + column] = square[column * size + row] = *value++;
-  for (std::size_t i = 0; i < size; ++i)
-    if (square[i * size + i] < 0) field.refuse("variance " + std::to_string(i) + " is negative");
-  return square;
 }
 
 FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
@@ -194,95 +165,11 @@ Model read_model(const Field& root) {
   return model;
 }
 
-/// The line of a position, counted from 1; the end of the file belongs to its last line.
-std::string line_of(std::string_view text, std::size_t position) {
-  while (text.ends_with('\n') || text.ends_with('\r')) text.remove_suffix(1);
-  return std::to_string(1 + std::ranges::count(text.substr(0, position), '\n'));
-}
-
-json parsed(std::string_view text, const std::string& name) {
-  std::vector<std::set<std::string>> open;  // names of the fields of each object that has begun
-  const auto refuse_repetition = [&](int, json::parse_event_t event, json& value) {
-    if (event == json::parse_event_t::object_start) open.emplace_back();
-    if (event == json::parse_event_t::object_end) open.pop_back();
-    if (event == json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
-      throw std::runtime_error(name + ": the field " + in_quotes(value.get<std::string>()) + " is there twice");
-    return true;
-  };
-  try {
-    return json::parse(text, refuse_repetition);
-  } catch (const json::parse_error& e) {  // "[…] parse error at line 1, column 5: what is wrong"
-    const std::string what = e.what();
-    const std::size_t begin = what.find(": ");
-    throw std::runtime_error(name + ":" + line_of(text, e.byte) + ": not JSON: " + what.substr(begin + 2, 200));
-  } catch (const json::out_of_range& e) {  // "[…] number overflow parsing '1e999'"
-    const std::string what = e.what();
-    const std::size_t begin = what.find('\'') + 1;
-    const std::string token = what.substr(begin, what.rfind('\'') - begin);
-    throw std::runtime_error(name + ":" + line_of(text, text.find(token)) + ": " + in_quotes(token) +
-                             " is beyond the range of double precision");
-  }
-}
-
 // ---- writing --------------------------------------------------------------------------------------------------------
-
-bool fits_in_a_line(const ordered_json& value) {
-  return value.is_primitive() ||
-         (value.is_array() && value.size() <= 5 &&
-          std::all_of(value.begin(), value.end(), [](const auto& v) { return v.is_primitive(); }));
-}
-
-void print(std::string& out, const ordered_json& value, std::size_t indent);
-
-/// Array elements one after the other, in lines of at most 120 characters.
-void print_filled(std::string& out, const ordered_json& array, std::size_t indent) {
-  constexpr std::size_t width = 120;
-  std::size_t column = out.size() - (out.rfind('\n') + 1) + 1;
-  out += '[';
-  for (std::size_t i = 0; i < array.size(); ++i) {
-    const std::string text = array[i].dump() + (i + 1 < array.size() ? "," : "]");
-    if (column + 1 + text.size() > width) {
-      out += '\n' + std::string(indent + 2, ' ');
-      column = indent + 2;
-    } else if (i > 0) {
-      out += ' ';
-      ++column;
-    }
-    out += text;
-    column += text.size();
-  }
-  if (array.empty()) out += ']';
-}
-
-void print(std::string& out, const ordered_json& value, std::size_t indent) {
-  if (value.is_primitive()) {
-    out += value.dump();
-  } else if (value.is_array() && std::all_of(value.begin(), value.end(), fits_in_a_line)) {
-    print_filled(out, value, indent);
-  } else {
-    out += value.is_array() ? '[' : '{';
-    const char* separator = "\n";
-    for (const auto& [name, child] : value.items()) {
-      out += separator + std::string(indent + 2, ' ') + (value.is_array() ? "" : ordered_json(name).dump() + ": ");
-      print(out, child, indent + 2);
-      separator = ",\n";
-    }
-    if (!value.empty()) out += '\n' + std::string(indent, ' ');
-    out += value.is_array() ? ']' : '}';
-  }
-}
 
 void require_finite(const std::vector<double>& values, const std::string& what) {
   if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
     throw std::invalid_argument("to_json: " + what + " must be finite");
-}
-
-/// Of a square matrix, row by row with the diagonal.
-std::vector<double> lower_triangle(const std::vector<double>& square, std::size_t size) {
-  std::vector<double> triangle;
-  for (std::size_t row = 0; row < size; ++row)
-    triangle.insert(triangle.end(), &square[row * size], &square[row * size] + row + 1);
-  return triangle;
 }
 
 ordered_json reflectance_json(const ReflectanceTable& table) {
@@ -336,16 +223,14 @@ ordered_json model_json(const Model& model) {
 }  // namespace
 
 Model model_from_json(std::string_view text, const std::string& name) {
-  const json root = parsed(text, name);
+  const json root = parsed_json(text, name);
   return read_model(Field(root, name));
 }
 
 std::string to_json(const Model& model) {
   require_valid(model);
   try {
-    std::string text;
-    print(text, model_json(model), 0);
-    return text + "\n";
+    return json_text(model_json(model));
   } catch (const json::exception& e) {  // text that is not UTF-8
     throw std::invalid_argument("to_json: name or provenance of the model: " + std::string(e.what()));
   }

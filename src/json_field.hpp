@@ -101,4 +101,41 @@ class Field {
   std::string path_;
 };
 
+/// Runs a check of the library on what a field says; its complaint becomes one about the field.
+template <class Check>
+auto checked(const Field& field, Check check) {
+  try {
+    return check();
+  } catch (const std::invalid_argument& e) {
+    field.refuse(e.what());
+  }
+}
+
+inline void require_count(const Field& field, std::size_t count, std::size_t needed, const std::string& what) {
+  if (count != needed)
+    field.refuse(std::to_string(count) + " numbers in place of " + std::to_string(needed) + ", " + what);
+}
+
+/// The square matrix from its lower triangle.
+inline std::vector<double> read_covariance(const Field& field, std::size_t size) {
+  const std::vector<double> triangle = field.numbers();
+  require_count(field, triangle.size(), size * (size + 1) / 2, "the lower triangle");
+  std::vector<double> square(size * size);
+  auto value = triangle.begin();
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column <= row; ++column)
+      square[row * size + column] = square[column * size + row] = *value++;
+  for (std::size_t i = 0; i < size; ++i)
+    if (square[i * size + i] < 0) field.refuse("variance " + std::to_string(i) + " is negative");
+  return square;
+}
+
+/// Of a square matrix, row by row with the diagonal.
+inline std::vector<double> lower_triangle(const std::vector<double>& square, std::size_t size) {
+  std::vector<double> triangle;
+  for (std::size_t row = 0; row < size; ++row)
+    triangle.insert(triangle.end(), &square[row * size], &square[row * size] + row + 1);
+  return triangle;
+}
+
 }  // namespace mmbrdf

@@ -214,6 +214,12 @@ Mueller standard_uncertainty(const MuellerCovariance& covariance) {
   return result;
 }
 
+MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to) {
+  require_valid(geometry, "change_frame");
+  const FrameAngles a = angles_to_xy(geometry, from), b = angles_to_xy(geometry, to);
+  return mapped(covariance, rotator(a.scattered - b.scattered), rotator(b.incident - a.incident));
+}
+
 PreparedUncertainty::PreparedUncertainty(std::shared_ptr<const Blocks> blocks) : blocks_(std::move(blocks)) {}
 
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation) {

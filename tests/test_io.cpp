@@ -10,6 +10,7 @@
 
 #include "cases.hpp"
 #include "files.hpp"
+#include "mmbrdf/readings.hpp"
 #include "published.hpp"
 
 namespace mmbrdf {
@@ -365,12 +366,21 @@ TEST(Formats, AreAsTheirExamplesInTheDocumentationShow) {
       examples.back() += line + "\n";
     inside_example = line.starts_with("```") ? line.size() > 3 : inside_example;
   }
-  ASSERT_EQ(examples.size(), 3U);
+  ASSERT_EQ(examples.size(), 5U);
   const auto samples = samples_in(examples[0]);
   ASSERT_EQ(samples.size(), 2U);
   EXPECT_TRUE(same({samples[0]}, {samples[1]}));
   EXPECT_EQ(to_coefficients_csv(coefficients_in(examples[1])), examples[1]);
   EXPECT_EQ(to_json(model_from_json(examples[2], "m.json")), examples[2]);
+  std::istringstream references(examples[3]), readings(examples[4]);
+  const ReferenceFile file = read_references(references, "r.csv");
+  ASSERT_EQ(file.references.size(), 2U);
+  EXPECT_DOUBLE_EQ(file.references[0].readings[0], 0.51 / 1.01);
+  RawReader reader(readings, "d.csv", {2, 1});
+  RawMeasurement measurement;
+  ASSERT_TRUE(reader.next(measurement));
+  EXPECT_EQ(measurement.readings, (std::vector<double>{3.1e-05, 2.9e-05}));
+  EXPECT_FALSE(reader.next(measurement));
 }
 
 }  // namespace

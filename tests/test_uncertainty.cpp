@@ -377,5 +377,25 @@ TEST(Uncertainty, NeedsACovarianceAndAValidQuestion) {
   EXPECT_THROW(u.directional_hemispherical_reflectance({radians(95), 0}), std::invalid_argument);
 }
 
+/// The covariance of the errors z · m, with z of variance 1, is m mᵀ: turned, that of the turned errors.
+TEST(Uncertainty, InAnotherFrameIsThatOfTheTurnedErrors) {
+  const auto of = [](const Mueller& errors) {
+    MuellerCovariance c;
+    for (std::size_t e = 0; e < 16; ++e)
+      for (std::size_t other = 0; other < 16; ++other) c(e, other) = errors.elements[e] * errors.elements[other];
+    return c;
+  };
+  const Geometry geometry{{radians(40), radians(20)}, {radians(60), radians(150)}};
+  Mueller errors;
+  for (std::size_t e = 0; e < 16; ++e) errors.elements[e] = std::sin(1.0 + 1.7 * static_cast<double>(e));
+  for (const Frame from : every_frame)
+    for (const Frame to : every_frame) {
+      const MuellerCovariance turned = change_frame(of(errors), geometry, from, to);
+      const MuellerCovariance expected = of(change_frame(errors, geometry, from, to));
+      for (std::size_t i = 0; i < 256; ++i) EXPECT_NEAR(turned.values[i], expected.values[i], 1e-14);  // rounding
+    }
+  EXPECT_THROW(change_frame(MuellerCovariance{}, {{-1, 0}, {0, 0}}, Frame::xy, Frame::sp), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace mmbrdf

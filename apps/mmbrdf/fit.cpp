@@ -3,6 +3,7 @@
 
 #include "mmbrdf/fit.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -11,6 +12,8 @@
 #include "command.hpp"
 #include "files.hpp"
 #include "fit_report.hpp"
+#include "mmbrdf/common_errors.hpp"
+#include "mmbrdf/readings.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {
@@ -18,7 +21,7 @@ namespace mmbrdf::program {
 namespace {
 
 struct Options {
-  std::string data, output, name, attribution;
+  std::string data, output, name, attribution, instrument;
   Basis basis;
   FitOptions fit;
   std::optional<std::vector<double>> wavelengths_nm;
@@ -40,6 +43,7 @@ void require_valid(const Options& options) {
     mmbrdf::require_valid(*options.fit.reflectance);
   }
   require_kept(options.data, options.output, "data");
+  require_kept(options.instrument, options.output, "instrument");
 }
 
 /// Says who made the model, from what and how.
@@ -48,7 +52,7 @@ void sign(Model& model, const Options& options, long rows, const CommandLine& li
   model.name = options.name.empty() ? origin.stem().string() : options.name;
   model.provenance["data"] = data_name(options.data);
   model.provenance["rows"] = std::to_string(rows);
-  model.provenance["command"] = line.text({options.data, options.output});
+  model.provenance["command"] = line.text({options.data, options.output, options.instrument});
   model.provenance["software"] = software();
   model.provenance["weights"] = to_string(options.weights);
   if (options.fit.covariance == Covariance::sandwich) {
@@ -90,9 +94,43 @@ void note_free_combinations(const FitResult& result) {
   }
 }
 
-/// Weights and sandwiches need a first fit, and with it all samples in memory.
+/// Weights and sandwiches need a first fit, and with it all samples in memory, and so do an instrument's errors.
 bool streams(const Options& options) {
-  return options.weights == Weights::none && options.fit.covariance == Covariance::residuals;
+  return options.weights == Weights::none && options.fit.covariance == Covariance::residuals &&
+         options.instrument.empty();
+}
+
+/// The weights that the fit had.
+std::vector<Mueller> weights_of(const FitResult& result, std::span<const Sample> samples, const Options& options) {
+  switch (options.weights) {
+    case Weights::speckle:
+      return speckle_weights(samples, result.model);
+    case Weights::data:
+      return data_weights(samples, options.basis, result.model.reflectance);
+    case Weights::estimated:
+      return noise_weights(samples, result.model, result.noise.front().law);
+    default:
+      return {};
+  }
+}
+
+/// Adds what the instrument is uncertain by, which is the same error in all its samples.
+void add_instrument(FitResult& result, std::span<const Sample> samples, const Options& options) {
+  const Calibration instrument = load_instrument(options.instrument);
+  const std::string name = base_name(options.instrument);
+  if (instrument.covariance.empty()) {
+    throw std::runtime_error(name + ": a linear calibration, without a covariance");
+  }
+  for (const Sample& sample : samples) {
+    if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution) {
+      throw std::runtime_error(name + ": of " + brief(nanometres(instrument.wavelength)) +
+                               " nm, but there are data at " + brief(nanometres(sample.wavelength)) +
+                               " nm; choose with --wavelength");
+    }
+  }
+  const Reduction reduction(instrument.polarimeter, instrument.covariance);
+  add_common_errors(result.model, samples, instrument_errors(reduction, samples), weights_of(result, samples, options));
+  result.model.provenance["instrument"] = name;
 }
 
 FitResult fitted(const Options& options, long& rows) {
@@ -107,7 +145,14 @@ FitResult fitted(const Options& options, long& rows) {
     }
   });
   try {
-    return streams(options) ? accumulator.solve(options.fit) : fit(all, options.basis, options.fit, options.weights);
+    if (streams(options)) {
+      return accumulator.solve(options.fit);
+    }
+    FitResult result = fit(all, options.basis, options.fit, options.weights);
+    if (!options.instrument.empty()) {
+      add_instrument(result, all, options);
+    }
+    return result;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(options.data) + ": " + plain_message(error));
   }
@@ -146,7 +191,7 @@ constexpr const char* footer =
     "together are fitted together, as a block. With several wavelengths, f11 is divided by each one's own reflectance\n"
     "at normal incidence, unless --reflectance gives it; the model keeps that table. Any number of rows takes the "
     "same\n"
-    "memory, but for --weights and --covariance sandwich.\n"
+    "memory, but for --weights, --covariance sandwich and --instrument.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf fit data.csv -o model.json\n"
@@ -167,6 +212,8 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_weights_option(app, o->weights);
   add_option(app, "--covariance", o->fit.covariance, covariance_from, "NAME",
              "residuals, or sandwich: for noise that is not as the weights say [residuals]");
+  add_file(app, "--instrument", o->instrument, "INSTRUMENT.json",
+           "Of mmbrdf calibrate: what it is uncertain by is added\nto the covariance, since all samples share it");
   app.add_flag(
       "--minimum-norm", o->fit.minimum_norm,
       "Accept data that do not determine every coefficient, and\ntake the smallest solution (germer2017: always)");

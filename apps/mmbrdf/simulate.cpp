@@ -10,16 +10,18 @@
 #include "files.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/simulation.hpp"
+#include "polarimetry.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
 
 struct Options {
-  std::string model, output;
-  std::optional<Grid> grid;
+  std::string model, output, raw;
+  Grid grid;
   std::optional<std::vector<double>> wavelengths_nm;
   double speckle = 0;
+  std::optional<double> reading_noise;
   unsigned long seed = 0;
 };
 
@@ -50,7 +52,30 @@ std::vector<double> wavelengths_of(const Model& model, const Options& options) {
 
 std::vector<Sample> simulated(const Model& model, const std::vector<double>& wavelengths, const Options& options) {
   try {
-    return simulate(model, wavelengths, geometries(*options.grid, options.seed), options.speckle, options.seed);
+    return simulate(model, wavelengths, geometries(options.grid, options.seed), options.speckle, options.seed);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
+  }
+}
+
+double relative_noise_from(const std::string& text) {
+  const ReadingNoise noise = noise_from(text);
+  if (noise.dark > 0 || noise.shot > 0) {
+    throw std::invalid_argument("\"" + text + "\": expected relative:Z");
+  }
+  return noise.relative;
+}
+
+void simulate_readings(const Options& options) {
+  const Model model = open_model(options.model);
+  const std::vector<double> wavelengths = wavelengths_of(model, options);
+  if (wavelengths.size() != 1) {
+    throw CLI::ValidationError("--raw", "an instrument is of one wavelength: give one with --wavelength");
+  }
+  RawSimulation raw{options.raw, RawSimulation{}.reading_noise, options.speckle, options.seed};
+  raw.reading_noise = options.reading_noise.value_or(raw.reading_noise);
+  try {
+    simulate_raw(model, wavelengths[0], geometries(options.grid, options.seed), raw);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
   }
@@ -77,22 +102,32 @@ constexpr const char* footer =
     "speckle:C is Gaussian noise of standard deviation C sqrt(cos(theta_i)/cos(theta_r)), relative for f11 and\n"
     "absolute for m_ij. The same seed gives the same file.\n"
     "\n"
-    "Example:\n"
-    "  mmbrdf simulate ptfe --grid germer2017 --noise speckle:0.006 --seed 1 -o data.csv";
+    "--raw writes what a goniometer with imperfections, four generator and four analyzer states would read:\n"
+    "DIR/references.csv and DIR/raw.csv, for mmbrdf calibrate and reduce. speckle:C is then that of each reading.\n"
+    "\n"
+    "Examples:\n"
+    "  mmbrdf simulate ptfe --grid germer2017 --noise speckle:0.006 --seed 1 -o data.csv\n"
+    "  mmbrdf simulate ptfe --wavelength 532 --raw measured";
 
 }  // namespace
 
 Run simulate_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->model);
-  add_option(app, "--grid", o->grid, grid_from, "GRID", "germer2017 or random:N (required)")->required();
+  add_option(app, "--grid", o->grid, grid_from, "GRID", "germer2017 or random:N [germer2017]");
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
              "Wavelengths in nm [those the model was fitted to]");
   add_option(app, "--noise", o->speckle, speckle_from, "NOISE", "speckle:C or none [none]");
   add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the random ones [0]");
   add_file(app, "-o,--output", o->output, "DATA.csv", "Where the samples go; - is standard output [-]");
+  CLI::Option* const raw =
+      add_output_file(app, "--raw", o->raw, "DIR", "Write readings of a polarimeter in this folder");
+  raw->excludes("--output");
+  add_option(app, "--reading-noise", o->reading_noise, relative_noise_from, "LAW",
+             "Of the readings of --raw [relative:0.001]")
+      ->needs(raw);
   app.footer(footer);
-  return [o] { simulate_data(*o); };
+  return [o] { o->raw.empty() ? simulate_data(*o) : simulate_readings(*o); };
 }
 
 }  // namespace mmbrdf::program

@@ -61,6 +61,9 @@ class CsvReader {
   /// "file:line: " + text, as an error to throw.
   [[nodiscard]] std::runtime_error error(const std::string& text) const;
 
+  /// Of the row, from 1.
+  long line() const { return line_number_; }
+
  private:
   bool read_line();
   bool read_row();

@@ -24,6 +24,10 @@ struct MuellerCovariance {
 /// Square roots of the diagonal.
 Mueller standard_uncertainty(const MuellerCovariance& covariance);
 
+/// The same in another frame, of all sixteen elements or of f11 and the normalised ones. Throws std::invalid_argument
+/// for an invalid geometry.
+MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to);
+
 /// Slopes of the sixteen elements of a matrix over the parameters of a model at one wavelength: 16 × parameters,
 /// row-major, an element in each row. Sums of matrices have the sums of their gradients.
 struct MuellerGradient {

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf calibrate, mmbrdf instrument
+
+#include "mmbrdf/calibration.hpp"
+
+#include <memory>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "files.hpp"
+#include "mmbrdf/readings.hpp"
+#include "output.hpp"
+#include "polarimetry.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string references, output;
+  CalibrationOptions calibration;
+  bool linear = false;
+  double saturation = never_saturated;
+};
+
+int dial_sense(const std::string& text) {
+  if (text != "+1" && text != "1" && text != "-1") {
+    throw std::invalid_argument("\"" + text + "\": expected +1 or -1");
+  }
+  return text == "-1" ? -1 : 1;
+}
+
+double extinction(const std::string& text) {
+  const double value = number(text);
+  if (!(value >= 0 && value < 1)) {
+    throw std::invalid_argument("\"" + text + "\": expected 0 or more, and less than 1");
+  }
+  return value;
+}
+
+Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, const std::string& name) {
+  options.generator_states = file.states.generator;
+  options.analyzer_states = file.states.analyzer;
+  options.wavelength = file.wavelength;
+  try {
+    return calibrate(file.references, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(name + ": " + plain_message(error));
+  }
+}
+
+void calibrate_instrument(Options options, const CommandLine& line) {
+  require_kept(options.references, options.output, "references");
+  options.calibration.refine = !options.linear;
+  const std::string name = data_name(options.references);
+  ReferenceFile file;
+  read_input(options.references,
+             [&](std::istream& in, const std::string& path) { file = read_references(in, path, options.saturation); });
+  Calibration result = calibrated(file, options.calibration, name);
+  judge(result, name);
+  print_instrument(result);
+  result.provenance["data"] = name;
+  result.provenance["references"] = std::to_string(file.references.size());
+  result.provenance["command"] = line.text({options.references, options.output});
+  result.provenance["software"] = software();
+  if (!options.output.empty()) {
+    save_instrument(options.output, result);
+  }
+}
+
+constexpr const char* calibrate_footer =
+    "REFERENCES.csv has the columns wavelength_nm, reference (empty, polarizer or wafer), angle_deg (the polarizer's\n"
+    "dial, or the angle of incidence), number (tells measurements apart), generator_state, analyzer_state (from 1),\n"
+    "intensity, and if need be dark, monitor, gain, s_exceeds_p and delta_sign: a reading is\n"
+    "(intensity - dark) / (monitor gain).\n"
+    "\n"
+    "Needed are the arms aligned with nothing between them, a polarizer at several dial angles, and a coated wafer at\n"
+    "several angles of incidence. Which of the eight instruments that explain the readings it is follows from the "
+    "sense\n"
+    "of the dial and from the wafer: from its film, or from the columns s_exceeds_p and delta_sign (1 or -1). The "
+    "film\n"
+    "is N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE; SiO2 on Si at 532 nm is 1.4607,1.0,4.15,0.044.\n"
+    "\n"
+    "Condition numbers above 100 are refused, those above 10 get a warning, as does a figure of merit above 0.05.\n"
+    "\n"
+    "Example:\n"
+    "  mmbrdf calibrate references.csv --film 1.4607,1.0,4.15,0.044 -o instrument.json";
+
+constexpr const char* instrument_footer =
+    "The figure of merit is the root mean square of measured - expected over the matrices of the references, divided "
+    "by\n"
+    "element 11. s16/s15 is the misfit of the linear solution; the identifiability s15/s1 says how far the references\n"
+    "are from leaving a second one. u( ) are standard uncertainties. A reading is analyzer . M . generator.\n"
+    "\n"
+    "Example:\n"
+    "  mmbrdf instrument instrument.json";
+
+}  // namespace
+
+Run calibrate_command(CLI::App& app, const CommandLine& line) {
+  const auto o = std::make_shared<Options>();
+  add_file(app, "REFERENCES.csv", o->references, " ", "Readings of the references; - is standard input")->required();
+  add_output_file(app, "-o,--output", o->output, "INSTRUMENT.json", "Where the instrument goes");
+  add_option(app, "--film", o->calibration.film, film_from, "N,T,NS,KS", "The wafer: its film and substrate");
+  add_option(app, "--dial-sense", o->calibration.dial_sense, dial_sense, "SENSE",
+             "+1: the polarizer's azimuth grows with its dial; -1: it falls [+1]");
+  add_option(app, "--extinction", o->calibration.extinction, extinction, "E", "Of the polarizer, to start from [0]");
+  app.add_flag("--polarizer-phase", o->calibration.fit_polarizer_phase, "Fit the polarizer's phase, too");
+  app.add_flag("--linear", o->linear, "Eigenvalue method alone, without refinement and covariance");
+  add_reading_options(app, o->saturation, o->calibration.noise);
+  app.footer(calibrate_footer);
+  return [o, &line] { calibrate_instrument(*o, line); };
+}
+
+Run instrument_command(CLI::App& app, const CommandLine&) {
+  const auto path = std::make_shared<std::string>();
+  add_file(app, "INSTRUMENT.json", *path, " ", "Written by mmbrdf calibrate")->required();
+  app.footer(instrument_footer);
+  return [path] {
+    const Calibration instrument = load_instrument(*path);
+    judge(instrument, base_name(*path));
+    print_instrument(instrument);
+  };
+}
+
+}  // namespace mmbrdf::program

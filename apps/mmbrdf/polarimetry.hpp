@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the commands of a polarimeter share: options, the judgement of an instrument, and what is printed of it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "mmbrdf/readings.hpp"
+
+namespace mmbrdf::program {
+
+/// Condition numbers of the generator or analyzer states above which there is a warning, and a refusal. The best is
+/// 1.73.
+inline constexpr double doubtful_condition = 10, worst_condition = 100;
+
+/// Figure of merit above which references and instrument do not belong together.
+inline constexpr double doubtful_merit = 0.05;
+
+/// N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE
+Film film_from(const std::string& text);
+
+/// dark:X,shot:Y,relative:Z in any order; what is not named is 0.
+ReadingNoise noise_from(const std::string& text);
+
+double positive_number(const std::string& text);
+
+/// --saturation and --noise
+void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise);
+
+/// Throws std::runtime_error for an instrument that is worse than the limits above, and warns of a doubtful one.
+void judge(const Calibration& calibration, const std::string& name);
+
+/// On standard output.
+void print_instrument(const Calibration& calibration);
+
+/// simulate --raw
+struct RawSimulation {
+  std::string folder;
+  double reading_noise = 1e-3;  ///< relative
+  double speckle = 0;
+  unsigned long seed = 0;
+};
+
+/// Writes references.csv and raw.csv, and says what to do with them.
+void simulate_raw(const Model& model, double wavelength, std::span<const Geometry> geometries,
+                  const RawSimulation& options);
+
+}  // namespace mmbrdf::program

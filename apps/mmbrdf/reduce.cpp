@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf reduce
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "arguments.hpp"
+#include "command.hpp"
+#include "files.hpp"
+#include "mmbrdf/analysis.hpp"
+#include "mmbrdf/readings.hpp"
+#include "output.hpp"
+#include "polarimetry.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+/// Smallest coherency eigenvalue over f11 below which a matrix is called impossible: noise seldom gets there.
+constexpr double impossible_eigenvalue = -0.05;
+
+struct Options {
+  std::string raw, instrument, output;
+  std::optional<double> solid_angle;
+  double saturation = never_saturated;
+  ReadingNoise noise{.dark = 0, .shot = 0, .relative = 1e-3};
+  bool strict = false;
+};
+
+/// Of f11 in sr^-1 and of the normalised elements, in the xy frame, from the noise of the readings.
+Mueller uncertainty_of(const Reduction& reduction, const Mueller& m, const RawMeasurement& raw,
+                       const Options& options) {
+  std::vector<double> variances;
+  for (const double reading : raw.readings) {
+    variances.push_back(variance(options.noise, reading));
+  }
+  const MuellerCovariance c = normalized(reduction.from_readings(variances), m);
+  Mueller u = standard_uncertainty(change_frame(c, raw.geometry, Frame::scattering_plane, Frame::xy));
+  u.elements[0] /= *options.solid_angle * std::cos(raw.geometry.reflected.theta);
+  return u;
+}
+
+Sample reduced(const Reduction& reduction, const RawMeasurement& raw, const Options& options) {
+  const Mueller m = reduction.mueller(raw.readings);
+  Sample result = sample(m, raw.wavelength, raw.geometry, *options.solid_angle);
+  result.uncertainty = uncertainty_of(reduction, m, raw, options);
+  return result;
+}
+
+std::vector<Sample> reduced_file(const Calibration& instrument, const Options& options) {
+  const Polarimeter& p = instrument.polarimeter;
+  const Reduction reduction(p);
+  std::vector<Sample> samples;
+  read_input(options.raw, [&](std::istream& in, const std::string& name) {
+    RawReader reader(in, name, {p.generator.size(), p.analyzer.size()}, options.saturation);
+    for (RawMeasurement raw; reader.next(raw);) {
+      if (std::abs(raw.wavelength - instrument.wavelength) > wavelength_resolution) {
+        throw reader.error("wavelength_nm: " + brief(nanometres(raw.wavelength)) + ", but the instrument is of " +
+                           brief(nanometres(instrument.wavelength)));
+      }
+      try {
+        samples.push_back(reduced(reduction, raw, options));
+      } catch (const std::invalid_argument& error) {
+        throw reader.error(plain_message(error));
+      }
+    }
+  });
+  return samples;
+}
+
+/// Warns of matrices that nothing can have, or refuses them.
+void check_possible(const std::vector<Sample>& samples, const Options& options) {
+  long impossible = 0;
+  for (const Sample& sample : samples) {
+    impossible += coherency_eigenvalues(sample.normalized)[0] < impossible_eigenvalue ? 1 : 0;
+  }
+  if (impossible == 0) {
+    return;
+  }
+  const std::string message =
+      data_name(options.raw) + ": " + std::to_string(impossible) + " of " + std::to_string(samples.size()) +
+      " matrices cannot be physical: are generator and analyzer states exchanged, or is it another instrument?";
+  if (options.strict) {
+    throw std::runtime_error(message);
+  }
+  warn(message);
+}
+
+void reduce(const Options& options) {
+  require_kept(options.raw, options.output, "readings");
+  require_kept(options.instrument, options.output, "instrument");
+  const Calibration instrument = load_instrument(options.instrument);
+  judge(instrument, base_name(options.instrument));
+  const std::vector<Sample> samples = reduced_file(instrument, options);
+  check_possible(samples, options);
+  if (is_standard_output(options.output)) {
+    write_samples(std::cout, samples);
+  } else {
+    write_samples(options.output, samples);
+  }
+}
+
+constexpr const char* footer =
+    "RAW.csv has the columns wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, number (the rows of one\n"
+    "measurement are adjacent), generator_state, analyzer_state (from 1), intensity, and if need be dark, monitor,\n"
+    "gain. DATA.csv has samples, with standard uncertainties from the noise of the readings in columns u_f11 ...\n"
+    "u_m44. What the instrument is uncertain by is the same error in all samples and not in them: see mmbrdf\n"
+    "instrument. The solid angle is that of the receiver: f = M / (SR cos(theta_r)).\n"
+    "\n"
+    "Matrices with a coherency eigenvalue below -0.05 f11 get a warning; --strict refuses them.\n"
+    "\n"
+    "Example:\n"
+    "  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle 1.114e-4 -o data.csv";
+
+}  // namespace
+
+Run reduce_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_file(app, "RAW.csv", o->raw, " ", "Readings of a sample; - is standard input")->required();
+  add_file(app, "--instrument", o->instrument, "INSTRUMENT.json", "Written by mmbrdf calibrate (required)")->required();
+  add_option(app, "--solid-angle", o->solid_angle, positive_number, "SR", "Of the receiver, in sr (required)")
+      ->required();
+  add_reading_options(app, o->saturation, o->noise);
+  app.add_flag("--strict", o->strict, "Refuse matrices that cannot be physical");
+  add_file(app, "-o,--output", o->output, "DATA.csv", "Where the samples go; - is standard output [-]");
+  app.footer(footer);
+  return [o] { reduce(*o); };
+}
+
+}  // namespace mmbrdf::program

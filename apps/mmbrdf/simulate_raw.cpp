@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
+#include <iostream>
+
+#include "arguments.hpp"
+#include "mmbrdf/goniometer.hpp"
+#include "output.hpp"
+#include "polarimetry.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+constexpr int references_of_each_kind = 18;
+
+GoniometerOptions goniometer_options(const RawSimulation& options) {
+  GoniometerOptions result;
+  result.noise = {.dark = 0, .shot = 0, .relative = options.reading_noise};
+  result.speckle = options.speckle;
+  return result;
+}
+
+std::vector<RawMeasurement> measurements(const Goniometer& goniometer, const Model& model, double wavelength,
+                                         std::span<const Geometry> geometries, unsigned long seed) {
+  const auto readings = goniometer.readings(prepare(model, wavelength), geometries, seed);
+  std::vector<RawMeasurement> result;
+  for (std::size_t i = 0; i < geometries.size(); ++i) {
+    result.push_back({wavelength, geometries[i], readings[i]});
+  }
+  return result;
+}
+
+}  // namespace
+
+void simulate_raw(const Model& model, double wavelength, std::span<const Geometry> geometries,
+                  const RawSimulation& options) {
+  const Goniometer goniometer(goniometer_options(options), options.seed);
+  const Polarimeter& p = goniometer.polarimeter();
+  const StateCounts states{p.generator.size(), p.analyzer.size()};
+  const ReferenceFile references{wavelength, states,
+                                 goniometer.references(wavelength, references_of_each_kind, options.seed)};
+  const std::vector<RawMeasurement> raw = measurements(goniometer, model, wavelength, geometries, options.seed);
+  const std::filesystem::path folder = options.folder;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw std::runtime_error(options.folder + ": cannot be made: " + error.message());
+  }
+  write_references((folder / "references.csv").string(), references);
+  write_raw((folder / "raw.csv").string(), states, raw);
+  const Film& film = goniometer.options().film;
+  const std::string text = shortest(film.film_index.real()) + "," + shortest(film.thickness) + "," +
+                           shortest(film.substrate_index.real()) + "," + shortest(film.substrate_index.imag());
+  std::cout << "references.csv   " << references.references.size() << " references\n"
+            << "raw.csv          " << raw.size() << " geometries at " << brief(nanometres(wavelength)) << " nm\n"
+            << "\nNext:\n  cd " << options.folder << "\n  mmbrdf calibrate references.csv --film " << text
+            << " -o instrument.json\n  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle "
+            << shortest(goniometer.options().solid_angle)
+            << " -o data.csv\n  mmbrdf fit data.csv --weights data --instrument instrument.json -o model.json\n";
+}
+
+}  // namespace mmbrdf::program

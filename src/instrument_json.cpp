@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+#include "json_field.hpp"
+#include "json_text.hpp"
+#include "mmbrdf/readings.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* format_name = "mmbrdf instrument";
+
+ordered_json conventions() {
+  return {{"frame", "scattering_plane"},
+          {"axes", "e1 = perpendicular, e2 = parallel to the scattering plane, e1 x e2 = direction of propagation"},
+          {"stokes", "germer2017"},
+          {"s4", "left - right"},
+          {"time_factor", "exp(-i omega t)"},
+          {"readings", "row of analyzer . M . row of generator"}};
+}
+ordered_json units() { return {{"wavelength", "nm"}, {"angles", "deg"}, {"film_thickness", "um"}}; }
+
+// ---- reading --------------------------------------------------------------------------------------------------------
+
+Stokes read_state(const Field& field) {
+  const std::vector<double> values = field.numbers();
+  require_count(field, values.size(), 4, "a Stokes vector");
+  Stokes state;
+  std::copy(values.begin(), values.end(), state.begin());
+  return state;
+}
+
+std::vector<Stokes> read_states(const Field& field) {
+  std::vector<Stokes> states;
+  for (const Field& item : field.items()) states.push_back(read_state(item));
+  if (states.size() < 4) field.refuse(std::to_string(states.size()) + " states, at least four are needed");
+  return states;
+}
+
+double read_positive(const Field& field) {
+  if (!(field.number() > 0)) field.refuse(field.shown() + " is not positive");
+  return field.number();
+}
+
+double read_amount(const Field& field) {
+  if (field.number() < 0) field.refuse(field.shown() + " is negative");
+  return field.number();
+}
+
+FigureOfMerit read_figure_of_merit(const Field& field) {
+  field.require_no_other_than({"total", "corrected", "empty", "polarizer", "wafer", "elements"});
+  FigureOfMerit figure;
+  figure.total = read_amount(field["total"]);
+  figure.corrected = read_amount(field["corrected"]);
+  figure.empty = read_amount(field["empty"]);
+  figure.polarizer = read_amount(field["polarizer"]);
+  figure.wafer = read_amount(field["wafer"]);
+  const std::vector<Field> rows = field["elements"].items();
+  require_count(field["elements"], rows.size(), 4, "the rows");
+  for (std::size_t row = 0; row < 4; ++row) {
+    const std::vector<double> values = rows[row].numbers();
+    require_count(rows[row], values.size(), 4, "a row");
+    std::copy(values.begin(), values.end(), &figure.elements.elements[4 * row]);
+  }
+  return figure;
+}
+
+void require_this_format(const Field& root) {
+  if (root["format"].text() != format_name)
+    root["format"].refuse(root["format"].shown() + " is not '" + format_name + "'");
+  if (const int version = root["schema_version"].integer(); version != schema_version)
+    root["schema_version"].refuse(std::to_string(version) + ", but this version of mmbrdf reads " +
+                                  std::to_string(schema_version));
+  root.require_no_other_than({"format", "schema_version", "conventions", "units", "wavelength_nm", "generator",
+                              "analyzer", "covariance", "generator_condition", "analyzer_condition", "polarizer",
+                              "film_thickness_um", "scale_uncertainty", "figure_of_merit", "singular_ratio",
+                              "identifiability", "chi_squared", "degrees_of_freedom", "provenance"});
+  root["conventions"].require_equal(conventions());
+  root["units"].require_equal(units());
+}
+
+void read_polarizer(const Field& field, Calibration& calibration) {
+  field.require_no_other_than({"offset_deg", "extinction", "phase_deg"});
+  calibration.polarizer_offset = radians(field["offset_deg"].number());
+  calibration.extinction = read_amount(field["extinction"]);
+  calibration.polarizer_phase = radians(field["phase_deg"].number());
+}
+
+Calibration read_calibration(const Field& root) {
+  require_this_format(root);
+  Calibration c;
+  c.wavelength = read_positive(root["wavelength_nm"]) / 1000;
+  c.polarimeter.generator = read_states(root["generator"]);
+  c.polarimeter.analyzer = read_states(root["analyzer"]);
+  const std::size_t size = 4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size());
+  if (root.has("covariance")) c.covariance = read_covariance(root["covariance"], size);
+  c.generator_condition = read_positive(root["generator_condition"]);
+  c.analyzer_condition = read_positive(root["analyzer_condition"]);
+  read_polarizer(root["polarizer"], c);
+  if (root.has("film_thickness_um")) c.film_thickness = read_positive(root["film_thickness_um"]);
+  if (root.has("scale_uncertainty")) c.scale_uncertainty = read_amount(root["scale_uncertainty"]);
+  c.figure_of_merit = read_figure_of_merit(root["figure_of_merit"]);
+  c.singular_ratio = read_amount(root["singular_ratio"]);
+  c.identifiability = read_amount(root["identifiability"]);
+  c.chi_squared = read_amount(root["chi_squared"]);
+  c.degrees_of_freedom = root["degrees_of_freedom"].integer();
+  c.provenance = root["provenance"].texts();
+  checked(root, [&] { return Reduction(c.polarimeter, c.covariance); });
+  return c;
+}
+
+// ---- writing --------------------------------------------------------------------------------------------------------
+
+ordered_json states_json(const std::vector<Stokes>& states) {
+  ordered_json result = ordered_json::array();
+  for (const Stokes& s : states) result.push_back({s[0], s[1], s[2], s[3]});
+  return result;
+}
+
+ordered_json figure_json(const FigureOfMerit& figure) {
+  ordered_json rows = ordered_json::array();
+  for (std::size_t row = 0; row < 4; ++row) {
+    const double* const m = &figure.elements.elements[4 * row];
+    rows.push_back({m[0], m[1], m[2], m[3]});
+  }
+  return {{"total", figure.total},         {"corrected", figure.corrected}, {"empty", figure.empty},
+          {"polarizer", figure.polarizer}, {"wafer", figure.wafer},         {"elements", rows}};
+}
+
+ordered_json calibration_json(const Calibration& c) {
+  const std::size_t size = 4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size());
+  ordered_json root = {{"format", format_name},
+                       {"schema_version", schema_version},
+                       {"conventions", conventions()},
+                       {"units", units()},
+                       {"wavelength_nm", in_nanometres(c.wavelength)},
+                       {"generator", states_json(c.polarimeter.generator)},
+                       {"analyzer", states_json(c.polarimeter.analyzer)},
+                       {"generator_condition", c.generator_condition},
+                       {"analyzer_condition", c.analyzer_condition},
+                       {"polarizer",
+                        {{"offset_deg", in_degrees(c.polarizer_offset)},
+                         {"extinction", c.extinction},
+                         {"phase_deg", in_degrees(c.polarizer_phase)}}}};
+  if (c.film_thickness > 0) root["film_thickness_um"] = c.film_thickness;
+  if (c.scale_uncertainty > 0) root["scale_uncertainty"] = c.scale_uncertainty;
+  root["figure_of_merit"] = figure_json(c.figure_of_merit);
+  root["singular_ratio"] = c.singular_ratio;
+  root["identifiability"] = c.identifiability;
+  root["chi_squared"] = c.chi_squared;
+  root["degrees_of_freedom"] = c.degrees_of_freedom;
+  root["provenance"] = c.provenance;
+  if (!c.covariance.empty()) root["covariance"] = lower_triangle(c.covariance, size);
+  return root;
+}
+
+/// What is not finite would be written as null.
+void require_finite(const ordered_json& value, const std::string& name) {
+  if (value.is_number() && !std::isfinite(value.get<double>()))
+    throw std::invalid_argument("to_json: " + name + " of the instrument must be finite");
+  if (!value.is_structured()) return;
+  for (const auto& [key, child] : value.items()) require_finite(child, value.is_object() ? key : name);
+}
+
+}  // namespace
+
+Calibration calibration_from_json(std::string_view text, const std::string& name) {
+  const nlohmann::json root = parsed_json(text, name);
+  return read_calibration(Field(root, name));
+}
+
+std::string to_json(const Calibration& calibration) {
+  if (!(calibration.wavelength > 0)) throw std::invalid_argument("to_json: the wavelength must be positive");
+  Reduction(calibration.polarimeter, calibration.covariance);  // throws for what could not be used
+  const ordered_json root = calibration_json(calibration);
+  require_finite(root, "a number");
+  try {
+    return json_text(root);
+  } catch (const nlohmann::json::exception& e) {  // text that is not UTF-8
+    throw std::invalid_argument("to_json: provenance of the instrument: " + std::string(e.what()));
+  }
+}
+
+Calibration load_instrument(const std::string& path) {
+  std::ifstream in = open_input(path);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  if (in.bad()) throw std::runtime_error(path + ": read error");
+  return calibration_from_json(text, path);
+}
+
+void save_instrument(const std::string& path, const Calibration& calibration) {
+  const std::string text = to_json(calibration);
+  write_file(path, [&](std::ostream& out) { out << text; });
+}
+
+}  // namespace mmbrdf

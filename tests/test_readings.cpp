@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/readings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "files.hpp"
+#include "mmbrdf/goniometer.hpp"
+
+namespace mmbrdf {
+namespace {
+
+const StateCounts four{4, 4};
+
+Calibration any_calibration() {
+  Calibration c;
+  c.wavelength = 0.532;
+  const double azimuths[] = {-0.9, -0.26, 0.26, 0.9, 1.1};
+  c.polarimeter = ideal_polarimeter(radians(131.8), azimuths);
+  const std::size_t size = 40;
+  c.covariance.resize(size * size);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < size; ++j)
+      c.covariance[i * size + j] = 1e-9 * (i == j ? 1.1 : 0.01 / 3 / double(1 + i + j));
+  c.polarizer_offset = radians(23);
+  c.extinction = 1e-5 / 3;
+  c.polarizer_phase = 0.1;
+  c.film_thickness = 1.0 / 3;
+  c.figure_of_merit = {1e-3 / 3, 2e-3, 3e-3, 4e-3, 5e-3, {}};
+  c.figure_of_merit.elements(1, 2) = 1e-3 / 7;
+  c.singular_ratio = 0.01 / 3;
+  c.identifiability = 0.02;
+  c.generator_condition = condition_number(c.polarimeter.generator);
+  c.analyzer_condition = condition_number(c.polarimeter.analyzer);
+  c.chi_squared = 812.5;
+  c.degrees_of_freedom = 800;
+  c.provenance = {{"data", "references.csv"}};
+  return c;
+}
+
+/// References of a simulated instrument, one of each kind.
+ReferenceFile some_references() { return {0.532, four, Goniometer(GoniometerOptions{}, 1).references(0.532, 2, 3)}; }
+
+std::string references_csv(const std::string& rows) {
+  return "wavelength_nm,reference,number,angle_deg,generator_state,analyzer_state,intensity,dark,monitor,gain\n" + rows;
+}
+
+ReferenceFile parsed_references(const std::string& text, double saturation = never_saturated) {
+  std::istringstream in(text);
+  return read_references(in, "r.csv", saturation);
+}
+
+std::string raw_csv(const std::string& rows) {
+  return "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,number,generator_state,analyzer_state,intensity\n" +
+         rows;
+}
+
+std::vector<RawMeasurement> parsed_raw(const std::string& text, const StateCounts& states) {
+  std::istringstream in(text);
+  RawReader reader(in, "d.csv", states);
+  std::vector<RawMeasurement> all;
+  for (RawMeasurement one; reader.next(one);) all.push_back(one);
+  return all;
+}
+
+TEST(Readings, OfReferencesAreReadBackToTheSameBits) {
+  const ReferenceFile file = some_references();
+  std::ostringstream out;
+  write_references(out, file);
+  const ReferenceFile back = parsed_references(out.str());
+  EXPECT_EQ(back.wavelength, file.wavelength);
+  EXPECT_EQ(back.states, file.states);
+  ASSERT_EQ(back.references.size(), file.references.size());
+  for (std::size_t i = 0; i < file.references.size(); ++i) {
+    EXPECT_EQ(back.references[i].kind, file.references[i].kind);
+    EXPECT_NEAR(back.references[i].angle, file.references[i].angle, 1e-15);
+    EXPECT_EQ(back.references[i].readings, file.references[i].readings);
+    EXPECT_EQ(back.references[i].s_exceeds_p, file.references[i].s_exceeds_p);
+    EXPECT_EQ(back.references[i].delta_sign, file.references[i].delta_sign);
+  }
+}
+
+TEST(Readings, OfSamplesAreReadBackToTheSameBits) {
+  const StateCounts states{2, 3};
+  const std::vector<RawMeasurement> raw = {
+      {0.532, {{0.5, 0.1}, {1.0 / 3, 2}}, {0.1, 0.2, 0.3, 1.0 / 3, 0.5, 0.6}},
+      {0.532, {{0.5, 0.1}, {0.7, 2}}, {1, 2, 3, 4, 5, 6}},
+  };
+  std::ostringstream out;
+  write_raw(out, states, raw);
+  const std::vector<RawMeasurement> back = parsed_raw(out.str(), states);
+  ASSERT_EQ(back.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(back[i].wavelength, raw[i].wavelength);
+    EXPECT_EQ(back[i].readings, raw[i].readings);
+    EXPECT_NEAR(back[i].geometry.reflected.theta, raw[i].geometry.reflected.theta, 1e-15);
+  }
+}
+
+TEST(Readings, AreWhatIsLeftOfAnIntensityAndMayStandInAnyOrder) {
+  const ReferenceFile file =
+      parsed_references(references_csv("532,empty,7,0,2,1,5,1,2,4\n"
+                                       "532,wafer,8,30,1,1,3,0,1,1\n"
+                                       "532,empty,7,0,1,1,3,1,2,1\n"
+                                       "532,wafer,8,30,2,1,4,0,1,1\n"));
+  EXPECT_EQ(file.states, (StateCounts{2, 1}));
+  ASSERT_EQ(file.references.size(), 2u);
+  EXPECT_EQ(file.references[0].readings, (std::vector<double>{1, 0.5}));  // (3 − 1) / 2, (5 − 1) / (2 · 4)
+  EXPECT_EQ(file.references[1].readings, (std::vector<double>{3, 4}));
+}
+
+TEST(Readings, OfReferencesThatCannotBeAreRefusedWithTheirLine) {
+  const std::string good = "532,empty,1,0,1,1,3,0,1,1\n";
+  const auto complains = [&](const std::string& rows) {
+    return complaint([&] { parsed_references(references_csv(good + rows), 10); });
+  };
+  EXPECT_TRUE(says(complains("532,empty,1,0,1,1,3,0,1,1\n"), {"r.csv:3: measurement 1", "a second", "in line 2"}));
+  EXPECT_TRUE(says(complains("532,empty,1,0,2,2,3,0,1,1\n"), {"r.csv:3: measurement 1", "no reading of generator"}));
+  EXPECT_TRUE(says(complains("532,empty,1,0,2,1,10,0,1,1\n"), {"r.csv:3: intensity: 10 is saturated"}));
+  EXPECT_TRUE(says(complains("532,empty,1,0,2,1,1,1.5,1,1\n"), {"r.csv:3: intensity: 1 is below dark 1.5"}));
+  EXPECT_TRUE(says(complains("532,empty,1,0,2,1,1,0,0,1\n"), {"r.csv:3: monitor: 0 is not positive"}));
+  EXPECT_TRUE(says(complains("633,empty,2,0,1,1,1,0,1,1\n"), {"r.csv:3: wavelength_nm: 633, but 532 in line 2"}));
+  EXPECT_TRUE(says(complains("532,mirror,2,0,1,1,1,0,1,1\n"), {"r.csv:3: reference: 'mirror'"}));
+  EXPECT_TRUE(says(complains("532,wafer,2,90,1,1,1,0,1,1\n"), {"r.csv:3: angle_deg: 90"}));
+  EXPECT_TRUE(says(complains("532,empty,1.5,0,1,1,1,0,1,1\n"), {"r.csv:3: number: 1.5 is not an integer"}));
+  EXPECT_TRUE(says(complains("532,empty,2,0,0,1,1,0,1,1\n"), {"r.csv:3: generator_state: 0"}));
+  EXPECT_TRUE(says(complains("532,polarizer,1,0,2,1,1,0,1,1\n"), {"r.csv:3: measurement 1: another reference", "2"}));
+  EXPECT_TRUE(says(complaint([&] { parsed_references(references_csv("")); }), {"r.csv: no readings"}));
+  EXPECT_TRUE(says(complaint([&] { parsed_references("wavelength_nm,reference\n"); }), {"r.csv:1: no column"}));
+}
+
+TEST(Readings, OfSamplesThatCannotBeAreRefusedWithTheirLine) {
+  const std::string good = "532,45,0,30,180,1,1,1,3\n";
+  const auto complains = [&](const std::string& rows) {
+    return complaint([&] { parsed_raw(raw_csv(good + rows), {2, 1}); });
+  };
+  EXPECT_EQ(complains("532,45,0,30,180,1,2,1,3\n"), "");
+  EXPECT_TRUE(
+      says(complains("532,45,0,30,180,2,2,1,3\n"), {"d.csv:2: measurement 1: no reading of generator state 2"}));
+  EXPECT_TRUE(says(complains("532,45,0,30,180,1,3,1,3\n"), {"d.csv:3: generator state 3", "the instrument has 2"}));
+  EXPECT_TRUE(says(complains("532,45,0,31,180,1,2,1,3\n"), {"d.csv:3: measurement 1: another direction", "line 2"}));
+  EXPECT_TRUE(says(complains("532,45,0,30,180,1,1,1,3\n"), {"d.csv:3: measurement 1: a second", "in line 2"}));
+  EXPECT_TRUE(says(complains("532,45,0,30,180,1,2,1,-3\n"), {"d.csv:3: intensity: -3 is negative"}));
+  EXPECT_TRUE(says(complaint([&] { parsed_raw(raw_csv(""), {2, 1}); }), {"d.csv: no readings"}));
+}
+
+TEST(Readings, OfAnotherNumberThanTheStatesAreNotWritten) {
+  std::ostringstream out;
+  ReferenceFile file = some_references();
+  file.references[1].readings.pop_back();
+  EXPECT_THROW(write_references(out, file), std::invalid_argument);
+  const std::vector<RawMeasurement> raw = {{0.532, {}, {1, 2, 3}}};
+  EXPECT_THROW(write_raw(out, {2, 1}, raw), std::invalid_argument);
+}
+
+TEST(Instrument, IsReadBackFromItsFileToTheSameBits) {
+  const Calibration c = any_calibration();
+  const Folder folder;
+  save_instrument(folder / "i.json", c);
+  const Calibration back = load_instrument(folder / "i.json");
+  EXPECT_EQ(back.wavelength, c.wavelength);
+  EXPECT_EQ(back.polarimeter.generator, c.polarimeter.generator);
+  EXPECT_EQ(back.polarimeter.analyzer, c.polarimeter.analyzer);
+  EXPECT_EQ(back.covariance, c.covariance);
+  EXPECT_NEAR(back.polarizer_offset, c.polarizer_offset, 1e-15);
+  EXPECT_NEAR(back.polarizer_phase, c.polarizer_phase, 1e-15);
+  EXPECT_EQ(back.extinction, c.extinction);
+  EXPECT_EQ(back.film_thickness, c.film_thickness);
+  EXPECT_EQ(back.figure_of_merit.total, c.figure_of_merit.total);
+  EXPECT_EQ(back.figure_of_merit.wafer, c.figure_of_merit.wafer);
+  EXPECT_EQ(back.figure_of_merit.elements.elements, c.figure_of_merit.elements.elements);
+  EXPECT_EQ(back.identifiability, c.identifiability);
+  EXPECT_EQ(back.chi_squared, c.chi_squared);
+  EXPECT_EQ(back.degrees_of_freedom, c.degrees_of_freedom);
+  EXPECT_EQ(back.provenance, c.provenance);
+  EXPECT_EQ(to_json(back), to_json(c));
+}
+
+TEST(Instrument, ThatCannotBeIsRefusedWithItsField) {
+  const std::string text = to_json(any_calibration());
+  const auto complains = [&](const std::string& what, const std::string& with) {
+    std::string bad = text;
+    bad.replace(bad.find(what), what.size(), with);
+    return complaint([&] { calibration_from_json(bad, "i.json"); });
+  };
+  EXPECT_TRUE(says(complains("mmbrdf instrument", "mmbrdf model"), {"i.json: format: 'mmbrdf model'"}));
+  EXPECT_TRUE(says(complains("532.0", "-1"), {"i.json: wavelength_nm: -1 is not positive"}));
+  EXPECT_TRUE(says(complains("\"scattering_plane\"", "\"xy\""), {"i.json: conventions.frame: 'xy'"}));
+  EXPECT_TRUE(says(complains("\"singular_ratio\"", "\"singular\""), {"i.json: singular: unknown field"}));
+  EXPECT_TRUE(says(complains("\"generator\": [", "\"generator\": [[1, 0, 0],"), {"i.json: generator[0]: 3 numbers"}));
+  EXPECT_TRUE(says(complains("\"covariance\": [", "\"covariance\": [1, "), {"i.json: covariance: 821 numbers"}));
+}
+
+TEST(Instrument, WithWhatIsNotFiniteIsNotWritten) {
+  Calibration c = any_calibration();
+  c.generator_condition = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(to_json(c), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mmbrdf
