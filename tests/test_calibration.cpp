@@ -303,7 +303,7 @@ TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
 }
 
 // With gains that change by 2 % from one reference to the next, the mean of 18 is known to 0.5 %, and says so.
-TEST(Calibration, KnowsHowUncertainItsScaleIs) {
+TEST(Calibration, KnowsHowUncertainItsScaleIsFromTheScatterOfTheEmptyReferences) {
   GoniometerOptions made = quiet();
   made.gain_change = 0.02;
   made.noise.relative = 1e-3;
