@@ -198,6 +198,9 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
     result.scale_uncertainty = scale_uncertainty(unknowns, references);
     add_scale(result.covariance, unknowns.analyzer, unknowns.generator.size(), result.scale_uncertainty);
     result.chi_squared = refinement.chi_squared;
+    if (!std::isfinite(refinement.chi_squared) ||
+        !std::all_of(result.covariance.begin(), result.covariance.end(), [](double c) { return std::isfinite(c); }))
+      throw std::invalid_argument("the refinement leaves no finite numbers: are readings and noise of one scale?");
   }
   result.polarimeter = {states(unknowns.generator), states(unknowns.analyzer)};
   result.polarizer_offset = unknowns.offset - std::numbers::pi * std::floor(unknowns.offset / std::numbers::pi);

@@ -180,6 +180,11 @@ void find_wafers(Unknowns& unknowns, std::span<const Reference> references, std:
     const double start = film->thickness;
     if (start > 0) film->thickness = scanned(misfit, 0.8 * start, 1.2 * start, 400, 1e-9 * start);
     unknowns.film_thickness = film->thickness;
+    const double off = std::sqrt(misfit(film->thickness) / (2 * static_cast<double>(wafers.size())));
+    if (!(off < film_tolerance))
+      throw std::invalid_argument("the film is not that of the wafers: at its best thickness, " +
+                                  shortest(film->thickness) + " um, psi and delta are off by " +
+                                  shortest(degrees(off)) + " degrees rms");
   }
   std::size_t next = 0;
   for (std::size_t i = 0; i < references.size(); ++i)

@@ -51,6 +51,7 @@ Polarimeter made(const GoniometerOptions& o, std::mt19937_64& engine) {
   const double s2 = 0.5 * o.imperfections.stray * normal(engine), s3 = 0.5 * o.imperfections.stray * normal(engine);
   for (const Mueller& plate : plates(o, engine)) {
     Stokes state = transpose(plate) * Stokes{0.5, 0.5, 0, 0};
+    state[0] += std::hypot(s2, s3);  // no state responds to less than nothing
     state[1] += s2;
     state[2] += s3;
     result.analyzer.push_back(state);

@@ -290,6 +290,18 @@ TEST(Calibration, SaysWhatIsMissing) {
             "each");
 }
 
+// It is the film that tells which of the eight instruments it is: a wrong one must not pass.
+TEST(Calibration, RefusesAFilmThatIsNotThatOfTheWafers) {
+  const Goniometer goniometer(quiet(), 1);
+  const auto references = goniometer.references(wavelength, 18, 2);
+  for (const Film& wrong :
+       {Film{1.4607, 0.5, {4.15, 0.044}}, Film{1.4607, 1.4, {4.15, 0.044}}, Film{1.5, 1, {1.5, 0}}}) {
+    CalibrationOptions options = with_film();
+    options.film = wrong;
+    EXPECT_TRUE(refusal(references, options).starts_with("the film is not that of the wafers: "));
+  }
+}
+
 TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
   const Goniometer goniometer(quiet(), 1);
   auto references = goniometer.references(wavelength, 18, 2);
@@ -298,8 +310,10 @@ TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
       r.readings = readings(goniometer.polarimeter(), polarizer(0));
       r.s_exceeds_p = r.delta_sign = 1;
     }
-  EXPECT_TRUE(
-      refusal(references, with_film()).starts_with("the references leave more than one instrument: nothing ties "));
+  CalibrationOptions options = with_film();
+  options.film.reset();
+  const std::string message = refusal(references, options);
+  EXPECT_TRUE(message.starts_with("the references leave more than one instrument: nothing ties ")) << message;
 }
 
 // With gains that change by 2 % from one reference to the next, the mean of 18 is known to 0.5 %, and says so.

@@ -45,6 +45,12 @@ TEST(Goniometer, IsAnotherForAnotherSeedAndStillWellConditioned) {
   for (const Polarimeter& p : {a, b}) EXPECT_LT(condition_number(p.generator), 2.5);
 }
 
+TEST(Goniometer, ReadsNothingNegativeWithoutAdditiveNoise) {
+  for (unsigned long seed = 0; seed < 40; ++seed)
+    for (const Reference& reference : Goniometer({}, seed).references(0.532, 18, seed))
+      for (const double reading : reference.readings) EXPECT_GE(reading, 0) << seed;
+}
+
 // The whole way back: readings of a model without noise, reduced with the true instrument, are its matrices.
 TEST(Goniometer, ReadingsOfAModelReduceToItsSamples) {
   const Goniometer goniometer(silent(), 3);

@@ -58,7 +58,7 @@ std::vector<Sample> reduced_file(const Calibration& instrument, const Options& o
     for (RawMeasurement raw; reader.next(raw);) {
       if (std::abs(raw.wavelength - instrument.wavelength) > wavelength_resolution) {
         throw reader.error("wavelength_nm: " + brief(nanometres(raw.wavelength)) + ", but the instrument is of " +
-                           brief(nanometres(instrument.wavelength)));
+                           brief(nanometres(instrument.wavelength)) + " nm");
       }
       try {
         samples.push_back(reduced(reduction, raw, options));

@@ -59,7 +59,7 @@ struct FittedReference {
   DiattenuatorRetarder element;    ///< polarizer, wafer: tau, psi and delta
   Mueller expected;                ///< its matrix divided by element 11
   Mueller measured;                ///< the same from its readings
-  double eigenvalue_mismatch = 0;  ///< wafer: |λ1 λ2 − |λ3|²| / max², 0 for one that does not depolarize
+  double eigenvalue_mismatch = 0;  ///< wafer: |λ1 λ2 − |λ3|²| / τ², 0 for one that does not depolarize
 };
 
 /// Root mean square of the differences between the measured and the expected matrices of references, each divided by
@@ -94,13 +94,17 @@ struct Calibration {
   std::map<std::string, std::string> provenance;  ///< as in Model
 };
 
+/// Root mean square of what a film's ψ and |Δ| may be off those of the wafers, radians.
+inline constexpr double film_tolerance = 0.1;
+
 /// Below this identifiability there is more than one solution for what can be measured.
 inline constexpr double least_identifiability = 1e-4;
 
 /// Throws std::invalid_argument, naming the reference by its number from 1, for a wrong number of readings, or one that
 /// is not finite; and, saying what is missing, for references that cannot determine the instrument: no empty one, no
 /// polarizer, no wafer, one dial angle only, an identifiability below least_identifiability, fewer than four
-/// independent states, or a wafer whose signs nothing tells.
+/// independent states, or a wafer whose signs nothing tells; for a film that is more than film_tolerance from the
+/// wafers' eigenvalues; and for readings and noise so far apart that no finite numbers are left.
 Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options);
 
 /// The eight instruments that explain the same readings: the signs of the
