@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "eigen_index.hpp"
 #include "mmbrdf/calibration.hpp"
 
 namespace mmbrdf::calibration {
@@ -25,8 +26,6 @@ struct Unknowns {
   double singular_ratio = 0;
   double identifiability = 0;
 };
-
-inline Eigen::Index index(std::size_t n) { return static_cast<Eigen::Index>(n); }
 
 /// B, a row for each analysis state.
 inline Eigen::Map<const RowMajor> matrix(std::span<const double> readings, const CalibrationOptions& options) {

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "eigen_index.hpp"
 #include "mmbrdf/analysis.hpp"
 #include "mmbrdf/radiometry.hpp"
 #include "numbers.hpp"
@@ -24,7 +25,6 @@ using Eigen::VectorXd;
 using Table = std::array<double, zernike_count(max_order)>;
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
-Index index(std::size_t n) { return static_cast<Index>(n); }
 
 /// Samples of a pair, the one with sin δ > 0 first.
 std::vector<std::pair<std::size_t, std::size_t>> paired(std::span<const Sample> samples) {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "eigen_index.hpp"
 #include "mmbrdf/fit.hpp"
 #include "mmbrdf/radiometry.hpp"
 
@@ -21,8 +22,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-Index index(std::size_t n) { return static_cast<Index>(n); }
 
 /// Symmetric or square matrices in row-major order.
 MatrixXd square(const std::vector<double>& values, Index size) {

@@ -71,20 +71,6 @@ FigureOfMerit read_figure_of_merit(const Field& field) {
   return figure;
 }
 
-void require_this_format(const Field& root) {
-  if (root["format"].text() != format_name)
-    root["format"].refuse(root["format"].shown() + " is not '" + format_name + "'");
-  if (const int version = root["schema_version"].integer(); version != schema_version)
-    root["schema_version"].refuse(std::to_string(version) + ", but this version of mmbrdf reads " +
-                                  std::to_string(schema_version));
-  root.require_no_other_than({"format", "schema_version", "conventions", "units", "wavelength_nm", "generator",
-                              "analyzer", "covariance", "generator_condition", "analyzer_condition", "polarizer",
-                              "film_thickness_um", "scale_uncertainty", "figure_of_merit", "singular_ratio",
-                              "identifiability", "chi_squared", "degrees_of_freedom", "provenance"});
-  root["conventions"].require_equal(conventions());
-  root["units"].require_equal(units());
-}
-
 void read_polarizer(const Field& field, Calibration& calibration) {
   field.require_no_other_than({"offset_deg", "extinction", "phase_deg"});
   calibration.polarizer_offset = radians(field["offset_deg"].number());
@@ -93,7 +79,11 @@ void read_polarizer(const Field& field, Calibration& calibration) {
 }
 
 Calibration read_calibration(const Field& root) {
-  require_this_format(root);
+  require_format(
+      root, format_name, conventions(), units(),
+      {"format", "schema_version", "conventions", "units", "wavelength_nm", "generator", "analyzer", "covariance",
+       "generator_condition", "analyzer_condition", "polarizer", "film_thickness_um", "scale_uncertainty",
+       "figure_of_merit", "singular_ratio", "identifiability", "chi_squared", "degrees_of_freedom", "provenance"});
   Calibration c;
   c.wavelength = read_positive(root["wavelength_nm"]) / 1000;
   c.polarimeter.generator = read_states(root["generator"]);

@@ -132,20 +132,10 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
   return table;
 }
 
-void require_this_format(const Field& root) {
-  if (root["format"].text() != format_name)
-    root["format"].refuse(root["format"].shown() + " is not '" + format_name + "'");
-  if (const int version = root["schema_version"].integer(); version != schema_version)
-    root["schema_version"].refuse(std::to_string(version) + ", but this version of mmbrdf reads " +
-                                  std::to_string(schema_version));
-  root.require_no_other_than({"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "conventions",
-                              "units", "validity", "reflectance", "blocks", "provenance"});
-  root["conventions"].require_equal(conventions());
-  root["units"].require_equal(units());
-}
-
 Model read_model(const Field& root) {
-  require_this_format(root);
+  require_format(root, format_name, conventions(), units(),
+                 {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "conventions", "units",
+                  "validity", "reflectance", "blocks", "provenance"});
   Model model;
   model.name = root["name"].text();
   model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });

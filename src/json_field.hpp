@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "mmbrdf/io.hpp"
 #include "numbers.hpp"
 
 namespace mmbrdf {
@@ -100,6 +103,18 @@ class Field {
   const std::string& file_;
   std::string path_;
 };
+
+/// What every file of the project begins with; `fields` are all that there may be.
+inline void require_format(const Field& root, const std::string& format, const nlohmann::ordered_json& conventions,
+                           const nlohmann::ordered_json& units, std::initializer_list<std::string_view> fields) {
+  if (root["format"].text() != format) root["format"].refuse(root["format"].shown() + " is not '" + format + "'");
+  if (const int version = root["schema_version"].integer(); version != schema_version)
+    root["schema_version"].refuse(std::to_string(version) + ", but this version of mmbrdf reads " +
+                                  std::to_string(schema_version));
+  root.require_no_other_than(fields);
+  root["conventions"].require_equal(conventions);
+  root["units"].require_equal(units);
+}
 
 /// Runs a check of the library on what a field says; its complaint becomes one about the field.
 template <class Check>

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "eigen_index.hpp"
 #include "numbers.hpp"
 
 // The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ|
@@ -24,8 +25,6 @@ using Vector = Eigen::Map<const VectorXd>;
 
 constexpr std::size_t rows_at_once = 128;    // keeps a block of rows in the cache
 constexpr double estimability_limit = 1e-8;  // theory 4.2
-
-Index index(std::size_t n) { return static_cast<Index>(n); }
 
 void require_finite(std::span<const double> numbers, const char* what) {
   for (std::size_t i = 0; i < numbers.size(); ++i)

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "eigen_index.hpp"
 #include "numbers.hpp"
 #include "random.hpp"
 #include "semidefinite.hpp"
@@ -21,8 +22,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-Index index(std::size_t n) { return static_cast<Index>(n); }
 
 bool draws_reflectance(const FittedBlock& fitted, const ReflectanceTable& table) {
   return fitted.block.name == "11" && !table.covariance.empty();

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "eigen_index.hpp"
 #include "mmbrdf/elements.hpp"
 #include "numbers.hpp"
 #include "random.hpp"
@@ -24,8 +25,6 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double least_singular = 1e-12;  // relative to the largest: below, rounding alone could have made it
-
-Index index(std::size_t n) { return static_cast<Index>(n); }
 
 /// 4 × states, a state in each column.
 MatrixXd columns(std::span<const Stokes> states) {
@@ -283,7 +282,7 @@ MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller&
   if (!(f > 0)) throw std::invalid_argument("normalized: M11 is " + shortest(f));
   MatrixXd slope = MatrixXd::Identity(16, 16) / f;
   slope(0, 0) = 1;
-  for (Index e = 1; e < 16; ++e) slope(e, 0) = -m.elements[static_cast<std::size_t>(e)] / (f * f);
+  for (Index e = 1; e < 16; ++e) slope(e, 0) = -m.elements[static_cast<std::size_t>(e)] / f / f;
   const Eigen::Map<const RowMajor> given(covariance.values.data(), 16, 16);
   return covariance_of(slope * given * slope.transpose());
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "eigen_index.hpp"
 #include "mmbrdf/radiometry.hpp"
 #include "numbers.hpp"
 #include "semidefinite.hpp"
@@ -30,8 +31,6 @@ using Eigen::VectorXd;
 using Table = std::array<double, zernike_count(max_order)>;
 
 constexpr double estimability_limit = 1e-8;  // theory 4.2
-
-Index index(std::size_t n) { return static_cast<Index>(n); }
 
 /// One block at one wavelength.
 struct BlockAt {
