@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Models with random coefficients, the same on every machine. Whatever the orders, f11 stays near 1/π sr⁻¹ and the
-/// normalised elements mostly below 1.
+/// Models for tests, and what compares them.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "mmbrdf/model.hpp"
 
 namespace mmbrdf {
 
+/// Random coefficients, the same on every machine. Whatever the orders, f11 stays near 1/π sr⁻¹ and the normalised
+/// elements mostly below 1.
 inline Model random_model(Family family, Orders orders, int powers, std::uint64_t seed,
                           DiscMapping mapping = DiscMapping::lambert) {
   std::mt19937_64 engine(seed);
@@ -37,6 +42,40 @@ inline Model random_model(Family family, Orders orders, int powers, std::uint64_
     model.blocks.push_back(std::move(fitted));
   }
   return model;
+}
+
+/// f11 = Σ_p values[p] λ^p sr⁻¹ at every geometry, and nothing else.
+inline Model diffuser(const std::vector<double>& values) {
+  Model model;
+  model.powers = static_cast<int>(values.size()) - 1;
+  model.blocks.push_back({blocks(model.family, {0, 0}).front(), {}, {}, 0, 0});
+  for (const double value : values)
+    model.blocks[0].coefficients.push_back(value * std::numbers::pi / 2);  // the mode is 2/π
+  return model;
+}
+
+inline Geometry in_degrees(double theta_i, double phi_i, double theta_r, double phi_r) {
+  return {{radians(theta_i), radians(phi_i)}, {radians(theta_r), radians(phi_r)}};
+}
+
+/// Of the coefficients of two models with the same modes.
+inline double largest_difference(const Model& a, const Model& b) {
+  EXPECT_EQ(a.blocks.size(), b.blocks.size());
+  double largest = 0;
+  for (std::size_t block = 0; block < a.blocks.size(); ++block) {
+    EXPECT_EQ(a.blocks[block].block.modes, b.blocks[block].block.modes);
+    for (std::size_t i = 0; i < a.blocks[block].coefficients.size(); ++i)
+      largest = std::max(largest, std::abs(a.blocks[block].coefficients.at(i) - b.blocks[block].coefficients.at(i)));
+  }
+  return largest;
+}
+
+/// Root mean square over the 15 normalised elements of residuals.
+inline double rms(const std::vector<Mueller>& residuals) {
+  double squares = 0;
+  for (const Mueller& r : residuals)
+    for (std::size_t e = 1; e < 16; ++e) squares += r.elements[e] * r.elements[e];
+  return std::sqrt(squares / 15 / static_cast<double>(residuals.size()));
 }
 
 }  // namespace mmbrdf

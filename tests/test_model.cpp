@@ -86,10 +86,6 @@ Model any_model(Family family, int highest_order, int highest_power = 0) {
   return random_model(family, orders, powers, *rc::gen::arbitrary<std::uint64_t>(), any_mapping());
 }
 
-Geometry in_degrees(double theta_i, double phi_i, double theta_r, double phi_r) {
-  return {{radians(theta_i), radians(phi_i)}, {radians(theta_r), radians(phi_r)}};
-}
-
 Geometry turned_geometry(const Geometry& g, double angle) {
   return {{g.incident.theta, g.incident.phi + angle}, {g.reflected.theta, g.reflected.phi + angle}};
 }
@@ -138,15 +134,6 @@ Mueller sum_in_extended_precision(const Model& model, double wavelength, const G
   const Long f11 = sums[0] * model.reflectance.at(wavelength);
   for (std::size_t e = 0; e < 16; ++e) result.elements[e] = static_cast<double>(e == 0 ? f11 : f11 * sums[e]);
   return result;
-}
-
-/// f11 = Σ_p values[p] λ^p sr⁻¹ at every geometry, and nothing else.
-Model diffuser(const std::vector<double>& values) {
-  Model model;
-  model.powers = static_cast<int>(values.size()) - 1;
-  model.blocks.push_back({blocks(model.family, {0, 0}).front(), {}, {}, 0, 0});
-  for (const double value : values) model.blocks[0].coefficients.push_back(value * pi / 2);  // the mode is 2/π
-  return model;
 }
 
 double f11_of(const Model& model, double wavelength) {
@@ -395,106 +382,12 @@ TEST(Model, PreparedDoesNotNeedTheModelAnyMore) {
   EXPECT_LE(deviation(third.evaluate(geometry.reflected), expected), evaluation_error);
 }
 
-TEST(ReflectanceTable, IsLinearBetweenItsNodesAndConstantBeyond) {
-  const ReflectanceTable table{{0.4, 0.5, 0.8}, {0.9, 0.7, 0.1}};
-  EXPECT_EQ(table.at(0.4), 0.9);
-  EXPECT_EQ(table.at(0.5), 0.7);
-  EXPECT_EQ(table.at(0.8), 0.1);
-  EXPECT_NEAR(table.at(0.45), 0.8, 1e-15);
-  EXPECT_NEAR(table.at(0.7), 0.3, 1e-15);
-  EXPECT_EQ(table.at(0.1), 0.9);
-  EXPECT_EQ(table.at(50), 0.1);
-  EXPECT_EQ((ReflectanceTable{{0.6}, {0.3}}).at(0.1), 0.3);
-  EXPECT_EQ(ReflectanceTable{}.at(0.5), 1);
-}
-
 TEST(ReflectanceTable, MultipliesEveryElementOfTheMatrix) {
   Model model = random_model(Family::isotropic, {4, 3}, 0, 1);
   const Geometry geometry = in_degrees(10, 20, 30, 40);
   const Mueller plain = prepare(model, 0.5).evaluate(geometry);
   model.reflectance = {{0.4, 0.6}, {0.2, 0.3}};
   EXPECT_LE(deviation(prepare(model, 0.5).evaluate(geometry), 0.25 * plain), evaluation_error);
-}
-
-TEST(ReflectanceTable, ThatIsNoneIsRefused) {
-  const auto refusal = [](const ReflectanceTable& table) {
-    Model model = diffuser({1});
-    model.reflectance = table;
-    const std::string message = message_of([&] { require_valid(table); });
-    EXPECT_EQ(message_of([&] { prepare(model, 1); }), message);
-    return message;
-  };
-  EXPECT_EQ(refusal({{0.4, 0.5}, {1}}), "reflectance table: 2 wavelengths, 1 values");
-  EXPECT_EQ(refusal({{0.5, 0.4}, {1, 1}}), "reflectance table: wavelength 400 nm does not rise");
-  EXPECT_EQ(refusal({{0.5, 0.5}, {1, 1}}), "reflectance table: wavelength 500 nm does not rise");
-  EXPECT_EQ(refusal({{0.5}, {0}}), "reflectance table: value 0 is not positive");
-  EXPECT_EQ(refusal({{0.5}, {-1e-9}}), "reflectance table: value -1e-09 is not positive");
-  for (const double bad : {nan_value, infinity}) EXPECT_NE(refusal({{0.5}, {bad}}), "nothing was thrown");
-  for (const double bad : {0.0, -0.5, nan_value, infinity}) EXPECT_NE(refusal({{bad}, {1}}), "nothing was thrown");
-  EXPECT_EQ(refusal({}), "nothing was thrown");
-}
-
-TEST(Model, OfOneWavelengthNeedsNone) {
-  Model model = diffuser({1});
-  EXPECT_EQ(only_wavelength(model), 1);
-  model.validity.wavelengths = {0.532};
-  EXPECT_EQ(only_wavelength(model), 0.532);
-  model.reflectance = {{0.532}, {0.98}};
-  EXPECT_EQ(only_wavelength(model), 0.532);
-}
-
-TEST(Model, OfSeveralWavelengthsNeedsOneAndSaysWhichItKnows) {
-  Model linear = diffuser({1, 1});
-  EXPECT_EQ(message_of([&] { only_wavelength(linear); }), "the model depends on the wavelength: give one");
-  linear.validity.wavelengths = {0.351, 1.5505};
-  EXPECT_EQ(message_of([&] { only_wavelength(linear); }),
-            "the model depends on the wavelength, fitted at 351, 1550.5 nm: give one");
-  Model scaled = diffuser({1});
-  scaled.reflectance = {{0.4, 0.5}, {1, 0.5}};
-  EXPECT_NE(message_of([&] { only_wavelength(scaled); }), "nothing was thrown");
-}
-
-// ---- validity -------------------------------------------------------------------------------------------------------
-
-TEST(Validity, FlagsEachRangeThatTheQuestionLeaves) {
-  Model model = diffuser({1});
-  model.validity = {{0.351, 0.532}, radians(75), radians(80)};
-  const auto flags = [&](double wavelength, double theta_i, double theta_r) {
-    const Geometry geometry = in_degrees(theta_i, 10, theta_r, 20);
-    EXPECT_EQ(prepare(model, wavelength).outside(geometry), outside(model.validity, wavelength, geometry));
-    return to_string(outside(model.validity, wavelength, geometry));
-  };
-  EXPECT_EQ(flags(0.4, 0, 0), "ok");
-  EXPECT_EQ(flags(0.351, 75, 80), "ok");
-  EXPECT_EQ(flags(0.532, 75, 80), "ok");
-  EXPECT_EQ(flags(0.35, 0, 0), "wavelength");
-  EXPECT_EQ(flags(0.533, 0, 0), "wavelength");
-  EXPECT_EQ(flags(0.4, 75.001, 0), "theta_i");
-  EXPECT_EQ(flags(0.4, 0, 80.001), "theta_r");
-  EXPECT_EQ(flags(0.4, 89, 89), "theta_i+theta_r");
-  EXPECT_EQ(flags(1.064, 89, 89), "theta_i+theta_r+wavelength");
-}
-
-// 75° that went through radians and back, or 0.351 as 351/1000, are no reason for a warning.
-TEST(Validity, IsNotLeftByARounding) {
-  const Validity validity{{0.351}, radians(75), radians(75)};
-  EXPECT_EQ(outside(validity, 0.351 + 0.9e-9, {{radians(75) + 0.9e-9, 0}, {radians(75) + 0.9e-9, 0}}), inside);
-  EXPECT_EQ(outside(validity, 0.351 - 1.1e-9, {}), outside_wavelength);
-}
-
-TEST(Validity, ThatIsUnknownIsSaidToBe) {
-  EXPECT_EQ(outside(Validity{}, 10, in_degrees(90, 0, 90, 0)), unknown_range);
-  EXPECT_EQ(to_string(outside({{0.5}, {}, radians(75)}, 0.5, {})), "unknown");
-  EXPECT_EQ(to_string(outside({{}, radians(75), radians(75)}, 0.5, in_degrees(80, 0, 0, 0))), "theta_i+unknown");
-}
-
-TEST(Validity, OfAModelMustBeOne) {
-  Model model = diffuser({1});
-  for (const Validity& bad : {Validity{{0.5, 0.5}, {}, {}}, Validity{{-1}, {}, {}}, Validity{{}, radians(91), {}},
-                              Validity{{}, {}, nan_value}}) {
-    model.validity = bad;
-    EXPECT_THROW(prepare(model, 0.5), std::invalid_argument);
-  }
 }
 
 // ---- the published form ---------------------------------------------------------------------------------------------
@@ -538,59 +431,11 @@ TEST(Model, InPublishedFormIsKeptIfItHasItAndRefusedIfItCannotHaveIt) {
             "a model of the anisotropic family has no published form");
 }
 
-// ---- models that are none -------------------------------------------------------------------------------------------
-
-TEST(Model, KnowsItsOrdersAndCoefficients) {
-  const Model model = random_model(Family::isotropic, {7, 4}, 1, 1);
-  EXPECT_EQ(coefficient_count(model), 284);
-  EXPECT_EQ(orders(model), (Orders{7, 4}));
-  EXPECT_NO_THROW(require_valid(model));
-}
+// ---- models with little in them ------------------------------------------------------------------------------------
 
 TEST(Model, MayHaveF11Alone) {
   EXPECT_EQ(prepare(diffuser({0.25}), 1).evaluate(in_degrees(80, 70, 60, 50), Frame::sp),
             diagonal(f11_of(diffuser({0.25}), 1), 0, 0, 0));
-}
-
-TEST(Model, ThatDoesNotFitTogetherIsRefusedWithTheReason) {
-  const Model good = random_model(Family::isotropic, {2, 2}, 1, 1);
-  const auto refusal = [&](const std::function<void(Model&)>& spoil) {
-    Model bad = good;
-    spoil(bad);
-    const std::string message = message_of([&] { require_valid(bad); });
-    EXPECT_EQ(message_of([&] { prepare(bad, 0.5); }), message);
-    return message;
-  };
-  ASSERT_EQ(good.blocks[2].block.name, "14,41");
-  ASSERT_EQ(good.blocks[2].coefficients.size(), 4u);
-  EXPECT_EQ(refusal([](Model& m) { m.blocks.clear(); }), "model has no modes of element 11");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks.erase(m.blocks.begin()); }), "model has no modes of element 11");
-  EXPECT_EQ(refusal([](Model& m) { std::swap(m.blocks[1], m.blocks[2]); }),
-            "block 14,41: modes are not in canonical order");
-  EXPECT_EQ(refusal([](Model& m) { std::swap(m.blocks[1].block.modes[0], m.blocks[1].block.modes[1]); }),
-            "block 12,13,21,31: modes are not in canonical order");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks[1].block.elements.pop_back(); }),
-            "block 12,13,21,31: modes are not in canonical order");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks.push_back({}); }), "model: modes are not in the blocks of the family");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks.push_back(m.blocks[2]); }),
-            "mode 14 (n, m, k, l) = (1, 1, 1, -1) is given twice");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks[0].block.modes[0].k = 1; }),
-            "mode 11 (n, m, k, l) = (0, 0, 1, 0) of the isotropic family: |k| must not exceed n");
-  EXPECT_NE(refusal([](Model& m) { m.family = Family::anisotropic; }), "nothing was thrown");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks[2].coefficients.pop_back(); }), "block 14,41: 3 coefficients, expected 4");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks[2].coefficients.push_back(0); }),
-            "block 14,41: 5 coefficients, expected 4");
-  EXPECT_NE(refusal([](Model& m) { m.powers = 0; }), "nothing was thrown");
-  EXPECT_EQ(refusal([](Model& m) { m.powers = -1; }), "highest power of the wavelength -1 is not in 0...9");
-  EXPECT_EQ(refusal([](Model& m) { m.powers = 10; }), "highest power of the wavelength 10 is not in 0...9");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks[2].covariance.resize(15); }),
-            "block 14,41: covariance of 15 numbers, expected 16");
-  EXPECT_EQ(refusal([](Model& m) { m.blocks[2].covariance.resize(16); }), "nothing was thrown");
-  for (const double bad : {nan_value, infinity, -infinity}) {
-    EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].coefficients[3] = bad; }), "block 14,41: a number is not finite");
-    EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].covariance.assign(16, bad); }),
-              "block 14,41: a number is not finite");
-  }
 }
 
 // ---- questions that are none ----------------------------------------------------------------------------------------
