@@ -211,6 +211,12 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   result.identifiability = unknowns.identifiability;
   result.generator_condition = condition_number(result.polarimeter.generator);
   result.analyzer_condition = condition_number(result.polarimeter.analyzer);
+  for (const auto& [arm, condition] :
+       {std::pair("generator", result.generator_condition), {"analyzer", result.analyzer_condition}})
+    if (!(condition <= worst_condition))
+      throw std::invalid_argument(std::string("the condition number of the ") + arm + " is " + shortest(condition) +
+                                  ", more than " + shortest(worst_condition) +
+                                  ": its states are nearly dependent, or the references do not determine them");
   const Reduction reduction(result.polarimeter);
   for (std::size_t i = 0; i < references.size(); ++i)
     result.references.push_back(fitted(unknowns, references, i, reduction, options));

@@ -17,7 +17,7 @@ using Eigen::Matrix4d;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double least_sigma = 1e-6;  // of the largest reading: no weight of a single reading is infinite
+constexpr double least_sigma = 1e-5;  // of the largest reading: no weight of a single reading is infinite
 
 /// Where each unknown stands: W, A, offset, leak, then those of each reference.
 struct Layout {

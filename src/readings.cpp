@@ -79,7 +79,10 @@ class ReadingColumns {
       if (!(factor > 0)) throw reader.error(shown(reader, column) + " is not positive");
       divisor *= factor;
     }
-    return (intensity - dark) / divisor;
+    const double result = (intensity - dark) / divisor;
+    if (!std::isfinite(result))
+      throw reader.error(shown(reader, intensity_) + " over its monitor and gain is not a finite number");
+    return result;
   }
 
   int number_, generator_, analyzer_, intensity_, dark_;
@@ -218,7 +221,7 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
   const ReadingColumns readings(reader, saturation);
   std::vector<CollectedReference> all;
   ReferenceFile result{0, {0, 0}, {}};
-  long first_line = 0;
+  long first_line = 0, line_of_highest = 0;
   while (reader.next()) {
     const double wavelength = columns.wavelength(reader);
     if (first_line == 0) {
@@ -234,14 +237,17 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
     CollectedReference& collected = numbered(all, reading.measurement, row);
     require_same(reader, collected, row, reading.measurement);
     collected.readings.add(reader, reading);
-    result.states.generator = std::max(result.states.generator, reading.generator + 1);
-    result.states.analyzer = std::max(result.states.analyzer, reading.analyzer + 1);
+    const StateCounts before = result.states;
+    result.states.generator = std::max(before.generator, reading.generator + 1);
+    result.states.analyzer = std::max(before.analyzer, reading.analyzer + 1);
+    if (result.states != before) line_of_highest = reader.line();
   }
   if (all.empty()) throw std::runtime_error(name + ": no readings after the header line");
   for (CollectedReference& collected : all) {
     const long last = collected.readings.entries.back().line;
     collected.reference.readings = collected.readings.ordered(result.states, [&](const std::string& text) {
-      return std::runtime_error(name + ":" + std::to_string(last) + ": " + text);
+      return std::runtime_error(name + ":" + std::to_string(last) + ": " + text + "; the highest state is in line " +
+                                std::to_string(line_of_highest));
     });
     result.references.push_back(std::move(collected.reference));
   }
@@ -322,13 +328,15 @@ bool RawReader::next(RawMeasurement& measurement) {
   const long number = s.reading.measurement, first = s.reader.line();
   Collected collected;
   while (s.waiting && s.reading.measurement == number) {
-    require_same(s.reader, number, s.row.wavelength == measurement.wavelength, "wavelength", first);
+    require_same(s.reader, number, std::abs(s.row.wavelength - measurement.wavelength) <= wavelength_resolution,
+                 "wavelength", first);
     require_same(s.reader, number, s.row.geometry == measurement.geometry, "direction", first);
     collected.add(s.reader, s.reading);
     s.last_line = s.reader.line();
     s.read_row();
   }
-  measurement.readings = collected.ordered(s.states, [&](const std::string& text) { return s.error(text); });
+  measurement.readings =
+      collected.ordered(s.states, [&](const std::string& text) { return s.error(text + " among its adjacent rows"); });
   return true;
 }
 

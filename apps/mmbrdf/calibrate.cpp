@@ -81,7 +81,7 @@ constexpr const char* calibrate_footer =
     "film\n"
     "is N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE; SiO2 on Si at 532 nm is 1.4607,1.0,4.15,0.044.\n"
     "\n"
-    "Condition numbers above 100 are refused, those above 10 get a warning, as does a figure of merit above 0.05.\n"
+    "Condition numbers above 100 and figures of merit above 0.5 are refused, those above 10 and 0.05 get a warning.\n"
     "\n"
     "Example:\n"
     "  mmbrdf calibrate references.csv --film 1.4607,1.0,4.15,0.044 -o instrument.json";

@@ -126,10 +126,17 @@ void judge(const Calibration& calibration, const std::string& name) {
                   doubtful_condition));
     }
   }
-  if (calibration.figure_of_merit.total > doubtful_merit) {
-    warn(name + ": " +
-         format("figure of merit %.2g, more than %g: are states or references mixed up, or angles wrong?",
-                calibration.figure_of_merit.total, doubtful_merit));
+  const double merit = calibration.figure_of_merit.total;
+  const auto complaint = [&](double limit) {
+    return name + ": " +
+           format("figure of merit %.2g, more than %g: are states or references mixed up, or angles wrong?", merit,
+                  limit);
+  };
+  if (merit > worst_merit) {
+    throw std::runtime_error(complaint(worst_merit));
+  }
+  if (merit > doubtful_merit) {
+    warn(complaint(doubtful_merit));
   }
 }
 

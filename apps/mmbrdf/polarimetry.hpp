@@ -9,12 +9,12 @@
 
 namespace mmbrdf::program {
 
-/// Condition numbers of the generator or analyzer states above which there is a warning, and a refusal. The best is
-/// 1.73.
-inline constexpr double doubtful_condition = 10, worst_condition = 100;
+/// Condition number of the generator or analyzer states above which there is a warning; the best is 1.73. Above
+/// worst_condition it is refused.
+inline constexpr double doubtful_condition = 10;
 
-/// Figure of merit above which references and instrument do not belong together.
-inline constexpr double doubtful_merit = 0.05;
+/// Figures of merit above which references and instrument hardly belong together, or not at all.
+inline constexpr double doubtful_merit = 0.05, worst_merit = 0.5;
 
 /// N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE
 Film film_from(const std::string& text);

@@ -109,7 +109,8 @@ constexpr const char* footer =
     "u_m44. What the instrument is uncertain by is the same error in all samples and not in them: see mmbrdf\n"
     "instrument. The solid angle is that of the receiver: f = M / (SR cos(theta_r)).\n"
     "\n"
-    "Matrices with a coherency eigenvalue below -0.05 f11 get a warning; --strict refuses them.\n"
+    "Matrices with a coherency eigenvalue below -0.05 f11 get a warning; --strict refuses them. Exchanged states of a\n"
+    "sample that depolarizes nearly all light do not show in that.\n"
     "\n"
     "Example:\n"
     "  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle 1.114e-4 -o data.csv";

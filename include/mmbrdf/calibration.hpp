@@ -97,6 +97,9 @@ struct Calibration {
 /// Root mean square of what a film's ψ and |Δ| may be off those of the wafers, radians.
 inline constexpr double film_tolerance = 0.1;
 
+/// Above this condition number of the generator or analyzer the noise of the readings is all that is left of a matrix.
+inline constexpr double worst_condition = 100;
+
 /// Below this identifiability there is more than one solution for what can be measured.
 inline constexpr double least_identifiability = 1e-4;
 
@@ -104,7 +107,8 @@ inline constexpr double least_identifiability = 1e-4;
 /// is not finite; and, saying what is missing, for references that cannot determine the instrument: no empty one, no
 /// polarizer, no wafer, one dial angle only, an identifiability below least_identifiability, fewer than four
 /// independent states, or a wafer whose signs nothing tells; for a film that is more than film_tolerance from the
-/// wafers' eigenvalues; and for readings and noise so far apart that no finite numbers are left.
+/// wafers' eigenvalues; for a condition number above worst_condition; and for readings and noise so far apart that no
+/// finite numbers are left.
 Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options);
 
 /// The eight instruments that explain the same readings: the signs of the
