@@ -242,6 +242,19 @@ TEST(Calibration, OfFewReferencesIsLessDetermined) {
   EXPECT_LT(error(less.polarimeter, goniometer.polarimeter()), 1e-10);  // the smaller that ratio, the more rounding
 }
 
+// Near Δ = 180 degrees one wafer hardly ties S4 to the rest, and noise does the rest to the instrument.
+TEST(Calibration, RefusesAnInstrumentThatTheReferencesHardlyDetermine) {
+  GoniometerOptions made = quiet();
+  made.noise.relative = 1e-3;
+  const Goniometer goniometer(made, 9);
+  int wafers = 0;
+  const auto one = only(goniometer.references(wavelength, 18, 10),
+                        [&](const Reference& r) { return r.kind != ReferenceKind::wafer || ++wafers == 4; });
+  const std::string message = refusal(one, with_film());
+  EXPECT_TRUE(message.starts_with("the condition number of the ")) << message;
+  EXPECT_TRUE(message.ends_with("or the references do not determine them")) << message;
+}
+
 // An error of the dial shows in the figure of merit.
 TEST(Calibration, FigureOfMeritShowsErrorsOfTheReferences) {
   GoniometerOptions made = quiet();
@@ -329,7 +342,9 @@ TEST(Calibration, KnowsHowUncertainItsScaleIsFromTheScatterOfTheEmptyReferences)
     const Reduction reduction(found.polarimeter, found.covariance);
     const Mueller m = reduction.mueller(readings(goniometer.polarimeter(), identity()));
     observed += std::pow(m(0, 0) - 1, 2) / seeds;
-    predicted += reduction.from_instrument(m)(0, 0) / seeds;
+    const double variance = reduction.from_instrument(m)(0, 0);
+    EXPECT_NEAR(variance, std::pow(found.scale_uncertainty, 2), 1e-6);  // the rest is of noise of 1e-3
+    predicted += variance / seeds;
     sum += found.scale_uncertainty / seeds;
   }
   EXPECT_NEAR(sum, 0.02 / std::sqrt(18.), 0.0005);                             // 1/√36 of it, over √25

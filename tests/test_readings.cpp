@@ -27,6 +27,7 @@ Calibration any_calibration() {
   c.extinction = 1e-5 / 3;
   c.polarizer_phase = 0.1;
   c.film_thickness = 1.0 / 3;
+  c.scale_uncertainty = 0.01 / 7;
   c.figure_of_merit = {1e-3 / 3, 2e-3, 3e-3, 4e-3, 5e-3, {}};
   c.figure_of_merit.elements(1, 2) = 1e-3 / 7;
   c.singular_ratio = 0.01 / 3;
@@ -118,6 +119,7 @@ TEST(Readings, OfReferencesThatCannotBeAreRefusedWithTheirLine) {
   EXPECT_TRUE(says(complains("532,empty,1,0,1,1,3,0,1,1\n"), {"r.csv:3: measurement 1", "a second", "in line 2"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,2,3,0,1,1\n"), {"r.csv:3: measurement 1", "no reading of generator"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,1,10,0,1,1\n"), {"r.csv:3: intensity: 10 is saturated"}));
+  EXPECT_TRUE(says(complains("532,empty,1,0,2,1,9,0,1e-200,1e-200\n"), {"r.csv:3: intensity: 9 over its monitor"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,1,1,1.5,1,1\n"), {"r.csv:3: intensity: 1 is below dark 1.5"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,1,1,0,0,1\n"), {"r.csv:3: monitor: 0 is not positive"}));
   EXPECT_TRUE(says(complains("633,empty,2,0,1,1,1,0,1,1\n"), {"r.csv:3: wavelength_nm: 633, but 532 in line 2"}));
@@ -167,6 +169,7 @@ TEST(Instrument, IsReadBackFromItsFileToTheSameBits) {
   EXPECT_NEAR(back.polarizer_phase, c.polarizer_phase, 1e-15);
   EXPECT_EQ(back.extinction, c.extinction);
   EXPECT_EQ(back.film_thickness, c.film_thickness);
+  EXPECT_EQ(back.scale_uncertainty, c.scale_uncertainty);
   EXPECT_EQ(back.figure_of_merit.total, c.figure_of_merit.total);
   EXPECT_EQ(back.figure_of_merit.wafer, c.figure_of_merit.wafer);
   EXPECT_EQ(back.figure_of_merit.elements.elements, c.figure_of_merit.elements.elements);
