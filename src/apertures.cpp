@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "golden_section.hpp"
 #include "mmbrdf/quadrature.hpp"
 #include "numbers.hpp"
 
@@ -67,20 +68,10 @@ double angle_between(const Direction& a, const Direction& b) {  // Haversines ke
   return 2 * std::asin(std::min(1.0, std::sqrt(haversine)));
 }
 
-/// Smallest value of a smooth function of an angle: the best of equidistant points, then golden sections.
+/// Smallest value of a smooth function of an angle.
 template <class F>
 double minimum_on_circle(F f) {
-  constexpr int points = 256;
-  constexpr double step = 2 * pi / points, ratio = 1 / std::numbers::phi;
-  double best = 0;
-  for (int i = 1; i < points; ++i)
-    if (f(i * step) < f(best)) best = i * step;
-  double low = best - step, high = best + step;
-  for (int i = 0; i < 60; ++i) {
-    const double a = high - ratio * (high - low), b = low + ratio * (high - low);
-    (f(a) < f(b) ? high : low) = f(a) < f(b) ? b : a;
-  }
-  return f((low + high) / 2);
+  return f(scanned_minimum(f, 0, 2 * pi, 256, 1e-12));
 }
 
 double versine_difference(double low, double high) {

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "calibration_parts.hpp"
+#include "golden_section.hpp"
 #include "numbers.hpp"
 
 namespace mmbrdf::calibration {
@@ -24,43 +25,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
 using Block = Eigen::Matrix<double, 16, 16>;
-
-/// The smallest value of a function with one valley between two ends, to `width`.
-template <class F>
-double golden_section(const F& function, double low, double high, double width) {
-  constexpr double share = 1 / std::numbers::phi;
-  double a = high - share * (high - low), b = low + share * (high - low);
-  double at_a = function(a), at_b = function(b);
-  while (high - low > width) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - share * (high - low);
-      at_a = function(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + share * (high - low);
-      at_b = function(b);
-    }
-  }
-  return (low + high) / 2;
-}
-
-/// The best of equal steps, then golden section around it.
-template <class F>
-double scanned(const F& function, double low, double high, int steps, double width) {
-  const double step = (high - low) / steps;
-  double best = low, least = function(low);
-  for (int k = 1; k < steps; ++k)
-    if (const double value = function(low + k * step); value < least) {
-      least = value;
-      best = low + k * step;
-    }
-  return golden_section(function, best - step, best + step, width);
-}
 
 /// The readings of the empty beam, and the four directions that they span.
 struct EmptyBeam {
@@ -178,7 +142,7 @@ void find_wafers(Unknowns& unknowns, std::span<const Reference> references, std:
       return film_misfit(one, options.wavelength, angles, wafers);
     };
     const double start = film->thickness;
-    if (start > 0) film->thickness = scanned(misfit, 0.8 * start, 1.2 * start, 400, 1e-9 * start);
+    if (start > 0) film->thickness = scanned_minimum(misfit, 0.8 * start, 1.2 * start, 400, 1e-9 * start);
     unknowns.film_thickness = film->thickness;
     const double off = std::sqrt(misfit(film->thickness) / (2 * static_cast<double>(wafers.size())));
     if (!(off < film_tolerance))
@@ -301,7 +265,7 @@ Unknowns solve_linear(std::span<const Reference> references, const CalibrationOp
   const Stack stack(references, c, unknowns, options);
   constexpr double half_turn = std::numbers::pi;
   const auto misfit = [&](double offset) { return ratio(stack.at(offset)); };
-  const double offset = scanned(misfit, 0, half_turn, 180, 1e-12);
+  const double offset = scanned_minimum(misfit, 0, half_turn, 180, 1e-12);
   unknowns.offset = offset - half_turn * std::floor(offset / half_turn);
   const Eigen::JacobiSVD<MatrixXd> best = stack.at(unknowns.offset);
   find_states(unknowns, empty, best);
