@@ -118,25 +118,31 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
   return weights;
 }
 
+std::vector<Mueller> fit_weights(std::span<const Sample> samples, const Basis& basis, const FitResult& fitted,
+                                 Weights weights) {
+  if (weights == Weights::none) return {};
+  if (weights == Weights::data) return data_weights(samples, basis, fitted.model.reflectance);
+  if (weights == Weights::estimated && fitted.noise.empty())
+    throw std::invalid_argument("weights: the fit has estimated no noise");
+  return weights_of(samples, fitted.model, [&](double wavelength) {
+    return weights == Weights::speckle ? NoiseLaw{} : fitted.noise[place(fitted.model, wavelength)].law;
+  });
+}
+
 FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
   FitAccumulator accumulator(basis);
   accumulator.add(samples);
   FitResult result = accumulator.solved(options);
-  std::vector<Mueller> list;
-  std::vector<NoiseEstimate> noise;
   if (weights == Weights::estimated)
-    noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples, basis.rotation));
-  if (weights == Weights::data) list = data_weights(samples, basis, result.model.reflectance);
-  if (weights == Weights::speckle || weights == Weights::estimated)
-    list = weights_of(samples, result.model, [&](double wavelength) {
-      return noise.empty() ? NoiseLaw{} : noise[place(result.model, wavelength)].law;
-    });
+    result.noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples, basis.rotation));
+  std::vector<Mueller> list = fit_weights(samples, basis, result, weights);
   if (weights != Weights::none) {
+    std::vector<NoiseEstimate> noise = std::move(result.noise);
     accumulator = FitAccumulator(basis);
     accumulator.add(samples, list);
     result = accumulator.solved(options);
+    result.noise = std::move(noise);
   }
-  result.noise = std::move(noise);
   result.residuals = residuals(result.model, samples, basis.rotation);
   if (options.covariance == Covariance::sandwich) {
     list.resize(samples.size(), ones());

@@ -34,24 +34,7 @@ std::vector<Mueller> weights_of(std::span<const Sample> samples, const Selection
                        .minimum_norm = true,
                        .rank_tolerance = options.rank_tolerance};
   const FitResult first = fit(samples, lowest, how, weights == Weights::estimated ? weights : Weights::none);
-  if (weights == Weights::data) return data_weights(samples, lowest, first.model.reflectance);
-  if (first.noise.empty()) return speckle_weights(samples, first.model);
-  std::vector<Mueller> result(samples.size());
-  std::vector<double> wavelengths;
-  for (const Sample& sample : samples) wavelengths.push_back(sample.wavelength);
-  const std::vector<std::size_t> at = grouped(wavelengths, wavelength_resolution);
-  for (std::size_t w = 0; w < first.noise.size(); ++w) {
-    std::vector<Sample> part;
-    for (std::size_t s = 0; s < samples.size(); ++s)
-      if (at[s] == w) part.push_back(samples[s]);
-    std::vector<Mueller> list = noise_weights(part, first.model, first.noise[w].law);
-    for (std::size_t s = samples.size(); s-- > 0;)
-      if (at[s] == w) {
-        result[s] = list.back();
-        list.pop_back();
-      }
-  }
-  return result;
+  return fit_weights(samples, lowest, first, weights);
 }
 
 Folded folded(std::span<const Sample> samples, std::span<const Mueller> weights, const Partition& partition,

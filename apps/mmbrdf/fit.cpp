@@ -100,20 +100,6 @@ bool streams(const Options& options) {
          options.instrument.empty();
 }
 
-/// The weights that the fit had.
-std::vector<Mueller> weights_of(const FitResult& result, std::span<const Sample> samples, const Options& options) {
-  switch (options.weights) {
-    case Weights::speckle:
-      return speckle_weights(samples, result.model);
-    case Weights::data:
-      return data_weights(samples, options.basis, result.model.reflectance);
-    case Weights::estimated:
-      return noise_weights(samples, result.model, result.noise.front().law);
-    default:
-      return {};
-  }
-}
-
 /// Adds what the instrument is uncertain by, which is the same error in all its samples.
 void add_instrument(FitResult& result, std::span<const Sample> samples, const Options& options) {
   const Calibration instrument = load_instrument(options.instrument);
@@ -129,7 +115,8 @@ void add_instrument(FitResult& result, std::span<const Sample> samples, const Op
     }
   }
   const Reduction reduction(instrument.polarimeter, instrument.covariance);
-  add_common_errors(result.model, samples, instrument_errors(reduction, samples), weights_of(result, samples, options));
+  add_common_errors(result.model, samples, instrument_errors(reduction, samples),
+                    fit_weights(samples, options.basis, result, options.weights));
   result.model.provenance["instrument"] = name;
 }
 

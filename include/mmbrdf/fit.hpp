@@ -176,6 +176,11 @@ std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Mode
 std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& basis = {},
                                   const ReflectanceTable& reflectance = {});
 
+/// The weights of these names, from a fit of the same samples: the f11 and the reflectance of its model, and for
+/// Weights::estimated its noise. Empty for none. Throws as the functions above, and for estimated without noise.
+std::vector<Mueller> fit_weights(std::span<const Sample> samples, const Basis& basis, const FitResult& fitted,
+                                 Weights weights);
+
 /// Measured − model for each sample, as in FitResult.
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,
                                Rotation rotation = Rotation::covariant);
