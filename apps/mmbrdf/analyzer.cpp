@@ -149,28 +149,27 @@ Stokes Analyzer::light_sp(const Geometry& geometry) const {
   return rotator(turn) * options_.light.value_or(Stokes{1, 0, 0, 0});
 }
 
-std::optional<Budget> Analyzer::budget_of(const AtWavelength& at, const Geometry& geometry, Frame frame) const {
+std::optional<Budget> Analyzer::budget_of(const AtWavelength& at, const Geometry& geometry) const {
   const bool grazing = std::cos(geometry.reflected.theta) < grazing_limit;
   for (const TypeBTerm& term : options_.terms) {
     if (term.what == ErrorOf::theta_r && grazing) {
       return std::nullopt;  // it has no limit there
     }
   }
-  return at.uncertainty ? std::optional(budget(at.model, *at.uncertainty, options_.terms, geometry, frame))
+  return at.uncertainty ? std::optional(budget(at.model, *at.uncertainty, options_.terms, geometry, Frame::sp))
                         : std::nullopt;
 }
 
 std::vector<Quantity> Analyzer::quantities(const AtWavelength& at, const Geometry& geometry,
-                                           const std::optional<Budget>& budget) const {
-  const Mueller m = at.model.evaluate(geometry, Frame::sp);
+                                           const Analysis& analysis) const {
   const Stokes light = light_sp(geometry);
   std::vector<Mueller> matrices;
-  if (draws_ && budget) {
+  if (draws_ && analysis.budget) {
     matrices = drawn(at.draws, at.model, options_.terms, geometry, Frame::sp, options_.seed);
   }
   std::vector<Quantity> result;
   for (const Definition& definition : definitions_for(options_)) {
-    Quantity& quantity = result.emplace_back(in_first_order(definition, m, light, budget));
+    Quantity& quantity = result.emplace_back(in_first_order(definition, analysis.elements_sp, light, analysis.budget));
     quantity.has_interval = has_interval(definition, options_);
     if (quantity.value && quantity.has_interval && !matrices.empty()) {
       set_distribution(quantity, definition, matrices, light);
@@ -188,16 +187,15 @@ Analysis Analyzer::at(double wavelength, const Geometry& geometry) {
   if (options_.strict) {
     require_inside(a.outside, model_.validity);
   }
-  a.budget = budget_of(at, geometry, Frame::sp);
+  a.budget = budget_of(at, geometry);
   if (a.budget) {
-    a.uncertainties = standard_uncertainty(
-        options_.frame == Frame::sp ? a.budget->total : budget_of(at, geometry, options_.frame)->total);
+    a.uncertainties = standard_uncertainty(change_frame(a.budget->total, geometry, Frame::sp, options_.frame));
   }
   if (at.uncertainty) {
     a.estimable = at.uncertainty->estimable(geometry);
   }
   a.realizable = a.elements(0, 0) > 0 && realizable(a.elements);
-  a.quantities = quantities(at, geometry, a.budget);
+  a.quantities = quantities(at, geometry, a);
   return a;
 }
 

@@ -69,10 +69,9 @@ class Analyzer {
     std::vector<PreparedModel> draws;
   };
   AtWavelength prepared(double wavelength) const;
-  std::vector<Quantity> quantities(const AtWavelength& at, const Geometry& geometry,
-                                   const std::optional<Budget>& budget) const;
+  std::vector<Quantity> quantities(const AtWavelength& at, const Geometry& geometry, const Analysis& analysis) const;
   Stokes light_sp(const Geometry& geometry) const;
-  std::optional<Budget> budget_of(const AtWavelength& at, const Geometry& geometry, Frame frame) const;
+  std::optional<Budget> budget_of(const AtWavelength& at, const Geometry& geometry) const;
 
   Model model_;
   AnalysisOptions options_;
