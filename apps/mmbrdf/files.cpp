@@ -178,6 +178,11 @@ bool has_covariance(const Model& model) {
                      [](const FittedBlock& b) { return !b.covariance.empty(); });
 }
 
+bool knows_uncertainty(const Model& model) {
+  return std::none_of(model.blocks.begin(), model.blocks.end(),
+                      [](const FittedBlock& b) { return b.covariance.empty(); });
+}
+
 void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named) {
   const Validity& validity = model.validity;
   std::vector<std::string> lost;

@@ -66,11 +66,6 @@ struct AtWavelength {
   std::optional<PreparedUncertainty> uncertainty;  // none: not known
 };
 
-bool knows_uncertainty(const Model& model) {
-  return std::none_of(model.blocks.begin(), model.blocks.end(),
-                      [](const FittedBlock& block) { return block.covariance.empty(); });
-}
-
 std::optional<PreparedUncertainty> uncertainty_of(const Model& model, double wavelength) {
   return knows_uncertainty(model) ? std::optional(prepare_uncertainty(model, wavelength)) : std::nullopt;
 }
@@ -129,7 +124,8 @@ IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides
   const double theta_r = is_hemisphere(sides.receiver) ? 0 : receiver.largest_theta();
   AverageOptions rule;
   rule.tolerance = options.tolerance.value_or(rule.tolerance);
-  const Average mean = average(prepare(at.model, at.wavelength), source, receiver, rule);
+  const PreparedModel model = prepare(at.model, at.wavelength);
+  const Average mean = average(model, source, receiver, rule);
   if (!mean.converged) {
     const std::string message =
         format("the quadrature stopped at an error of %.1e of f11", mean.error / mean.mueller(0, 0));
@@ -147,8 +143,7 @@ IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides
     row.values.push_back(factor * mean.mueller.elements[e]);
   }
   if (at.uncertainty) {
-    const int few =
-        average(prepare(at.model, at.wavelength), source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
+    const int few = average(model, source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
     const Mueller u = standard_uncertainty(average_covariance(*at.uncertainty, source, receiver, few));
     for (std::size_t e = 0; e < elements; ++e) {
       row.uncertainties.push_back(factor * u.elements[e]);

@@ -148,7 +148,7 @@ void add_reflectances_at(Json& rows, const ReportedModel& reported, double wavel
 
 void add_reflectances(Json& facts, const ReportedModel& reported) {
   Json rows = Json::array();
-  const bool known = has_covariance(reported.model);
+  const bool known = knows_uncertainty(reported.model);
   for (const double wavelength : reported.wavelengths) {
     add_reflectances_at(rows, reported, wavelength,
                         known ? std::optional(prepare_uncertainty(reported.model, wavelength)) : std::nullopt);
@@ -285,8 +285,8 @@ void warn_of_range(Json& facts, const ReportedModel& reported) {
                          nanometre_list(reported.model.validity.wavelengths));
     }
   }
-  if (!has_covariance(reported.model)) {
-    warn_in(facts, "the covariance of the coefficients is not known, and no uncertainty with it");
+  if (!knows_uncertainty(reported.model)) {
+    warn_in(facts, "the covariance of the coefficients is not known, or not of all, and no uncertainty with it");
   }
   for (const FittedBlock& block : reported.model.blocks) {
     if (block.rank > 0 && static_cast<std::size_t>(block.rank) < block.coefficients.size()) {
