@@ -227,6 +227,42 @@ TEST(Calibration, TakesMoreThanFourStates) {
   EXPECT_LT(largest_difference(found.polarimeter, scaled(goniometer.polarimeter())), 1e-12);
 }
 
+// Transposed readings Wᵀ Mᵀ Aᵀ are those of an instrument with the arms exchanged: Mᵀ has the other sign of Δ, which is
+// one of the eight again.
+TEST(Calibration, ExplainsReadingsWithExchangedArmsByAnExchangedInstrument) {
+  const Goniometer goniometer(quiet(), 5);
+  std::vector<Reference> references = goniometer.references(wavelength, 18, 6);
+  for (Reference& r : references)
+    for (std::size_t q = 0; q < 4; ++q)
+      for (std::size_t p = 0; p < q; ++p) std::swap(r.readings[4 * q + p], r.readings[4 * p + q]);
+  const Calibration found = calibrate(references, with_film());
+  const Polarimeter exchanged{goniometer.polarimeter().analyzer, goniometer.polarimeter().generator};
+  EXPECT_LT(largest_difference(found.polarimeter, with_signs(scaled(exchanged), 1, 1, -1)), 1e-12);
+  EXPECT_LT(found.figure_of_merit.total, 1e-12);
+}
+
+// A wafer whose plane of incidence is turned by 0.1 degrees turns the axes of both arms, and no reading shows it.
+TEST(Calibration, TurnsWithTheWafer) {
+  const double tilt = radians(0.1);
+  const Goniometer goniometer(quiet(), 5);
+  std::vector<Reference> references = goniometer.references(wavelength, 18, 6);
+  for (Reference& r : references)
+    if (r.kind == ReferenceKind::wafer) {
+      const Mueller wafer = mueller(reflection(goniometer.options().film, wavelength, r.angle));
+      r.readings = readings(goniometer.polarimeter(), rotated(wafer, tilt));
+    }
+  const Calibration found = calibrate(references, with_film());
+  EXPECT_LT(found.figure_of_merit.total, 1e-12);
+  const double wrong = error(found.polarimeter, goniometer.polarimeter());
+  RecordProperty("error_of_a_tilt", std::to_string(wrong));
+  EXPECT_TRUE(wrong > 5e-4 && wrong < 5e-3) << wrong;  // 2 tilt = 3.5e-3 times differences of elements
+  const Reduction reduction(found.polarimeter);
+  const Mueller m = test_matrices()[7];
+  const Mueller difference =
+      reduction.mueller(readings(goniometer.polarimeter(), m)) - rotator(tilt) * m * rotator(-tilt);
+  for (const double d : difference.elements) EXPECT_NEAR(d, 0, 1e-12);
+}
+
 // Three azimuths of the polarizer and one wafer are enough, and poorer: s15/s1 says so.
 TEST(Calibration, OfFewReferencesIsLessDetermined) {
   const Goniometer goniometer(quiet(), 9);
