@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <istream>
 
 #include "mmbrdf/io.hpp"
@@ -35,17 +36,12 @@ bool is_control(char c) {
   return (byte < 0x20 && c != '\t') || byte == 0x7f;
 }
 
-/// The direction of a row's two angles. (−θ, φ) is (θ, φ + 180°), which is exact in degrees, but not in radians.
 Direction direction(const CsvReader& reader, int theta_column, int phi_column) {
-  double theta = reader.number(theta_column), phi = reader.number(phi_column);
-  if (theta < -90 || theta > 90)
+  const double theta = reader.number(theta_column), phi = reader.number(phi_column);
+  if (std::abs(theta) > 90)
     throw reader.error(reader.columns()[static_cast<std::size_t>(theta_column)] + ": " +
                        std::string(reader.field(theta_column)) + " degrees; a polar angle is at most 90");
-  if (theta < 0) {
-    theta = -theta;
-    phi += phi > 0 ? -180 : 180;
-  }
-  return {radians(theta), radians(phi)};
+  return direction_from_degrees(theta, phi);
 }
 
 }  // namespace

@@ -86,6 +86,14 @@ Direction unfolded(const Direction& direction) {
   return direction;
 }
 
+Direction direction_from_degrees(double theta, double phi) {
+  if (!(std::abs(theta) <= 90))
+    throw std::invalid_argument(shortest(theta) + "," + shortest(phi) +
+                                ": the polar angle is not in [-90, 90] degrees");
+  const double opposite = phi + (phi > 0 ? -180 : 180);
+  return {radians(std::abs(theta)), radians(theta < 0 ? opposite : phi)};
+}
+
 void require_valid(const Geometry& geometry, const char* what) {
   require_theta(geometry.incident.theta, what, "theta_i");
   require_theta(geometry.reflected.theta, what, "theta_r");

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "mmbrdf/modes.hpp"
+#include "mmbrdf/fit.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -29,6 +29,15 @@ constexpr std::array<std::pair<Family, const char*>, 3> family_names{
 constexpr std::array<std::pair<DiscMapping, const char*>, 2> mapping_names{
     {{DiscMapping::lambert, "lambert"}, {DiscMapping::projected, "projected"}}};
 
+constexpr std::array<std::pair<Frame, const char*>, 3> frame_names{
+    {{Frame::xy, "xy"}, {Frame::sp, "sp"}, {Frame::scattering_plane, "scattering_plane"}}};
+constexpr std::array<std::pair<Weights, const char*>, 4> weights_names{{{Weights::none, "none"},
+                                                                        {Weights::speckle, "speckle"},
+                                                                        {Weights::data, "data"},
+                                                                        {Weights::estimated, "estimated"}}};
+constexpr std::array<std::pair<Covariance, const char*>, 2> covariance_names{
+    {{Covariance::residuals, "residuals"}, {Covariance::sandwich, "sandwich"}}};
+
 template <class Names, class Value>
 std::string name_of(const Names& names, Value value) {
   for (const auto& [candidate, name] : names)
@@ -51,9 +60,15 @@ auto value_of(const Names& names, const std::string& text, const char* what) {
 std::string to_string(Family family) { return name_of(family_names, family); }
 std::string to_string(Function function) { return name_of(function_names, function); }
 std::string to_string(DiscMapping mapping) { return name_of(mapping_names, mapping); }
+std::string to_string(Frame frame) { return name_of(frame_names, frame); }
+std::string to_string(Weights weights) { return name_of(weights_names, weights); }
+std::string to_string(Covariance covariance) { return name_of(covariance_names, covariance); }
 Family family_from(const std::string& name) { return value_of(family_names, name, "basis"); }
 Function function_from(const std::string& name) { return value_of(function_names, name, "function"); }
 DiscMapping disc_mapping_from(const std::string& name) { return value_of(mapping_names, name, "mapping"); }
+Frame frame_from(const std::string& name) { return value_of(frame_names, name, "frame"); }
+Weights weights_from(const std::string& name) { return value_of(weights_names, name, "weights"); }
+Covariance covariance_from(const std::string& name) { return value_of(covariance_names, name, "covariance"); }
 
 Function function_of(int row, int column) {
   return function_from(std::to_string(row + 1) + std::to_string(column + 1));

@@ -147,6 +147,14 @@ TEST(Direction, OfNoUsableVectorIsRefused) {
     EXPECT_THROW(direction(v), std::invalid_argument);
 }
 
+TEST(Geometry, DegreesAreUnfoldedWithoutRounding) {
+  EXPECT_EQ(direction_from_degrees(-45, 0), (Direction{radians(45), radians(180)}));
+  EXPECT_EQ(direction_from_degrees(-45, 150.1), (Direction{radians(45), radians(150.1 - 180)}));
+  EXPECT_EQ(direction_from_degrees(90, -30), (Direction{radians(90), radians(-30)}));
+  for (const double theta : {90.1, -91.0, std::nan("")})
+    EXPECT_THROW(direction_from_degrees(theta, 0), std::invalid_argument) << theta;
+}
+
 TEST(Direction, WithNegativePolarAngleLiesAtTheOppositeAzimuth) {
   // The published data: theta_i = −15°, phi_i = 0 is a source at azimuth 180°.
   EXPECT_EQ(unfolded({radians(-15), 0}), (Direction{radians(15), pi}));

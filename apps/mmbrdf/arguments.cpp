@@ -170,42 +170,6 @@ Grid grid_from(const std::string& text) {
   return {count};
 }
 
-Weights weights_from(const std::string& name) {
-  for (const Weights weights : {Weights::none, Weights::speckle, Weights::data, Weights::estimated}) {
-    if (name == to_string(weights)) {
-      return weights;
-    }
-  }
-  throw wrong(name, "none, speckle, data or estimated");
-}
-
-std::string to_string(Weights weights) {
-  switch (weights) {
-    case Weights::none:
-      return "none";
-    case Weights::speckle:
-      return "speckle";
-    case Weights::data:
-      return "data";
-    case Weights::estimated:
-      return "estimated";
-  }
-  throw std::invalid_argument("Weights: no weights have the number " + std::to_string(static_cast<int>(weights)));
-}
-
-Frame frame_from(const std::string& name) {
-  for (const Frame frame : {Frame::xy, Frame::sp, Frame::scattering_plane}) {
-    if (name == to_string(frame)) {
-      return frame;
-    }
-  }
-  throw wrong(name, "xy, sp or scattering_plane");
-}
-
-std::string to_string(Frame frame) {
-  return frame == Frame::xy ? "xy" : frame == Frame::sp ? "sp" : "scattering_plane";
-}
-
 Format format_from(const std::string& name) {
   if (name == "text") {
     return Format::text;
@@ -266,13 +230,11 @@ std::vector<Geometry> geometries(const Grid& grid, unsigned long seed) {
 }
 
 Direction direction_from(const DirectionDegrees& degrees, const std::string& option) {
-  if (std::abs(degrees.theta) > 90) {
-    throw std::invalid_argument(option + " " + shortest(degrees.theta) + "," + shortest(degrees.phi) +
-                                ": the polar angle is not in [-90, 90] degrees");
+  try {
+    return direction_from_degrees(degrees.theta, degrees.phi);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(option + " " + error.what());
   }
-  // Unfolded in degrees, where 180 is exact.
-  const double opposite = degrees.phi + (degrees.phi > 0 ? -180 : 180);
-  return {radians(std::abs(degrees.theta)), radians(degrees.theta < 0 ? opposite : degrees.phi)};
 }
 
 void add_basis_option(CLI::App& app, Basis& basis) {

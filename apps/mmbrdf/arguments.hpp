@@ -49,11 +49,6 @@ struct Grid {
 };
 Grid grid_from(const std::string& text);
 
-Weights weights_from(const std::string& name);
-std::string to_string(Weights weights);
-
-Frame frame_from(const std::string& name);
-std::string to_string(Frame frame);
 Format format_from(const std::string& name);
 
 // What the numbers mean. These throw std::invalid_argument for values that make no sense.

@@ -29,13 +29,6 @@ struct Options {
   Format format = Format::text;
 };
 
-Covariance covariance_from(const std::string& name) {
-  if (name != "residuals" && name != "sandwich") {
-    throw std::invalid_argument("\"" + name + "\": expected residuals or sandwich");
-  }
-  return name == "residuals" ? Covariance::residuals : Covariance::sandwich;
-}
-
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
 void require_valid(const Options& options) {
   blocks(options.basis.family, options.basis.orders);

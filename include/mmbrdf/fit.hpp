@@ -58,6 +58,13 @@ enum class Covariance {
              ///< the weights say. Errors of different elements count as independent. White 1980.
 };
 
+/// "none", "speckle", "data", "estimated"; "residuals", "sandwich". The opposites throw std::invalid_argument for
+/// another name.
+std::string to_string(Weights weights);
+std::string to_string(Covariance covariance);
+Weights weights_from(const std::string& name);
+Covariance covariance_from(const std::string& name);
+
 struct FitOptions {
   std::optional<int> powers;  ///< highest power of the wavelength; default 0 for one wavelength, 1 for several
   std::optional<ReflectanceTable>

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <numbers>
+#include <string>
 
 #include "mmbrdf/mueller.hpp"
 
@@ -37,6 +38,10 @@ Direction direction(const Vector3& vector);
 /// data have theta_i < 0 and phi_i = 0, that is the source at azimuth π. Directions with theta ≥ 0 come back unchanged.
 Direction unfolded(const Direction& direction);
 
+/// The direction at these angles in degrees, as files, the program and Python give them: unfolded, and exactly so,
+/// since 180 is exact in degrees. Throws std::invalid_argument for a polar angle that is not in [−90, 90].
+Direction direction_from_degrees(double theta, double phi);
+
 struct Geometry {
   Direction incident;   ///< towards the source
   Direction reflected;  ///< towards the detector
@@ -63,6 +68,10 @@ enum class Frame {
   sp,                ///< (s, p): s = z × k / |z × k|, p = k × s. At theta = 0, s follows the azimuth that was given.
   scattering_plane,  ///< (⊥, ∥): ⊥ = k_in × k_out / |…| for both beams, ∥ = k × ⊥.
 };
+
+/// "xy", "sp", "scattering_plane"; the opposite throws std::invalid_argument for another name.
+std::string to_string(Frame frame);
+Frame frame_from(const std::string& name);
 
 /// Angle in radians from the frame's (e1, e2) axes to (y, x), separately for each beam:
 ///   M_xy = rotator(scattered) · M_frame · rotator(incident)ᵀ          (B4)
