@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mueller-matrix BRDFs: fit them to measurements, evaluate them anywhere, with an uncertainty on every number.
+
+    import mmbrdf
+    ptfe = mmbrdf.material("ptfe")
+    f = ptfe.evaluate(532, theta_i_deg=45, phi_i_deg=0, theta_r_deg=[0, 30, 60], phi_r_deg=180)     # (3, 4, 4), sr^-1
+
+Angles are in degrees, wavelengths in nanometres, and the names of arguments say so. Directions point away from the
+sample; azimuths are counted from x towards y; the frame of a matrix is named (xy, sp or scattering_plane). Arrays
+broadcast as numpy's do. ValueError is for arguments that make no sense, OSError for files.
+"""
+
+from __future__ import annotations
+
+import enum as _enum
+import os as _os
+from typing import Any as _Any
+from typing import NamedTuple as _NamedTuple
+
+import numpy as _np
+
+from ._mmbrdf import *  # noqa: F403: the names of the library
+from ._mmbrdf import Dataset, Model, __version__, load_model, read_samples  # noqa: F401
+
+_Array = _np.ndarray
+
+
+class ExtrapolationWarning(UserWarning):
+    """Geometries or wavelengths lie outside what a model was fitted to."""
+
+
+class Outside(_enum.IntFlag):
+    """Which of the fitted ranges a question leaves: what Model.outside() gives."""
+
+    INSIDE = 0
+    THETA_I = 1
+    THETA_R = 2
+    WAVELENGTH = 4
+    UNKNOWN_RANGE = 8
+
+
+class Geometry(_NamedTuple):
+    """Directions of many questions, in degrees: arrays that broadcast. model.evaluate(532, *geometry)"""
+
+    theta_i_deg: _Array
+    phi_i_deg: _Array
+    theta_r_deg: _Array
+    phi_r_deg: _Array
+
+
+class PolarizedBrdf(_NamedTuple):
+    """BRDFs between linear polarizations; the first letter is the incident one. Arrays of one shape."""
+
+    ss: _Array
+    sp: _Array
+    ps: _Array
+    pp: _Array
+
+
+class CloudeDecomposition(_NamedTuple):
+    """M = sum of weights (..., 4), falling, times components (..., 4, 4, 4) that do not depolarize."""
+
+    weights: _Array
+    components: _Array
+
+
+class LuChipman(_NamedTuple):
+    """M = depolarizer @ retarder @ diattenuator, each (..., 4, 4)."""
+
+    depolarizer: _Array
+    retarder: _Array
+    diattenuator: _Array
+
+
+class SymmetricDecomposition(_NamedTuple):
+    """M = diattenuator2 @ retarder2 @ depolarizer @ retarder1.T @ diattenuator1, each (..., 4, 4)."""
+
+    diattenuator2: _Array
+    retarder2: _Array
+    depolarizer: _Array
+    retarder1: _Array
+    diattenuator1: _Array
+
+
+def load(path: str | _os.PathLike[str]) -> Model | Dataset:
+    """A Model from a model file or published coefficients, a Dataset from a file of samples.
+
+    Files of samples are CSV with a header line; coefficients have none; model files are JSON. Raises OSError for a file
+    that cannot be read, and with line or field for one that holds something else.
+    """
+    with open(path, encoding="utf-8-sig", errors="replace") as file:
+        content = (line.strip() for line in file)
+        first = next((line for line in content if line and not line.startswith("#")), "")
+    return read_samples(path) if first[:1].isalpha() else load_model(path)
+
+
+def report(model: Model, data: Dataset | None, path: str | _os.PathLike[str], **options: _Any) -> None:
+    """Writes one HTML page about a model, and the samples it stands beside: see mmbrdf.report_page.write."""
+    from . import report_page
+
+    report_page.write(model, data, path, **options)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Results with named dimensions, units and conventions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._mmbrdf import Model, __version__
+
+if TYPE_CHECKING:
+    import xarray
+
+_ATTRIBUTES = {
+    "wavelength_nm": {"units": "nm", "long_name": "wavelength in vacuum"},
+    "theta_i_deg": {"units": "degree", "long_name": "polar angle of the direction to the source"},
+    "phi_i_deg": {"units": "degree", "long_name": "azimuth of the direction to the source, from x towards y"},
+    "theta_r_deg": {"units": "degree", "long_name": "polar angle of the direction to the detector"},
+    "phi_r_deg": {"units": "degree", "long_name": "azimuth of the direction to the detector, from x towards y"},
+}
+_LONG_NAMES = {"brdf": "Mueller matrix BRDF", "uncertainty": "standard uncertainty (k = 1) of the Mueller matrix BRDF"}
+_AXES = {"xy": "(y, x)", "sp": "(s, p)", "scattering_plane": "(perpendicular, parallel)"}
+
+
+def _dimension_names(shape: tuple[int, ...], arguments: dict[str, np.ndarray]) -> list[str]:
+    """An axis along which one argument alone varies has its name; any other is axis_0, axis_1, …"""
+    names = []
+    for axis, length in enumerate(shape):
+        varying = [
+            name
+            for name, values in arguments.items()
+            if length > 1 and values.ndim >= len(shape) - axis and values.shape[axis - len(shape)] == length
+        ]
+        alone = len(varying) == 1 and arguments[varying[0]].size == length
+        names.append(varying[0] if alone else f"axis_{axis}")
+    return names
+
+
+def _coordinates(shape: tuple[int, ...], names: list[str], arguments: dict[str, np.ndarray]) -> dict[str, Any]:
+    coordinates: dict[str, Any] = {}
+    for name, values in arguments.items():
+        if name in names:
+            coordinates[name] = ([name], values.reshape(-1), _ATTRIBUTES[name])
+        elif values.size == 1:
+            coordinates[name] = ([], values.reshape(()), _ATTRIBUTES[name])
+        else:
+            coordinates[name] = (names, np.broadcast_to(values, shape), _ATTRIBUTES[name])
+    return coordinates
+
+
+def labelled(
+    values: np.ndarray, quantity: str, model: Model, frame: str, arguments: dict[str, np.ndarray | None]
+) -> xarray.DataArray:
+    """An array (..., 4, 4) as Model.evaluate() gives it, with the arguments as coordinates."""
+    import xarray
+
+    given = {name: np.asarray(value, dtype=float) for name, value in arguments.items() if value is not None}
+    shape = values.shape[:-2]
+    names = _dimension_names(shape, given)
+    coordinates = _coordinates(shape, names, given)
+    coordinates["row"] = (["row"], np.arange(1, 5), {"long_name": "outgoing Stokes component"})
+    coordinates["column"] = (["column"], np.arange(1, 5), {"long_name": "incoming Stokes component"})
+    attributes = {
+        "units": "sr-1",
+        "long_name": _LONG_NAMES[quantity],
+        "frame": frame,
+        "axes": f"{_AXES[frame]} of each beam",
+        "convention": "germer2017: S2 = first axis - second axis, S4 = left - right, time factor exp(-i omega t)",
+        "directions": "away from the sample; forward scattering is phi_r - phi_i = 180 degrees",
+        "model": model.name,
+        "software": f"mmbrdf {__version__}",
+    }
+    return xarray.DataArray(values, coordinates, [*names, "row", "column"], quantity, attributes)

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What matrices say, over arrays of them.
+#include "mmbrdf/analysis.hpp"
+
+#include <pybind11/complex.h>
+
+#include "bindings.hpp"
+#include "mmbrdf/decompositions.hpp"
+#include "mmbrdf/sensitivity.hpp"
+
+namespace mmbrdf::python {
+
+namespace {
+
+/// A quantity of a matrix as a function of an array (..., 4, 4).
+template <class Result>
+void define(py::module_& m, const char* name, Result (*quantity)(const Mueller&), const char* doc) {
+  m.def(
+      name, [quantity](const Doubles& mueller) { return over_matrices(mueller, quantity); }, py::arg("mueller"), doc);
+}
+
+template <std::size_t n>
+std::array<double, 16 * n> flat(const std::array<Mueller, n>& matrices) {
+  std::array<double, 16 * n> result;
+  for (std::size_t i = 0; i < n; ++i)
+    std::copy(matrices[i].elements.begin(), matrices[i].elements.end(), result.begin() + 16 * i);
+  return result;
+}
+
+/// (..., 16 n) → n arrays (..., 4, 4).
+py::tuple split_matrices(const py::object& values, py::ssize_t n) {
+  const py::array array = values.cast<py::array>();
+  std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim() - 1);
+  shape.insert(shape.end(), {n, 4, 4});
+  const py::object parts = array.attr("reshape")(py::cast(shape));
+  py::tuple result(static_cast<std::size_t>(n));
+  for (py::ssize_t i = 0; i < n; ++i)
+    result[static_cast<std::size_t>(i)] =
+        parts[py::make_tuple(py::ellipsis(), i, py::slice(std::nullopt, std::nullopt, std::nullopt),
+                             py::slice(std::nullopt, std::nullopt, std::nullopt))];
+  return result;
+}
+
+/// (..., n) → n arrays (...).
+py::tuple split(const py::object& values, std::size_t n) {
+  py::tuple result(n);
+  for (std::size_t i = 0; i < n; ++i) result[i] = values[py::make_tuple(py::ellipsis(), i)];
+  return result;
+}
+
+py::object named(const char* name, const py::tuple& values) {
+  return py::module_::import("mmbrdf").attr(name)(*values);
+}
+
+py::object standard_uncertainties(const Doubles& gradient, const Doubles& covariance) {
+  const Broadcast broadcast({{"gradient", gradient, {4, 4}}, {"covariance", covariance, {16, 16}}});
+  return map(broadcast, [&](std::size_t i) {
+    MuellerCovariance of_elements;
+    broadcast.gather(1, i, i + 1, of_elements.values.data());
+    return standard_uncertainty(broadcast.mueller(0, i), of_elements);
+  });
+}
+
+void bind_quantities(py::module_& m) {
+  define(m, "depolarization", depolarization,
+         "D of Gil & Bernabeu (Eq. 21): 0 for a perfect depolarizer, 1 where no light is depolarized.");
+  define(m, "diattenuation", diattenuation, "Length of (M12, M13, M14) / M11.");
+  define(m, "polarizance", polarizance, "Length of (M21, M31, M41) / M11.");
+  define(m, "diattenuation_vector", diattenuation_vector, "(M12, M13, M14) / M11: array (..., 3).");
+  define(m, "polarizance_vector", polarizance_vector, "(M21, M31, M41) / M11: array (..., 3).");
+  define(m, "coherency_eigenvalues", coherency_eigenvalues,
+         "Of Cloude's coherency matrix, rising, in units of M: array (..., 4).");
+  define(m, "coherency", coherency, "Cloude's coherency matrix, row-major: complex array (..., 16), in units of M.");
+  define(m, "realizability_margin", realizability_margin,
+         "Smallest coherency eigenvalue / M11: negative for what cannot exist.");
+  define(m, "realizable", realizable, "Whether a medium can have this matrix: array of bool.");
+  define(m, "purity", purity, "tr T^2 / M11^2: 1/4 for a perfect depolarizer, 1 for a Jones matrix.");
+  define(m, "entropy", entropy,
+         "Of the coherency eigenvalues, base 4: 1 for a perfect depolarizer, 0 for a Jones matrix.");
+  define(m, "retardance", retardance, "Angle in radians by which a retarder turns the Poincare sphere.");
+  define(m, "depolarization_power", depolarization_power, "1 - |tr m| / 3 of a depolarizer (Lu & Chipman).");
+  m.def(
+      "degree_of_polarization",
+      [](const Doubles& mueller, const Doubles& stokes) {
+        const Broadcast broadcast({{"mueller", mueller, {4, 4}}, {"stokes", stokes, {4}}});
+        return map(broadcast, [&](std::size_t i) {
+          return degree_of_polarization(broadcast.mueller(0, i), broadcast.at<4>(1, i));
+        });
+      },
+      py::arg("mueller"), py::arg("stokes"), "Of the light that M makes of the incident Stokes vectors (..., 4).");
+}
+
+void bind_gradients(py::module_& m) {
+  define(m, "depolarization_gradient", depolarization_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
+  define(m, "diattenuation_gradient", diattenuation_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
+  define(m, "polarizance_gradient", polarizance_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
+  define(m, "smallest_eigenvalue_gradient", smallest_eigenvalue_gradient,
+         "Derivatives with respect to M_ij: array (..., 4, 4).");
+  define(m, "realizability_margin_gradient", realizability_margin_gradient,
+         "Derivatives with respect to M_ij: array (..., 4, 4).");
+  define(m, "purity_gradient", purity_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
+  define(m, "entropy_gradient", entropy_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
+  m.def(
+      "co_and_cross_polarized_gradients",
+      [] {
+        const PolarizedBrdfGradients g = co_and_cross_polarized_gradients();
+        py::tuple result(4);
+        const std::array all{g.ss, g.sp, g.ps, g.pp};
+        for (std::size_t i = 0; i < all.size(); ++i) {
+          py::array_t<double> one({4, 4});
+          Layout<Mueller>::store(all[i], one.mutable_data());
+          result[i] = one;
+        }
+        return named("PolarizedBrdf", result);
+      },
+      "PolarizedBrdf of the derivatives of f_ss, f_sp, f_ps, f_pp with respect to M_ij in the sp frame: (4, 4) each.");
+  m.def(
+      "standard_uncertainty", standard_uncertainties, py::arg("gradient"), py::arg("covariance"),
+      "sqrt(g V g) of a quantity with this gradient (..., 4, 4), from the covariance (..., 16, 16) of the elements in\n"
+      "the same frame, as Model.covariance() gives it.");
+}
+
+void bind_parts(py::module_& m) {
+  m.def(
+      "co_and_cross_polarized",
+      [](const Doubles& mueller) {
+        return named("PolarizedBrdf", split(over_matrices(mueller,
+                                                          [](const Mueller& f) {
+                                                            const PolarizedBrdf p = co_and_cross_polarized(f);
+                                                            return std::array{p.ss, p.sp, p.ps, p.pp};
+                                                          }),
+                                            4));
+      },
+      py::arg("mueller_sp"),
+      "PolarizedBrdf(ss, sp, ps, pp) of matrices in the sp frame, in their units; the first letter is the incident\n"
+      "polarization.");
+  m.def(
+      "cloude_decomposition",
+      [](const Doubles& mueller) {
+        const py::object all = over_matrices(mueller, [](const Mueller& f) {
+          const CloudeDecomposition d = cloude_decomposition(f);
+          std::array<double, 68> values;
+          std::copy(d.weights.begin(), d.weights.end(), values.begin());
+          const auto components = flat(d.components);
+          std::copy(components.begin(), components.end(), values.begin() + 4);
+          return values;
+        });
+        const py::slice weights(0, 4, 1), components(4, 68, 1);
+        const py::array matrices = all[py::make_tuple(py::ellipsis(), components)].cast<py::array>();
+        std::vector<py::ssize_t> shape(matrices.shape(), matrices.shape() + matrices.ndim() - 1);
+        shape.insert(shape.end(), {4, 4, 4});
+        return named("CloudeDecomposition", py::make_tuple(all[py::make_tuple(py::ellipsis(), weights)],
+                                                           matrices.attr("reshape")(py::cast(shape))));
+      },
+      py::arg("mueller"),
+      "CloudeDecomposition(weights (..., 4), components (..., 4, 4, 4)): M = sum of weight x component, falling.");
+  m.def(
+      "nearest_realizable",
+      [](const Doubles& mueller) {
+        return over_matrices(mueller, [](const Mueller& f) { return nearest_realizable(f).matrix; });
+      },
+      py::arg("mueller"), "The realizable matrices closest in the sum of squares, with the same M11.");
+  m.def(
+      "lu_chipman",
+      [](const Doubles& mueller) {
+        return named("LuChipman",
+                     split_matrices(over_matrices(mueller,
+                                                  [](const Mueller& f) {
+                                                    const LuChipman d = lu_chipman(f);
+                                                    return flat<3>({d.depolarizer, d.retarder, d.diattenuator});
+                                                  }),
+                                    3));
+      },
+      py::arg("mueller"), "LuChipman(depolarizer, retarder, diattenuator): M is their product. Each (..., 4, 4).");
+  m.def(
+      "symmetric_decomposition",
+      [](const Doubles& mueller) {
+        return named(
+            "SymmetricDecomposition",
+            split_matrices(
+                over_matrices(
+                    mueller,
+                    [](const Mueller& f) {
+                      const SymmetricDecomposition d = symmetric_decomposition(f);
+                      return flat<5>({d.diattenuator2, d.retarder2, d.depolarizer, d.retarder1, d.diattenuator1});
+                    }),
+                5));
+      },
+      py::arg("mueller"),
+      "SymmetricDecomposition(diattenuator2, retarder2, depolarizer, retarder1, diattenuator1): M is the product\n"
+      "diattenuator2 retarder2 depolarizer retarder1^T diattenuator1. Each (..., 4, 4).");
+}
+
+}  // namespace
+
+void bind_analysis(py::module_& m) {
+  bind_quantities(m);
+  bind_gradients(m);
+  bind_parts(m);
+}
+
+}  // namespace mmbrdf::python

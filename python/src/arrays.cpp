@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arrays.hpp"
+
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+namespace mmbrdf::python {
+
+namespace {
+
+std::string text(const std::vector<py::ssize_t>& shape) {
+  std::string result = "(";
+  for (std::size_t d = 0; d < shape.size(); ++d) result += (d > 0 ? ", " : "") + std::to_string(shape[d]);
+  return result + (shape.size() == 1 ? ",)" : ")");
+}
+
+std::vector<py::ssize_t> shape_of(const Doubles& array) { return {array.shape(), array.shape() + array.ndim()}; }
+
+/// The axes that broadcast. Throws unless the array ends in its core.
+std::vector<py::ssize_t> outer_shape(const Operand& operand) {
+  std::vector<py::ssize_t> shape = shape_of(operand.array);
+  const auto axes = static_cast<py::ssize_t>(operand.core.size());
+  if (static_cast<py::ssize_t>(shape.size()) < axes ||
+      !std::equal(operand.core.begin(), operand.core.end(), shape.end() - axes))
+    throw std::invalid_argument(std::string(operand.name) + ": its shape " + text(shape) + " does not end in " +
+                                text(operand.core));
+  shape.resize(shape.size() - operand.core.size());
+  return shape;
+}
+
+/// Throws if the lengths differ and neither is 1.
+void widen(std::vector<py::ssize_t>& shape, const std::vector<py::ssize_t>& other, const std::vector<Operand>& all) {
+  if (other.size() > shape.size()) shape.insert(shape.begin(), other.size() - shape.size(), 1);
+  for (std::size_t d = 0; d < other.size(); ++d) {
+    py::ssize_t& length = shape[shape.size() - other.size() + d];
+    if (length == 1) length = other[d];
+    if (other[d] != 1 && other[d] != length) {
+      std::string shapes;
+      for (const Operand& operand : all)
+        shapes += std::string(shapes.empty() ? "" : ", ") + operand.name + " " + text(shape_of(operand.array));
+      throw std::invalid_argument("shapes do not broadcast: " + shapes);
+    }
+  }
+}
+
+/// A double that need not be aligned.
+double loaded(const char* data) {
+  double value;
+  std::memcpy(&value, data, sizeof value);
+  return value;
+}
+
+}  // namespace
+
+Broadcast::Broadcast(std::vector<Operand> operands) : operands_(std::move(operands)) {
+  for (const Operand& operand : operands_) widen(shape_, outer_shape(operand), operands_);
+  for (const py::ssize_t length : shape_) size_ *= static_cast<std::size_t>(length);
+  for (const Operand& operand : operands_) {
+    Source source{reinterpret_cast<const char*>(operand.array.data()), {}, {1, 1}, {0, 0}};
+    const std::size_t axes = static_cast<std::size_t>(operand.array.ndim()) - operand.core.size();
+    source.strides.assign(shape_.size(), 0);
+    for (std::size_t d = 0; d < axes; ++d)
+      if (operand.array.shape(static_cast<py::ssize_t>(d)) != 1)
+        source.strides[shape_.size() - axes + d] = operand.array.strides(static_cast<py::ssize_t>(d));
+    for (std::size_t d = 0; d < operand.core.size(); ++d) {
+      const std::size_t axis = 2 - operand.core.size() + d;
+      source.lengths[axis] = operand.core[d];
+      source.core_strides[axis] = operand.array.strides(static_cast<py::ssize_t>(axes + d));
+    }
+    sources_.push_back(std::move(source));
+  }
+}
+
+void Broadcast::gather(std::size_t which, std::size_t begin, std::size_t end, double* out) const {
+  const Source& source = sources_[which];
+  const std::size_t inner = shape_.empty() ? 1 : static_cast<std::size_t>(shape_.back());
+  const py::ssize_t stride = shape_.empty() ? 0 : source.strides.back();
+  while (begin < end) {
+    std::size_t row = begin / inner;
+    const char* data = source.data + static_cast<py::ssize_t>(begin % inner) * stride;
+    for (std::size_t d = shape_.size(); d-- > 1;) {
+      const auto length = static_cast<std::size_t>(shape_[d - 1]);
+      data += static_cast<py::ssize_t>(row % length) * source.strides[d - 1];
+      row /= length;
+    }
+    const std::size_t count = std::min(end - begin, inner - begin % inner);
+    for (std::size_t i = 0; i < count; ++i, data += stride)
+      for (py::ssize_t a = 0; a < source.lengths[0]; ++a)
+        for (py::ssize_t b = 0; b < source.lengths[1]; ++b)
+          *out++ = loaded(data + a * source.core_strides[0] + b * source.core_strides[1]);
+    begin += count;
+  }
+}
+
+std::string Broadcast::place(std::size_t position) const {
+  if (shape_.empty()) return "";
+  std::string result = "]";
+  for (std::size_t d = shape_.size(); d-- > 0;) {
+    const auto length = static_cast<std::size_t>(shape_[d]);
+    result = (d > 0 ? ", " : "[") + std::to_string(position % length) + result;
+    position /= length;
+  }
+  return result;
+}
+
+void in_parts(std::size_t size, int threads, std::size_t least,
+              const std::function<void(std::size_t, std::size_t)>& work) {
+  if (threads < 0) throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be 0 or more");
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t wanted = threads == 0 ? cores : static_cast<std::size_t>(threads);
+  const std::size_t parts = std::clamp<std::size_t>(size / std::max<std::size_t>(least, 1), 1, wanted);
+  std::vector<std::exception_ptr> errors(parts);
+  const auto part = [&](std::size_t p) {
+    try {
+      work(size * p / parts, size * (p + 1) / parts);
+    } catch (...) {
+      errors[p] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> others;
+  for (std::size_t p = 1; p < parts; ++p) others.emplace_back(part, p);
+  part(0);
+  for (std::thread& thread : others) thread.join();
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
+}
+
+std::vector<Operand> direction_operands(const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
+                                        const Doubles& phi_r) {
+  return {{"theta_i_deg", theta_i}, {"phi_i_deg", phi_i}, {"theta_r_deg", theta_r}, {"phi_r_deg", phi_r}};
+}
+
+void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, std::size_t end, Geometry* out) {
+  constexpr std::size_t some = 256;
+  std::array<std::array<double, some>, 4> angles;
+  for (; begin < end; begin += some) {
+    const std::size_t count = std::min(some, end - begin);
+    for (std::size_t a = 0; a < 4; ++a) broadcast.gather(first + a, begin, begin + count, angles[a].data());
+    for (std::size_t i = 0; i < count; ++i) {
+      try {
+        *out++ = {direction_from_degrees(angles[0][i], angles[1][i]),
+                  direction_from_degrees(angles[2][i], angles[3][i])};
+      } catch (const std::invalid_argument& error) {
+        const std::string place = broadcast.place(begin + i);
+        throw std::invalid_argument("direction " + std::string(error.what()) + (place.empty() ? "" : ", at " + place));
+      }
+    }
+  }
+}
+
+Geometry geometry(const Broadcast& broadcast, std::size_t first, std::size_t position) {
+  Geometry result;
+  gather(broadcast, first, position, position + 1, &result);
+  return result;
+}
+
+}  // namespace mmbrdf::python

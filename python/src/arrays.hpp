@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// numpy arrays of numbers, directions and Mueller matrices, broadcast against each other.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/mueller.hpp"
+
+namespace mmbrdf::python {
+
+namespace py = pybind11;
+
+/// Any array of real numbers, with the strides it has; other types are converted to double.
+using Doubles = py::array_t<double, py::array::forcecast>;
+
+/// An argument: `core` are the lengths of its last axes, at most two, which do not broadcast. {4, 4} for matrices.
+struct Operand {
+  const char* name;
+  Doubles array;
+  std::vector<py::ssize_t> core{};
+};
+
+/// Several arrays as numpy broadcasts them. Reading needs no GIL.
+class Broadcast {
+ public:
+  /// Throws std::invalid_argument, naming the arguments and their shapes, if they do not broadcast.
+  explicit Broadcast(std::vector<Operand> operands);
+
+  const std::vector<py::ssize_t>& shape() const { return shape_; }
+  std::size_t size() const { return size_; }
+
+  /// Copies what operand `which` has at the positions begin … end − 1 of the result (C order), core after core.
+  void gather(std::size_t which, std::size_t begin, std::size_t end, double* out) const;
+
+  /// The core at one position.
+  template <std::size_t n>
+  std::array<double, n> at(std::size_t which, std::size_t position) const {
+    std::array<double, n> values;
+    gather(which, position, position + 1, values.data());
+    return values;
+  }
+  double number(std::size_t which, std::size_t position) const { return at<1>(which, position)[0]; }
+  Mueller mueller(std::size_t which, std::size_t position) const { return {at<16>(which, position)}; }
+
+  /// "[2, 5]" for messages; "" where there is but one.
+  std::string place(std::size_t position) const;
+
+ private:
+  struct Source {
+    const char* data;
+    std::vector<py::ssize_t> strides;
+    std::array<py::ssize_t, 2> lengths, core_strides;  // of a core as rows and columns
+  };
+  std::vector<Operand> operands_;
+  std::vector<Source> sources_;
+  std::vector<py::ssize_t> shape_;
+  std::size_t size_ = 1;
+};
+
+/// Calls work(begin, end) for parts of 0 … size − 1, on several threads if there is enough to do. `threads` 0: as many
+/// as there are cores. The GIL must not be needed. Throws what the work throws; of several, that of the first part.
+void in_parts(std::size_t size, int threads, std::size_t least, const std::function<void(std::size_t, std::size_t)>&);
+
+/// Runs without the GIL.
+template <class Work>
+auto without_gil(Work work) {
+  const py::gil_scoped_release release;
+  return work();
+}
+
+/// How results of one position are laid out in an array.
+template <class T>
+struct Layout {
+  using Scalar = T;
+  static std::vector<py::ssize_t> core() { return {}; }
+  static void store(const T& value, Scalar* out) { *out = value; }
+};
+template <class T, std::size_t n>
+struct Layout<std::array<T, n>> {
+  using Scalar = T;
+  static std::vector<py::ssize_t> core() { return {n}; }
+  static void store(const std::array<T, n>& values, Scalar* out) { std::copy(values.begin(), values.end(), out); }
+};
+template <>
+struct Layout<Mueller> {
+  using Scalar = double;
+  static std::vector<py::ssize_t> core() { return {4, 4}; }
+  static void store(const Mueller& m, double* out) { std::copy(m.elements.begin(), m.elements.end(), out); }
+};
+
+/// An array of the broadcast shape with `core` behind it.
+template <class Scalar>
+py::array_t<Scalar> new_array(const Broadcast& broadcast, const std::vector<py::ssize_t>& core) {
+  std::vector<py::ssize_t> shape = broadcast.shape();
+  shape.insert(shape.end(), core.begin(), core.end());
+  return py::array_t<Scalar>(shape);
+}
+
+/// A number for an array without axes, as numpy's own functions return.
+inline py::object unwrapped(const py::array& array) {
+  return array.ndim() == 0 ? array.attr("__getitem__")(py::tuple()) : py::object(array);
+}
+
+/// f(position) at each position, without the GIL.
+template <class F>
+py::object map(const Broadcast& broadcast, F f, int threads = 1) {
+  using Result = std::invoke_result_t<F, std::size_t>;
+  using Out = Layout<Result>;
+  const std::vector<py::ssize_t> core = Out::core();
+  auto result = new_array<typename Out::Scalar>(broadcast, core);
+  std::size_t length = 1;
+  for (const py::ssize_t n : core) length *= static_cast<std::size_t>(n);
+  auto* const out = result.mutable_data();
+  without_gil([&] {
+    in_parts(broadcast.size(), threads, 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) Out::store(f(i), out + i * length);
+    });
+  });
+  return unwrapped(result);
+}
+
+/// f(Mueller) for an array of matrices, (…, 4, 4).
+template <class F>
+py::object over_matrices(const Doubles& mueller, F f) {
+  const Broadcast broadcast({{"mueller", mueller, {4, 4}}});
+  return map(broadcast, [&](std::size_t i) { return f(broadcast.mueller(0, i)); });
+}
+
+/// The last four operands of a question, from `first`: theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg.
+std::vector<Operand> direction_operands(const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
+                                        const Doubles& phi_r);
+
+/// Geometries of the positions begin … end − 1, whose angles in degrees are the operands from `first`. Throws
+/// std::invalid_argument, with the place in the array, for invalid angles.
+void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, std::size_t end, Geometry* out);
+Geometry geometry(const Broadcast& broadcast, std::size_t first, std::size_t position);
+
+}  // namespace mmbrdf::python

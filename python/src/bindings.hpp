@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the sources of the module know of each other.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf::python {
+
+/// A model as Python holds it: it never changes, so what has been prepared of it stays right.
+class ModelObject {
+ public:
+  explicit ModelObject(Model model) : model_(std::move(model)) {}
+
+  const Model& model() const { return model_; }
+
+  /// Micrometres: those of the argument, or the model's own for None.
+  double wavelength(const std::optional<double>& wavelength_nm) const;
+
+  /// At a wavelength in micrometres.
+  PreparedModel prepared(double wavelength, Rotation rotation) const;
+
+ private:
+  Model model_;
+  mutable std::mutex mutex_;
+  mutable std::map<Rotation, PreparedModel> prepared_;
+};
+
+using ModelPointer = std::shared_ptr<ModelObject>;
+
+/// nm → micrometres. Throws std::invalid_argument unless it is positive.
+double micrometres(double wavelength_nm);
+std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
+
+/// to 1e-9 nm: 0.532 gives 532.
+double nanometres(double wavelength);
+
+/// {nm: reflectance}
+ReflectanceTable reflectance_table(const std::map<double, double>& by_nanometres);
+
+inline Rotation rotation(bool as_printed) { return as_printed ? Rotation::as_printed : Rotation::covariant; }
+
+/// format.format(value), as Python does it.
+inline std::string formatted(const char* format, double value) {
+  return py::str(format).attr("format")(value).cast<std::string>();
+}
+
+/// Throws as Python's open(): FileNotFoundError and the like.
+void require_readable(const std::string& path);
+
+/// An array that shows memory of `owner` without a copy, and cannot be written to.
+template <class T>
+py::array_t<T> view(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, py::handle owner) {
+  py::array_t<T> array(std::move(shape), std::move(strides), data, owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+using ModelClass = py::class_<ModelObject, ModelPointer>;
+
+ModelClass bind_model(py::module_& m);
+void bind_evaluation(ModelClass& model);
+void bind_dataset(py::module_& m);
+void bind_fit(py::module_& m);
+void bind_mueller(py::module_& m);
+void bind_analysis(py::module_& m);
+void bind_radiometry(py::module_& m);
+void bind_polarimeter(py::module_& m);
+
+}  // namespace mmbrdf::python

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Samples, and the geometries they are taken at.
+#include "dataset.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "mmbrdf/subsets.hpp"
+
+namespace mmbrdf::python {
+
+namespace {
+
+DatasetPointer pointer(std::vector<Sample> samples) { return std::make_shared<Dataset>(Dataset{std::move(samples)}); }
+
+/// mueller as measured (sr⁻¹) in a frame → f11 and normalised elements in the xy frame. Uncertainties are of those.
+DatasetPointer from_arrays(const Doubles& wavelength_nm, const Doubles& theta_i, const Doubles& phi_i,
+                           const Doubles& theta_r, const Doubles& phi_r, const Doubles& mueller,
+                           const std::string& frame_name, const std::optional<Doubles>& uncertainty) {
+  const Frame frame = frame_from(frame_name);
+  std::vector<Operand> operands = direction_operands(theta_i, phi_i, theta_r, phi_r);
+  operands.push_back({"wavelength_nm", wavelength_nm});
+  operands.push_back({"mueller", mueller, {4, 4}});
+  if (uncertainty) operands.push_back({"uncertainty", *uncertainty, {4, 4}});
+  if (uncertainty && frame != Frame::xy)
+    throw std::invalid_argument("uncertainty: needs frame='xy', since it says nothing of correlations");
+  const Broadcast broadcast(operands);
+  return without_gil([&] {
+    std::vector<Sample> samples(broadcast.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      Sample& sample = samples[i];
+      sample.geometry = geometry(broadcast, 0, i);
+      sample.wavelength = micrometres(broadcast.number(4, i));
+      const Mueller m = change_frame(broadcast.mueller(5, i), sample.geometry, frame, Frame::xy);
+      sample.f11 = m(0, 0);
+      sample.normalized = normalized(m);
+      if (uncertainty) sample.uncertainty = broadcast.mueller(6, i);
+    }
+    require_valid(samples);
+    return pointer(std::move(samples));
+  });
+}
+
+/// One number of each sample.
+template <class F>
+py::array_t<double> column(const Dataset& data, F f) {
+  py::array_t<double> result(static_cast<py::ssize_t>(data.samples.size()));
+  double* const out = result.mutable_data();
+  for (std::size_t i = 0; i < data.samples.size(); ++i) out[i] = f(data.samples[i]);
+  return result;
+}
+
+/// A member of each sample, without a copy.
+py::array matrices(const DatasetPointer& data, Mueller Sample::*member) {
+  constexpr auto step = static_cast<py::ssize_t>(sizeof(Sample)), size = static_cast<py::ssize_t>(sizeof(double));
+  const Sample* const first = data->samples.data();
+  return view(first ? (first->*member).elements.data() : nullptr,
+              {static_cast<py::ssize_t>(data->samples.size()), 4, 4}, {step, 4 * size, size}, py::cast(data));
+}
+
+py::array_t<double> mueller(const Dataset& data) {
+  const auto count = static_cast<py::ssize_t>(data.samples.size());
+  py::array_t<double> result({count, py::ssize_t{4}, py::ssize_t{4}});
+  double* out = result.mutable_data();
+  for (const Sample& sample : data.samples)
+    for (std::size_t e = 0; e < 16; ++e) *out++ = sample.f11 * sample.normalized.elements[e];
+  return result;
+}
+
+bool has_uncertainty(const Dataset& data) {
+  return std::any_of(data.samples.begin(), data.samples.end(), [](const Sample& s) { return has_uncertainty(s); });
+}
+
+/// What data[which] keeps: numpy decides, on the numbers of the samples.
+DatasetPointer chosen(const Dataset& data, const py::object& which) {
+  const py::object numbers = py::module_::import("numpy").attr("arange")(data.samples.size());
+  const auto kept = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(
+      py::module_::import("numpy").attr("atleast_1d")(numbers[which]));
+  std::vector<Sample> samples;
+  for (py::ssize_t i = 0; i < kept.size(); ++i)
+    samples.push_back(data.samples[static_cast<std::size_t>(kept.data()[i])]);
+  return pointer(std::move(samples));
+}
+
+py::tuple wavelengths_nm(const Dataset& data) {
+  std::vector<double> result;
+  for (const double wavelength : wavelengths(data.samples)) result.push_back(nanometres(wavelength));
+  return py::tuple(py::cast(result));
+}
+
+std::string representation(const Dataset& data) {
+  const std::string at = data.samples.empty() ? "" : " at " + std::string(py::str(wavelengths_nm(data))) + " nm";
+  return "<mmbrdf.Dataset: " + std::to_string(data.samples.size()) + " samples" + at +
+         (has_uncertainty(data) ? ", with uncertainties>" : ">");
+}
+
+DatasetPointer samples_of(const std::filesystem::path& path) {
+  require_readable(path);
+  return without_gil([&] { return pointer(read_samples(path)); });
+}
+
+py::tuple geometry_of(const std::vector<Geometry>& geometries) {
+  std::array<py::array_t<double>, 4> angles;
+  for (py::array_t<double>& one : angles) one = py::array_t<double>(static_cast<py::ssize_t>(geometries.size()));
+  for (std::size_t i = 0; i < geometries.size(); ++i) {
+    const Geometry& g = geometries[i];
+    const std::array values{g.incident.theta, g.incident.phi, g.reflected.theta, g.reflected.phi};
+    for (std::size_t a = 0; a < 4; ++a) angles[a].mutable_data()[i] = degrees(values[a]);
+  }
+  return py::module_::import("mmbrdf").attr("Geometry")(angles[0], angles[1], angles[2], angles[3]);
+}
+
+std::vector<Geometry> all_geometries(const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
+                                     const Doubles& phi_r) {
+  const Broadcast broadcast(direction_operands(theta_i, phi_i, theta_r, phi_r));
+  std::vector<Geometry> result(broadcast.size());
+  gather(broadcast, 0, 0, result.size(), result.data());
+  return result;
+}
+
+DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wavelengths_nm,
+                         const py::sequence& angles, double speckle, unsigned long seed) {
+  const std::vector<Geometry> geometries = geometries_from(angles);
+  return without_gil(
+      [&] { return pointer(simulate(model.model(), micrometres(wavelengths_nm), geometries, speckle, seed)); });
+}
+
+/// A number, or a sequence of numbers.
+std::vector<double> numbers(const Doubles& values) {
+  const Broadcast broadcast({{"wavelength_nm", values}});
+  std::vector<double> result(broadcast.size());
+  broadcast.gather(0, 0, result.size(), result.data());
+  return result;
+}
+
+void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
+  c.def_property_readonly(
+       "wavelength_nm",
+       [](const Dataset& d) { return column(d, [](const Sample& s) { return nanometres(s.wavelength); }); }, "(N,)")
+      .def_property_readonly(
+          "theta_i_deg",
+          [](const Dataset& d) {
+            return column(d, [](const Sample& s) { return degrees(s.geometry.incident.theta); });
+          },
+          "(N,), from 0 to 90")
+      .def_property_readonly(
+          "phi_i_deg",
+          [](const Dataset& d) { return column(d, [](const Sample& s) { return degrees(s.geometry.incident.phi); }); },
+          "(N,)")
+      .def_property_readonly(
+          "theta_r_deg",
+          [](const Dataset& d) {
+            return column(d, [](const Sample& s) { return degrees(s.geometry.reflected.theta); });
+          },
+          "(N,), from 0 to 90")
+      .def_property_readonly(
+          "phi_r_deg",
+          [](const Dataset& d) { return column(d, [](const Sample& s) { return degrees(s.geometry.reflected.phi); }); },
+          "(N,)")
+      .def_property_readonly(
+          "f11", [](const Dataset& d) { return column(d, [](const Sample& s) { return s.f11; }); },
+          "(N,), the unpolarized BRDF in sr^-1")
+      .def_property_readonly(
+          "normalized", [](const DatasetPointer& d) { return matrices(d, &Sample::normalized); },
+          "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1: a view")
+      .def_property_readonly("mueller", mueller, "(N, 4, 4) in sr^-1, xy frame")
+      .def_property_readonly(
+          "uncertainty",
+          [](const DatasetPointer& d) -> py::object {
+            return has_uncertainty(*d) ? py::object(matrices(d, &Sample::uncertainty)) : py::object(py::none());
+          },
+          "(N, 4, 4), standard uncertainties: element 11 of f11 in sr^-1, the others of f_ij / f11: a view. None: not "
+          "known");
+}
+
+}  // namespace
+
+std::vector<Geometry> geometries_from(const py::sequence& angles) {
+  if (angles.size() != 4)
+    throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
+                                " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
+  return all_geometries(angles[0].cast<Doubles>(), angles[1].cast<Doubles>(), angles[2].cast<Doubles>(),
+                        angles[3].cast<Doubles>());
+}
+
+py::object dataset_object(std::vector<Sample> samples) { return py::cast(pointer(std::move(samples))); }
+
+void bind_dataset(py::module_& m) {
+  py::class_<Dataset, DatasetPointer> c(
+      m, "Dataset",
+      "Measured or simulated samples: N matrices, each at its own wavelength and geometry. It does not change.\n\n"
+      "From read_samples(), simulate(), or arrays that broadcast to N: mueller (..., 4, 4) in sr^-1 in the frame "
+      "named,\n"
+      "and uncertainty (..., 4, 4): element 11 of f11 in sr^-1, the others of f_ij / f11, in the xy frame.\n"
+      "data[0:100], data[mask] and data[numbers] are datasets of fewer samples.");
+  c.def(py::init(&from_arrays), py::arg("wavelength_nm"), py::arg("theta_i_deg"), py::arg("phi_i_deg"),
+        py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::arg("mueller"), py::arg("frame") = "xy",
+        py::arg("uncertainty") = py::none());
+  bind_columns(c);
+  c.def("__len__", [](const Dataset& d) { return d.samples.size(); })
+      .def("__getitem__", chosen, py::arg("which"))
+      .def("__repr__", representation)
+      .def_property_readonly("wavelengths_nm", wavelengths_nm, "The distinct wavelengths, rising")
+      .def_property_readonly(
+          "geometry",
+          [](const Dataset& d) {
+            std::vector<Geometry> all;
+            for (const Sample& s : d.samples) all.push_back(s.geometry);
+            return geometry_of(all);
+          },
+          "Geometry of all samples: four arrays (N,)")
+      .def(
+          "at_wavelengths",
+          [](const Dataset& d, const Doubles& nm) {
+            return pointer(at_wavelengths(d.samples, micrometres(numbers(nm))));
+          },
+          py::arg("wavelength_nm"), "Only the samples at these. Raises ValueError if there are none at one of them.")
+      .def(
+          "save", [](const Dataset& d, const std::filesystem::path& path) { write_samples(path, d.samples); },
+          py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
+      .def(py::pickle(
+          [](const Dataset& d) {
+            return py::bytes(reinterpret_cast<const char*>(d.samples.data()), d.samples.size() * sizeof(Sample));
+          },
+          [](const py::bytes& bytes) {
+            const std::string_view text = bytes;
+            if (text.size() % sizeof(Sample) != 0) throw std::invalid_argument("Dataset: damaged pickle");
+            std::vector<Sample> samples(text.size() / sizeof(Sample));
+            std::memcpy(samples.data(), text.data(), text.size());
+            return pointer(std::move(samples));
+          }));
+  m.def("read_samples", samples_of, py::arg("path"),
+        "A Dataset from CSV in the published layout or the project's own. Raises OSError for a file that cannot be "
+        "read,\nwith line and column for one that holds something else.");
+  m.def(
+      "simulate",
+      [](const ModelObject& model, const Doubles& nm, const py::sequence& geometry, double speckle,
+         unsigned long seed) { return simulated(model, numbers(nm), geometry, speckle, seed); },
+      py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("speckle") = 0.0,
+      py::arg("seed") = 0,
+      "Samples that a model would give: each wavelength at all geometries, with Gaussian noise of the speckle law,\n"
+      "standard deviation speckle * sqrt(cos theta_i / cos theta_r). The same seed gives the same noise.");
+  m.def(
+      "germer2017_grid", [] { return geometry_of(germer2017_grid()); },
+      "The 1824 geometries of the published measurement, as a Geometry of arrays.");
+  m.def(
+      "random_geometries",
+      [](int count, unsigned long seed, double most) {
+        return geometry_of(random_geometries(count, seed, radians(most)));
+      },
+      py::arg("count"), py::arg("seed"), py::arg("theta_max_deg") = 75.0,
+      "Pairs of directions, each uniform in projected direction cosines. The same seed gives the same pairs.");
+  m.def(
+      "in_plane",
+      [](double theta_i, const Doubles& theta_r) {
+        std::vector<double> angles = numbers(theta_r);
+        for (double& angle : angles) angle = radians(angle);
+        return geometry_of(in_plane(radians(theta_i), angles));
+      },
+      py::arg("theta_i_deg"), py::arg("theta_r_deg"),
+      "Directions in the plane of incidence: the source at azimuth 0, the detector at azimuth 180 (forward) for\n"
+      "theta_r_deg >= 0, at azimuth 0 (back) below.");
+}
+
+}  // namespace mmbrdf::python

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bindings.hpp"
+#include "mmbrdf/dataset.hpp"
+
+namespace mmbrdf::python {
+
+/// Samples as Python holds them: they never change, so arrays may show their memory.
+struct Dataset {
+  std::vector<Sample> samples;
+};
+using DatasetPointer = std::shared_ptr<Dataset>;
+
+/// The Python object Dataset of these samples.
+py::object dataset_object(std::vector<Sample> samples);
+
+/// From four arrays that broadcast: theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg.
+std::vector<Geometry> geometries_from(const py::sequence& angles);
+
+}  // namespace mmbrdf::python

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Models at many wavelengths and geometries.
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <numeric>
+#include <span>
+
+#include "bindings.hpp"
+#include "mmbrdf/budget.hpp"
+#include "mmbrdf/monte_carlo.hpp"
+#include "mmbrdf/uncertainty.hpp"
+
+namespace mmbrdf::python {
+
+namespace {
+
+/// Geometries of one wavelength, next to each other in the order of the question.
+struct Some {
+  std::span<const Geometry> geometries;
+  const std::size_t* positions;  // of each in the result; null: from `begin` on
+  std::size_t begin;
+  std::size_t position(std::size_t i) const { return positions ? positions[i] : begin + i; }
+};
+
+/// What a model is asked for: wavelengths and directions, broadcast.
+class Question {
+ public:
+  Question(ModelPointer model, const std::optional<Doubles>& wavelength_nm, const Doubles& theta_i,
+           const Doubles& phi_i, const Doubles& theta_r, const Doubles& phi_r, bool as_printed)
+      : model_(std::move(model)),
+        rotation_(rotation(as_printed)),
+        broadcast_(operands(*model_, wavelength_nm, theta_i, phi_i, theta_r, phi_r)),
+        one_wavelength_(!wavelength_nm || wavelength_nm->size() == 1) {}
+
+  const Broadcast& broadcast() const { return broadcast_; }
+  const ModelObject& model() const { return *model_; }
+  Rotation rotation_of_model() const { return rotation_; }
+
+  /// use(prepared, some) with prepared = make(wavelength in micrometres), for all positions. Needs no GIL.
+  template <class Make, class Use>
+  void each(int threads, std::size_t least, Make make, Use use) const {
+    if (broadcast_.size() == 0) return;
+    if (one_wavelength_) {
+      const auto prepared = make(micrometres(broadcast_.number(0, 0)));
+      in_parts(broadcast_.size(), threads, least,
+               [&](std::size_t begin, std::size_t end) { run(begin, end, nullptr, prepared, use); });
+      return;
+    }
+    std::vector<double> wavelengths(broadcast_.size());
+    broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
+    for (double& wavelength : wavelengths) wavelength = micrometres(wavelength);
+    std::vector<std::size_t> order(wavelengths.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return wavelengths[a] < wavelengths[b]; });
+    in_parts(order.size(), threads, least, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t next = begin; begin < end; begin = next) {
+        const double wavelength = wavelengths[order[begin]];
+        while (next < end && wavelengths[order[next]] == wavelength) ++next;
+        run(begin, next, order.data(), make(wavelength), use);
+      }
+    });
+  }
+
+ private:
+  static std::vector<Operand> operands(const ModelObject& model, const std::optional<Doubles>& wavelength_nm,
+                                       const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
+                                       const Doubles& phi_r) {
+    std::vector<Operand> result = direction_operands(theta_i, phi_i, theta_r, phi_r);
+    const Doubles wavelength = wavelength_nm ? *wavelength_nm : Doubles(std::vector<py::ssize_t>{});
+    if (!wavelength_nm) Doubles(wavelength).mutable_data()[0] = 1000 * only_wavelength(model.model());
+    result.insert(result.begin(), {"wavelength_nm", wavelength});
+    return result;
+  }
+
+  template <class Prepared, class Use>
+  void run(std::size_t begin, std::size_t end, const std::size_t* order, const Prepared& prepared, Use use) const {
+    constexpr std::size_t most = 512;  // geometries and matrices stay in the first-level cache, or nearly
+    std::vector<Geometry> geometries(std::min(most, end - begin));
+    for (; begin < end; begin += geometries.size()) {
+      const std::size_t count = std::min(geometries.size(), end - begin);
+      if (order == nullptr) {
+        gather(broadcast_, 1, begin, begin + count, geometries.data());
+      } else {
+        for (std::size_t i = 0; i < count; ++i) geometries[i] = geometry(broadcast_, 1, order[begin + i]);
+      }
+      use(prepared, Some{{geometries.data(), count}, order ? order + begin : nullptr, begin});
+    }
+  }
+
+  ModelPointer model_;
+  Rotation rotation_;
+  Broadcast broadcast_;
+  bool one_wavelength_;
+};
+
+/// Counts what lies outside the fitted range, and says so in one warning.
+class Range {
+ public:
+  void count(const PreparedModel& model, std::span<const Geometry> geometries) {
+    Geometry widest;
+    for (const Geometry& g : geometries) {
+      widest.incident.theta = std::max(widest.incident.theta, g.incident.theta);
+      widest.reflected.theta = std::max(widest.reflected.theta, g.reflected.theta);
+    }
+    if (known(model.outside(widest)) == 0) return;
+    for (const Geometry& g : geometries) {
+      const unsigned outside = known(model.outside(g));
+      reasons_ |= outside;
+      count_ += outside != 0 ? 1 : 0;
+    }
+  }
+
+  void warn(const ModelObject& model, std::size_t size) const {
+    if (count_ == 0) return;
+    const std::string text = model.model().name + ": " + std::to_string(count_) + " of " + std::to_string(size) +
+                             " geometries lie outside the fitted range (" +
+                             to_string(static_cast<Outside>(reasons_.load())) + ")";
+    const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
+    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+  }
+
+ private:
+  static unsigned known(Outside outside) { return outside & ~static_cast<unsigned>(unknown_range); }
+
+  std::atomic<unsigned> reasons_ = 0;
+  std::atomic<std::size_t> count_ = 0;
+};
+
+py::object evaluate(const Question& question, Frame frame, int threads) {
+  auto result = new_array<double>(question.broadcast(), {4, 4});
+  auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());  // sixteen doubles each
+  Range range;
+  without_gil([&] {
+    question.each(
+        threads, 2048,
+        [&](double wavelength) { return question.model().prepared(wavelength, question.rotation_of_model()); },
+        [&](const PreparedModel& model, const Some& some) {
+          range.count(model, some.geometries);
+          if (!some.positions)
+            return model.evaluate(some.geometries, frame, {out + some.begin, some.geometries.size()});
+          for (std::size_t i = 0; i < some.geometries.size(); ++i)
+            out[some.position(i)] = model.evaluate(some.geometries[i], frame);
+        });
+  });
+  range.warn(question.model(), question.broadcast().size());
+  return result;
+}
+
+/// f(prepared uncertainty, prepared model, geometry) at each position.
+template <std::size_t n, class F>
+py::object from_uncertainty(const Question& question, int threads, std::vector<py::ssize_t> core, F f) {
+  struct Prepared {
+    PreparedUncertainty uncertainty;
+    PreparedModel model;
+  };
+  auto result = new_array<double>(question.broadcast(), core);
+  double* const out = result.mutable_data();
+  Range range;
+  without_gil([&] {
+    question.each(
+        threads, 64,
+        [&](double wavelength) {
+          return Prepared{prepare_uncertainty(question.model().model(), wavelength, question.rotation_of_model()),
+                          question.model().prepared(wavelength, question.rotation_of_model())};
+        },
+        [&](const Prepared& p, const Some& some) {
+          range.count(p.model, some.geometries);
+          for (std::size_t i = 0; i < some.geometries.size(); ++i) {
+            const std::array<double, n> values = f(p.uncertainty, p.model, some.geometries[i]);
+            std::copy(values.begin(), values.end(), out + n * some.position(i));
+          }
+        });
+  });
+  range.warn(question.model(), question.broadcast().size());
+  return result;
+}
+
+/// {"scale": 0.003, "theta_i_deg": 0.02}: names as in the program's --term, angles with their unit.
+std::vector<TypeBTerm> terms_from(const std::optional<std::map<std::string, double>>& named) {
+  std::vector<TypeBTerm> terms;
+  for (const auto& [name, uncertainty] : named.value_or(std::map<std::string, double>{})) {
+    const bool angle = name.ends_with("_deg");
+    const ErrorOf what = error_from(angle ? name.substr(0, name.size() - 4) : name);
+    if (angle == (what == ErrorOf::scale || what == ErrorOf::calibration))
+      throw std::invalid_argument("terms: " + name +
+                                  ": expected scale, theta_i_deg, theta_r_deg, azimuth_deg or "
+                                  "calibration");
+    terms.push_back({name, what, angle ? radians(uncertainty) : uncertainty});
+  }
+  return terms;
+}
+
+using Terms = std::optional<std::map<std::string, double>>;
+
+MuellerCovariance covariance_at(const PreparedUncertainty& uncertainty, const PreparedModel& model,
+                                const Geometry& geometry, Frame frame, const std::vector<TypeBTerm>& terms) {
+  return terms.empty() ? uncertainty.evaluate(geometry, frame)
+                       : budget(model, uncertainty, terms, geometry, frame).total;
+}
+
+py::object evaluate_uncertainty(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms,
+                                int threads) {
+  return from_uncertainty<16>(question, threads, {4, 4},
+                              [&](const PreparedUncertainty& u, const PreparedModel& model, const Geometry& g) {
+                                return standard_uncertainty(covariance_at(u, model, g, frame, terms)).elements;
+                              });
+}
+
+py::object covariance(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms, int threads) {
+  return from_uncertainty<256>(question, threads, {16, 16},
+                               [&](const PreparedUncertainty& u, const PreparedModel& model, const Geometry& g) {
+                                 return covariance_at(u, model, g, frame, terms).values;
+                               });
+}
+
+py::object outside_of(const Question& question) {
+  auto result = new_array<std::uint8_t>(question.broadcast(), {});
+  auto* const out = result.mutable_data();
+  without_gil([&] {
+    question.each(
+        1, 1, [&](double wavelength) { return wavelength; },
+        [&](double wavelength, const Some& some) {
+          for (std::size_t i = 0; i < some.geometries.size(); ++i) {
+            require_valid(some.geometries[i], "outside");
+            out[some.position(i)] =
+                static_cast<std::uint8_t>(outside(question.model().model().validity, wavelength, some.geometries[i]));
+          }
+        });
+  });
+  return unwrapped(result);
+}
+
+py::object estimable(const Question& question, int threads) {
+  auto result = new_array<bool>(question.broadcast(), {});
+  auto* const out = result.mutable_data();
+  without_gil([&] {
+    question.each(
+        threads, 64,
+        [&](double wavelength) {
+          return prepare_uncertainty(question.model().model(), wavelength, question.rotation_of_model());
+        },
+        [&](const PreparedUncertainty& u, const Some& some) {
+          for (std::size_t i = 0; i < some.geometries.size(); ++i)
+            out[some.position(i)] = u.estimable(some.geometries[i]);
+        });
+  });
+  return unwrapped(result);
+}
+
+py::object evaluate_draws(const Question& question, Frame frame, int count, unsigned long seed, int threads) {
+  std::vector<py::ssize_t> shape = question.broadcast().shape();
+  shape.insert(shape.begin(), count > 0 ? count : 0);
+  shape.insert(shape.end(), {4, 4});
+  py::array_t<double> result(shape);
+  auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());
+  const std::size_t size = question.broadcast().size();
+  without_gil([&] {
+    const Draws draws(question.model().model(), count, seed, question.rotation_of_model());
+    question.each(
+        threads, 16, [&](double wavelength) { return draws.at(wavelength); },
+        [&](const std::vector<PreparedModel>& models, const Some& some) {
+          for (std::size_t d = 0; d < models.size(); ++d)
+            for (std::size_t i = 0; i < some.geometries.size(); ++i)
+              out[d * size + some.position(i)] = models[d].evaluate(some.geometries[i], frame);
+        });
+  });
+  return result;
+}
+
+constexpr const char* evaluate_doc =
+    "The Mueller BRDF in sr^-1: array (..., 4, 4), row = outgoing, column = incoming Stokes component.\n\n"
+    "wavelength_nm and the four angles are numbers or arrays, broadcast against each other; the shape before (4, 4) "
+    "is\ntheirs. Directions point away from the sample, to the source (i) and to the detector (r); azimuths are "
+    "counted\n"
+    "from x towards y, so forward scattering is phi_r - phi_i = 180, and a negative polar angle means the opposite\n"
+    "azimuth. wavelength_nm may be None for a model of one wavelength.\n\n"
+    "frame    'xy', 'sp' or 'scattering_plane': the axes of the Stokes components\n"
+    "as_printed  published coefficients: the sum at the azimuths given, to compare only\n"
+    "threads  how many at most; None or 0: as many as there are cores\n"
+    "as_xarray  an xarray.DataArray with named axes, units and conventions, which to_netcdf() can write\n\n"
+    "Warns (ExtrapolationWarning) of geometries outside the fitted range. Raises ValueError for angles outside\n"
+    "[-90, 90] degrees, shapes that do not broadcast, and a wavelength that is missing or not positive.";
+
+constexpr const char* uncertainty_doc =
+    "Standard uncertainties (k = 1) of what evaluate() gives, in sr^-1: array (..., 4, 4). Arguments as there.\n\n"
+    "They are those of the fit, and of the terms of type B: {'scale': 0.003} is 0.3 %, the same error in all data;\n"
+    "'theta_i_deg', 'theta_r_deg' and 'azimuth_deg' are errors of angles, 'calibration' those of the 15 normalised\n"
+    "elements. Raises ValueError for a model whose covariance is not known.";
+
+constexpr const char* covariance_doc =
+    "Covariances of the sixteen elements in row-major order, in sr^-2: array (..., 16, 16). Arguments as those of\n"
+    "evaluate_uncertainty(), whose squares are the diagonal.";
+
+constexpr const char* outside_doc =
+    "Which of the fitted ranges each question leaves: array of uint8, 0 inside, else a sum of Outside. Arguments as\n"
+    "those of evaluate().";
+
+constexpr const char* estimable_doc =
+    "Whether the data of the fit determine every element there: array of bool. Where they do not, uncertainties are\n"
+    "too small. Arguments as those of evaluate().";
+
+constexpr const char* draws_doc =
+    "What `count` models drawn from the covariance of the fit give (GUM Supplement 1), in sr^-1: array\n"
+    "(count, ..., 4, 4). Other arguments as those of evaluate(). The same seed gives the same draws.";
+
+/// The answer as it is, or with names.
+py::object labelled(const py::object& values, const char* quantity, const ModelPointer& model, const std::string& frame,
+                    const py::dict& arguments) {
+  return py::module_::import("mmbrdf._xarray").attr("labelled")(values, quantity, model, frame, arguments);
+}
+
+/// Declares a method that has the arguments of a question before its own.
+template <class Function, class... Arguments>
+void define(ModelClass& c, const char* name, Function function, const char* doc, const Arguments&... own) {
+  c.def(name, function, py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"), py::arg("phi_i_deg"),
+        py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), own..., doc);
+}
+
+using Wavelength = std::optional<Doubles>;
+
+py::dict arguments(const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr, const Doubles& pr) {
+  py::dict result;
+  result["wavelength_nm"] = w;
+  for (const Operand& operand : direction_operands(ti, pi, tr, pr)) result[operand.name] = operand.array;
+  return result;
+}
+
+}  // namespace
+
+void bind_evaluation(ModelClass& c) {
+  const py::arg_v frame = py::arg("frame") = "xy", as_printed = py::arg("as_printed") = false,
+                  threads = py::arg("threads") = 0, terms = py::arg("terms") = py::none(),
+                  as_xarray = py::arg("as_xarray") = false;
+  define(
+      c, "evaluate",
+      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
+         const Doubles& pr, const std::string& name, bool printed, int count, bool names) {
+        const py::object values = evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count);
+        return names ? labelled(values, "brdf", model, name, arguments(w, ti, pi, tr, pr)) : values;
+      },
+      evaluate_doc, frame, as_printed, threads, as_xarray);
+  define(
+      c, "evaluate_uncertainty",
+      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
+         const Doubles& pr, const std::string& name, bool printed, const Terms& named, int count, bool names) {
+        const py::object values =
+            evaluate_uncertainty({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named), count);
+        return names ? labelled(values, "uncertainty", model, name, arguments(w, ti, pi, tr, pr)) : values;
+      },
+      uncertainty_doc, frame, as_printed, terms, threads, as_xarray);
+  define(
+      c, "covariance",
+      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
+         const Doubles& pr, const std::string& name, bool printed, const Terms& named, int count) {
+        return covariance({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named), count);
+      },
+      covariance_doc, frame, as_printed, terms, threads);
+  define(
+      c, "outside",
+      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
+         const Doubles& pr) {
+        return outside_of({model, w, ti, pi, tr, pr, false});
+      },
+      outside_doc);
+  define(
+      c, "estimable",
+      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
+         const Doubles& pr, bool printed, int count) {
+        return estimable({model, w, ti, pi, tr, pr, printed}, count);
+      },
+      estimable_doc, as_printed, threads);
+  c.def(
+      "evaluate_draws",
+      [](const ModelPointer& model, int count, unsigned long seed, const Wavelength& w, const Doubles& ti,
+         const Doubles& pi, const Doubles& tr, const Doubles& pr, const std::string& name, bool printed, int most) {
+        return evaluate_draws({model, w, ti, pi, tr, pr, printed}, frame_from(name), count, seed, most);
+      },
+      py::arg("count"), py::arg("seed"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"),
+      py::arg("phi_i_deg"), py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), frame, as_printed, threads,
+      draws_doc);
+}
+
+}  // namespace mmbrdf::python

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From samples to a model, and how the two compare.
+#include "mmbrdf/fit.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "dataset.hpp"
+#include "instrument.hpp"
+#include "mmbrdf/common_errors.hpp"
+#include "mmbrdf/comparison.hpp"
+
+namespace mmbrdf::python {
+
+namespace {
+
+/// A fit, and what it was asked for.
+struct Fitted {
+  FitResult result;
+  ModelPointer model;
+};
+using FittedPointer = std::shared_ptr<Fitted>;
+
+struct Request {
+  Basis basis;
+  FitOptions options;
+  Weights weights = Weights::none;
+  CalibrationPointer instrument;
+  std::string name, attribution;
+};
+
+Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
+  return {family_from(family), {orders.first, orders.second}, disc_mapping_from(mapping), rotation(as_printed)};
+}
+
+/// Says from what and how the model was made.
+void sign(Model& model, const Request& request, std::size_t rows) {
+  model.name = request.name;
+  model.provenance["rows"] = std::to_string(rows);
+  model.provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
+  model.provenance["weights"] = to_string(request.weights);
+  if (request.options.covariance != Covariance::residuals)
+    model.provenance["covariance"] = to_string(request.options.covariance);
+  if (!request.attribution.empty()) model.provenance["attribution"] = request.attribution;
+}
+
+/// Adds to the covariance what the instrument is uncertain by, which is the same error in all its samples.
+void add_instrument(FitResult& result, const Dataset& data, const Request& request) {
+  const Calibration& instrument = *request.instrument;
+  if (instrument.covariance.empty())
+    throw std::invalid_argument("instrument: a linear calibration, without a covariance");
+  for (const Sample& sample : data.samples)
+    if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution)
+      throw std::invalid_argument("instrument: of another wavelength than the samples");
+  const Reduction reduction(instrument.polarimeter, instrument.covariance);
+  add_common_errors(result.model, data.samples, instrument_errors(reduction, data.samples),
+                    fit_weights(data.samples, request.basis, result, request.weights));
+}
+
+FittedPointer fitted(const Dataset& data, const Request& request) {
+  return without_gil([&] {
+    FitResult result = fit(data.samples, request.basis, request.options, request.weights);
+    if (request.instrument) add_instrument(result, data, request);
+    sign(result.model, request, data.samples.size());
+    auto model = std::make_shared<ModelObject>(result.model);
+    return std::make_shared<Fitted>(Fitted{std::move(result), std::move(model)});
+  });
+}
+
+py::array matrices_of(const std::vector<Mueller>& matrices, const py::object& owner) {
+  constexpr auto size = static_cast<py::ssize_t>(sizeof(double));
+  return view(matrices.empty() ? nullptr : matrices.front().elements.data(),
+              {static_cast<py::ssize_t>(matrices.size()), 4, 4}, {16 * size, 4 * size, size}, owner);
+}
+
+py::array_t<double> rms_of(const Fitted& fitted) {
+  py::array_t<double> result({4, 4});
+  for (std::size_t e = 0; e < 16; ++e) result.mutable_data()[e] = fitted.result.elements[e].rms;
+  return result;
+}
+
+py::list noise_of(const Fitted& fitted) {
+  py::list result;
+  for (std::size_t i = 0; i < fitted.result.noise.size(); ++i) {
+    const NoiseEstimate& noise = fitted.result.noise[i];
+    py::dict entry;
+    entry["wavelength_nm"] = nanometres(fitted.result.model.validity.wavelengths[i]);
+    entry["scale"] = noise.law.scale;
+    entry["incident_exponent"] = noise.law.incident_exponent;
+    entry["reflected_exponent"] = noise.law.reflected_exponent;
+    result.append(entry);
+  }
+  return result;
+}
+
+std::string representation(const Fitted& fitted) {
+  return "<mmbrdf.FitResult: " + std::to_string(fitted.result.elements[0].rows) + " samples, rms of f11 " +
+         formatted("{:.3g}", fitted.result.elements[0].rms) + ", of the other elements " +
+         formatted("{:.3g}", polarization_rms(fitted.result)) + ">";
+}
+
+py::dict dict_of(const Difference& d) {
+  py::dict result;
+  result["rms"] = d.rms;
+  result["mean"] = d.mean;
+  result["largest"] = d.largest;
+  result["wavelength_nm"] = nanometres(d.wavelength);
+  result["theta_i_deg"] = degrees(d.geometry.incident.theta);
+  result["phi_i_deg"] = degrees(d.geometry.incident.phi);
+  result["theta_r_deg"] = degrees(d.geometry.reflected.theta);
+  result["phi_r_deg"] = degrees(d.geometry.reflected.phi);
+  return result;
+}
+
+py::dict compared(const ModelObject& model, const Dataset& data, bool as_printed) {
+  const Comparison comparison = without_gil([&] { return compare(model.model(), data.samples, rotation(as_printed)); });
+  py::dict result;
+  result["samples"] = comparison.samples;
+  result["f11"] = dict_of(comparison.f11);
+  result["f11_relative"] = dict_of(comparison.f11_relative);
+  result["polarization_rms"] = polarization_rms(comparison);
+  for (std::size_t e = 1; e < 16; ++e)
+    result[py::str("m" + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1))] = dict_of(comparison.normalized[e]);
+  return result;
+}
+
+void bind_result(py::module_& m) {
+  py::class_<Fitted, FittedPointer>(m, "FitResult", "What fit() found: the model, and how well it fits.")
+      .def_property_readonly("model", [](const Fitted& f) { return f.model; })
+      .def_property_readonly(
+          "residuals", [](const FittedPointer& f) { return matrices_of(f->result.residuals, py::cast(f)); },
+          "(N, 4, 4), measured - model in the xy frame: element 11 of f11 in sr^-1, the others of "
+          "f_ij / f11: a view")
+      .def_property_readonly("rms", rms_of,
+                             "(4, 4), weighted: element 11 of f11 / reflectance, the others of f_ij / f11")
+      .def_property_readonly(
+          "polarization_rms", [](const Fitted& f) { return polarization_rms(f.result); },
+          "Root mean square over the 15 normalised elements")
+      .def_property_readonly("noise", noise_of, "With weights='estimated': the law found at each wavelength, as dicts")
+      .def("__repr__", representation);
+}
+
+constexpr const char* fit_doc =
+    "Fits a model to samples by linear least squares.\n\n"
+    "basis        'isotropic', 'germer2017' or 'anisotropic'\n"
+    "orders       highest radial orders, of f11 and of the other elements\n"
+    "powers       highest power of the wavelength; None: 0 for one wavelength, 1 for several\n"
+    "reflectance  {wavelength in nm: value} that f11 is divided by; {}: by nothing. None: for several wavelengths "
+    "each\n"
+    "             one's own normal-incidence reflectance, for one nothing\n"
+    "weights      'none', 'speckle', 'data' (1/u^2 of the samples) or 'estimated'\n"
+    "covariance   'residuals' or 'sandwich', for noise that is not as the weights say\n"
+    "minimum_norm accept data that do not determine every coefficient (germer2017: always)\n"
+    "as_printed   germer2017 at the azimuths the samples have, to compare only\n"
+    "instrument   Calibration that measured all samples: its uncertainty is added to the covariance\n\n"
+    "Raises ValueError for data that do not determine the model: the message says what is free.";
+
+}  // namespace
+
+void bind_fit(py::module_& m) {
+  bind_result(m);
+  m.def(
+      "fit",
+      [](const Dataset& data, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
+         std::optional<int> powers, const std::optional<std::map<double, double>>& reflectance,
+         const std::string& weights, const std::string& covariance, bool minimum_norm, bool as_printed,
+         const CalibrationPointer& instrument, const std::string& name, const std::string& attribution) {
+        Request request{
+            basis_from(family, orders, mapping, as_printed), {}, weights_from(weights), instrument, name, attribution};
+        request.options.powers = powers;
+        if (reflectance) request.options.reflectance = reflectance_table(*reflectance);
+        request.options.minimum_norm = minimum_norm;
+        request.options.covariance = covariance_from(covariance);
+        return fitted(data, request);
+      },
+      py::arg("data"), py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
+      py::arg("mapping") = "lambert", py::arg("powers") = py::none(), py::arg("reflectance") = py::none(),
+      py::arg("weights") = "none", py::arg("covariance") = "residuals", py::arg("minimum_norm") = false,
+      py::arg("as_printed") = false, py::arg("instrument") = py::none(), py::arg("name") = "",
+      py::arg("attribution") = "", fit_doc);
+  m.def(
+      "residuals",
+      [](const ModelObject& model, const Dataset& data, bool as_printed) {
+        const std::vector<Mueller> found =
+            without_gil([&] { return residuals(model.model(), data.samples, rotation(as_printed)); });
+        py::array_t<double> result({static_cast<py::ssize_t>(found.size()), py::ssize_t{4}, py::ssize_t{4}});
+        for (std::size_t i = 0; i < found.size(); ++i) Layout<Mueller>::store(found[i], result.mutable_data() + 16 * i);
+        return result;
+      },
+      py::arg("model"), py::arg("data"), py::kw_only(), py::arg("as_printed") = false,
+      "Measured - model for each sample, (N, 4, 4) in the xy frame: element 11 of f11 in sr^-1, the others of\n"
+      "f_ij / f11.");
+  m.def(
+      "compare", compared, py::arg("model"), py::arg("data"), py::kw_only(), py::arg("as_printed") = false,
+      "How far samples are from a model: for f11 (sr^-1), f11_relative and each m_ij a dict of rms, mean, largest and\n"
+      "where that is.");
+}
+
+}  // namespace mmbrdf::python

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Models: what they are, where they come from, where they go.
+#include "mmbrdf/model.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "mmbrdf/conversion.hpp"
+#include "mmbrdf/io.hpp"
+#include "mmbrdf/materials.hpp"
+
+namespace mmbrdf::python {
+
+namespace {
+
+/// A block of a model, and the model that it belongs to.
+struct BlockView {
+  ModelPointer owner;
+  std::size_t index;
+  const FittedBlock& fitted() const { return owner->model().blocks[index]; }
+};
+
+std::vector<BlockView> blocks_of(const ModelPointer& model) {
+  std::vector<BlockView> result;
+  for (std::size_t b = 0; b < model->model().blocks.size(); ++b) result.push_back({model, b});
+  return result;
+}
+
+py::list modes_of(const BlockView& block) {
+  py::list result;
+  for (const Mode& mode : block.fitted().block.modes)
+    result.append(py::make_tuple(to_string(mode.function), mode.n, mode.m, mode.k, mode.l));
+  return result;
+}
+
+py::array coefficients_of(const BlockView& block) {
+  const auto modes = static_cast<py::ssize_t>(block.fitted().block.modes.size());
+  const auto powers = static_cast<py::ssize_t>(block.owner->model().powers) + 1;
+  constexpr py::ssize_t size = sizeof(double);
+  return view(block.fitted().coefficients.data(), {powers, modes}, {modes * size, size}, py::cast(block.owner));
+}
+
+py::object covariance_of(const BlockView& block) {
+  if (block.fitted().covariance.empty()) return py::none();
+  const auto n = static_cast<py::ssize_t>(block.fitted().coefficients.size());
+  constexpr py::ssize_t size = sizeof(double);
+  return view(block.fitted().covariance.data(), {n, n}, {n * size, size}, py::cast(block.owner));
+}
+
+std::vector<std::string> elements_of(const BlockView& block) {
+  std::vector<std::string> result;
+  for (const auto& [row, column] : block.fitted().block.elements)
+    result.push_back(std::to_string(row + 1) + std::to_string(column + 1));
+  return result;
+}
+
+bool has_covariance(const Model& model) {
+  for (const FittedBlock& block : model.blocks)
+    if (block.covariance.empty()) return false;
+  return true;
+}
+
+std::vector<double> in_nanometres(const std::vector<double>& wavelengths) {
+  std::vector<double> result;
+  for (const double wavelength : wavelengths) result.push_back(nanometres(wavelength));
+  return result;
+}
+
+py::tuple wavelengths_nm(const ModelObject& object) {
+  return py::tuple(py::cast(in_nanometres(object.model().validity.wavelengths)));
+}
+
+std::map<double, double> reflectance_of(const ModelObject& object) {
+  const ReflectanceTable& table = object.model().reflectance;
+  std::map<double, double> result;
+  for (std::size_t i = 0; i < table.values.size(); ++i) result[nanometres(table.wavelengths[i])] = table.values[i];
+  return result;
+}
+
+std::optional<double> in_degrees(const std::optional<double>& angle) {
+  return angle ? std::optional(degrees(*angle)) : std::nullopt;
+}
+
+/// The fewest digits that are this number.
+std::string text(double value) {
+  std::array<char, 32> buffer;
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string representation(const ModelObject& object) {
+  const Model& model = object.model();
+  const Orders order = orders(model);
+  std::string shown = "<mmbrdf.Model '" + model.name + "': " + to_string(model.family) + ", orders (" +
+                      std::to_string(order.f11) + ", " + std::to_string(order.other) + "), " +
+                      std::to_string(coefficient_count(model)) + " coefficients";
+  const std::vector<double>& at = model.validity.wavelengths;
+  if (!at.empty()) shown += ", " + text(nanometres(at.front()));
+  if (at.size() > 1) shown += " to " + text(nanometres(at.back()));
+  return shown + (at.empty() ? ">" : " nm>");
+}
+
+ModelPointer pointer(Model model) { return std::make_shared<ModelObject>(std::move(model)); }
+
+ModelPointer model_at(const std::filesystem::path& path) {
+  require_readable(path);
+  return without_gil([&] { return pointer(load_model(path)); });
+}
+
+void bind_block(py::module_& m) {
+  py::class_<BlockView>(m, "Block", "Modes that were fitted together, with their coefficients. Belongs to a Model.")
+      .def_property_readonly(
+          "name", [](const BlockView& b) { return b.fitted().block.name; }, "The elements fed: '11', '12,21', …")
+      .def_property_readonly("elements", elements_of, "The elements fed, as a list: ['12', '21']")
+      .def_property_readonly("modes", modes_of, "List of (function, n, m, k, l)")
+      .def_property_readonly("coefficients", coefficients_of,
+                             "Array (powers + 1, modes), a view: row p multiplies the wavelength in micrometres to p")
+      .def_property_readonly("covariance", covariance_of,
+                             "Of the coefficients, flattened in C order: array (n, n), a view; None: not known")
+      .def_property_readonly(
+          "rank", [](const BlockView& b) { return b.fitted().rank; }, "Of the fit; 0: not known")
+      .def_property_readonly(
+          "condition", [](const BlockView& b) { return b.fitted().condition; },
+          "Condition number of the fit; 0: not known")
+      .def("__repr__", [](const BlockView& b) {
+        return "<mmbrdf.Block '" + b.fitted().block.name + "': " + std::to_string(b.fitted().coefficients.size()) +
+               " coefficients>";
+      });
+}
+
+void bind_properties(ModelClass& c) {
+  c.def_property_readonly("name", [](const ModelObject& o) { return o.model().name; })
+      .def_property_readonly(
+          "family", [](const ModelObject& o) { return to_string(o.model().family); },
+          "'isotropic', 'germer2017' or 'anisotropic'")
+      .def_property_readonly(
+          "mapping", [](const ModelObject& o) { return to_string(o.model().mapping); },
+          "'lambert' (Eq. 6) or 'projected' (Eq. 7)")
+      .def_property_readonly(
+          "powers", [](const ModelObject& o) { return o.model().powers; }, "Highest power of the wavelength")
+      .def_property_readonly(
+          "orders",
+          [](const ModelObject& o) {
+            const Orders order = orders(o.model());
+            return py::make_tuple(order.f11, order.other);
+          },
+          "Highest radial orders, of f11 and of the other elements")
+      .def_property_readonly("coefficient_count", [](const ModelObject& o) { return coefficient_count(o.model()); })
+      .def_property_readonly("blocks", blocks_of, "List of Block")
+      .def_property_readonly("wavelengths_nm", wavelengths_nm, "Those it was fitted to; empty: not known")
+      .def_property_readonly(
+          "theta_i_max_deg", [](const ModelObject& o) { return in_degrees(o.model().validity.theta_i_max); },
+          "Largest fitted polar angle of the source; None: not known")
+      .def_property_readonly(
+          "theta_r_max_deg", [](const ModelObject& o) { return in_degrees(o.model().validity.theta_r_max); },
+          "Largest fitted polar angle of the detector; None: not known")
+      .def_property_readonly("reflectance", reflectance_of,
+                             "Table that multiplies f11: {wavelength in nm: value}; empty: 1")
+      .def_property_readonly(
+          "has_covariance", [](const ModelObject& o) { return has_covariance(o.model()); },
+          "Whether uncertainties of all elements are known")
+      .def_property_readonly(
+          "provenance", [](const ModelObject& o) { return o.model().provenance; },
+          "From what, with what and how it was made: dict of text");
+}
+
+}  // namespace
+
+double ModelObject::wavelength(const std::optional<double>& wavelength_nm) const {
+  return wavelength_nm ? micrometres(*wavelength_nm) : only_wavelength(model_);
+}
+
+PreparedModel ModelObject::prepared(double wavelength, Rotation rotation) const {
+  const std::lock_guard lock(mutex_);
+  auto known = prepared_.find(rotation);
+  if (known == prepared_.end()) known = prepared_.emplace(rotation, prepare(model_, wavelength, rotation)).first;
+  return known->second.wavelength() == wavelength ? known->second : known->second.at(wavelength);
+}
+
+double micrometres(double wavelength_nm) {
+  if (!(wavelength_nm > 0) || !std::isfinite(wavelength_nm))
+    throw std::invalid_argument("wavelength_nm = " + text(wavelength_nm) + ", must be positive and finite");
+  return wavelength_nm / 1000;
+}
+
+std::vector<double> micrometres(const std::vector<double>& wavelengths_nm) {
+  std::vector<double> result;
+  for (const double wavelength_nm : wavelengths_nm) result.push_back(micrometres(wavelength_nm));
+  return result;
+}
+
+double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e9; }
+
+ReflectanceTable reflectance_table(const std::map<double, double>& by_nanometres) {
+  ReflectanceTable table;
+  for (const auto& [wavelength_nm, value] : by_nanometres) {
+    table.wavelengths.push_back(micrometres(wavelength_nm));
+    table.values.push_back(value);
+  }
+  return table;
+}
+
+void require_readable(const std::string& path) {
+  py::module_::import("builtins").attr("open")(path, "rb").attr("close")();
+}
+
+ModelClass bind_model(py::module_& m) {
+  bind_block(m);
+  ModelClass c(m, "Model",
+               "A Mueller-matrix BRDF: f11 in sr^-1 and the other elements divided by it, as sums over modes.\n\n"
+               "From material(), load() or fit(). It does not change; it can be pickled and compared.");
+  bind_properties(c);
+  c.def(
+       "save", [](const ModelObject& o, const std::filesystem::path& path) { save_model(path, o.model()); },
+       py::arg("path"),
+       "Writes JSON, or the published coefficient layout if the path ends in .csv, which has no place for\n"
+       "covariance, range and provenance. Raises OSError if it cannot be written; nothing is half-written.")
+      .def(
+          "to_json", [](const ModelObject& o) { return to_json(o.model()); }, "The text of a model file")
+      .def_static(
+          "from_json", [](const std::string& text) { return pointer(model_from_json(text, "text")); }, py::arg("text"),
+          "The model of such a text. Raises OSError, naming the field, for another one.")
+      .def("__repr__", representation)
+      .def("__eq__",
+           [](const ModelObject& a, const py::object& b) {
+             return py::isinstance<ModelObject>(b) && to_json(a.model()) == to_json(b.cast<ModelPointer>()->model());
+           })
+      .def(py::pickle([](const ModelObject& o) { return py::bytes(to_json(o.model())); },
+                      [](const py::bytes& text) { return pointer(model_from_json(std::string(text), "pickle")); }));
+  c.attr("__hash__") = py::none();
+  m.def("materials", &materials, "Names of the built-in models.");
+  m.def(
+      "material", [](const std::string& name) { return pointer(material(name)); }, py::arg("name"),
+      "A built-in model: material('ptfe'). Raises ValueError, with the names there are, for another name.");
+  m.def(
+      "load_model", model_at, py::arg("path"),
+      "A model from a JSON file or a published coefficient file. Raises OSError for a file that cannot be read, with\n"
+      "line and field for one that holds something else.");
+  m.def(
+      "in_published_form", [](const ModelObject& o) { return pointer(in_published_form(o.model())); }, py::arg("model"),
+      "An isotropic model in the modes of germer2017: exact, without the covariance. Raises ValueError for an\n"
+      "anisotropic one.");
+  m.def(
+      "projected_on_isotropic",
+      [](const ModelObject& o, std::pair<int, int> order) {
+        return without_gil([&] { return pointer(projected_on_isotropic(o.model(), {order.first, order.second})); });
+      },
+      py::arg("model"), py::arg("orders") = std::pair(7, 4),
+      "The isotropic model nearest to another one, over its range of angles; without covariance.");
+  return c;
+}
+
+}  // namespace mmbrdf::python
