@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <sstream>
 
+#include "cases.hpp"
 #include "files.hpp"
 #include "mmbrdf/goniometer.hpp"
+#include "mmbrdf/materials.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -145,6 +149,63 @@ TEST(Readings, OfSamplesThatCannotBeAreRefusedWithTheirLine) {
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,1,1,3\n"), {"d.csv:3: measurement 1: a second", "in line 2"}));
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,2,1,-3\n"), {"d.csv:3: intensity: -3 is negative"}));
   EXPECT_TRUE(says(complaint([&] { parsed_raw(raw_csv(""), {2, 1}); }), {"d.csv: no readings"}));
+}
+
+/// A measurement without noise of some model at some geometry.
+RawMeasurement some_measurement(const Polarimeter& polarimeter, double solid_angle) {
+  const Geometry g{{0.7, 0.4}, {0.9, 2.5}};
+  const Mueller f = prepare(material("ptfe-532"), 0.532).evaluate(g, Frame::scattering_plane);
+  return {0.532, g, readings(polarimeter, solid_angle * std::cos(g.reflected.theta) * f)};
+}
+
+TEST(Readings, ReduceToTheSampleThatTheyAreOf) {
+  const Polarimeter polarimeter = Goniometer({}, 1).polarimeter();
+  const RawMeasurement raw = some_measurement(polarimeter, 2e-4);
+  const Sample sample = reduced(Reduction(polarimeter), raw, 2e-4, {});
+  const Mueller expected = prepare(material("ptfe-532"), 0.532).evaluate(raw.geometry);
+  EXPECT_EQ(sample.wavelength, 0.532);
+  EXPECT_EQ(sample.geometry, raw.geometry);
+  EXPECT_NEAR(sample.f11, expected(0, 0), 1e-13);  // rounding, times condition numbers
+  for (std::size_t e = 0; e < 16; ++e) {
+    EXPECT_NEAR(sample.normalized.elements[e], normalized(expected).elements[e], 1e-13);
+    EXPECT_EQ(sample.uncertainty.elements[e], 0);
+  }
+}
+
+TEST(Readings, ReduceToSamplesThatScatterAsTheirUncertaintiesSay) {
+  const Polarimeter polarimeter = Goniometer({}, 1).polarimeter();
+  const Reduction reduction(polarimeter);
+  const RawMeasurement raw = some_measurement(polarimeter, 2e-4);
+  const ReadingNoise noise{1e-8, 1e-9, 1e-3};  // each a part of σ: readings are of some 1e-5
+  const Sample exact = reduced(reduction, raw, 2e-4, noise);
+  constexpr int draws = 4000;
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal;
+  Mueller squares{};
+  for (int draw = 0; draw < draws; ++draw) {
+    RawMeasurement noisy = raw;
+    for (double& b : noisy.readings) b += std::sqrt(variance(noise, b)) * normal(engine);
+    const Sample sample = reduced(reduction, noisy, 2e-4, noise);
+    squares(0, 0) += std::pow(sample.f11 - exact.f11, 2) / draws;
+    for (std::size_t e = 1; e < 16; ++e)
+      squares.elements[e] += std::pow(sample.normalized.elements[e] - exact.normalized.elements[e], 2) / draws;
+  }
+  for (std::size_t e = 0; e < 16; ++e)
+    EXPECT_NEAR(std::sqrt(squares.elements[e]) / exact.uncertainty.elements[e], 1, 4 / std::sqrt(2. * draws)) << e;
+}
+
+TEST(Readings, ThatAreNoneAreNotReduced) {
+  const Polarimeter polarimeter = Goniometer({}, 1).polarimeter();
+  const Reduction reduction(polarimeter);
+  const RawMeasurement raw = some_measurement(polarimeter, 2e-4);
+  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 0, {}); }), "sample: a solid angle of 0 sr");
+  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 2e-4, {.relative = -1}); }), "reduced: a noise of -1");
+  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 2e-4, {.dark = 1e150}); }),
+            "reduced: the noise leaves no finite uncertainty");
+  RawMeasurement short_one = raw;
+  short_one.readings.pop_back();
+  EXPECT_EQ(message_of([&] { reduced(reduction, short_one, 2e-4, {}); }),
+            "reduction: 15 readings, the instrument has 16");
 }
 
 TEST(Readings, OfAnotherNumberThanTheStatesAreNotWritten) {

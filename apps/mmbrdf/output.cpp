@@ -70,7 +70,7 @@ std::string counted(long count, const std::string& what) {
 std::string plain_message(const std::exception& error) {
   const std::string text = error.what();
   for (const std::string name : {"fit", "simulate", "compare", "subsets", "evaluate", "normalized",
-                                 "degree_of_polarization", "budget", "to_coefficients_csv", "to_json"}) {
+                                 "degree_of_polarization", "budget", "to_coefficients_csv", "to_json", "reduced"}) {
     if (text.starts_with(name + ": ")) {
       return text.substr(name.size() + 2);
     }

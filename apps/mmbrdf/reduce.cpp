@@ -29,26 +29,6 @@ struct Options {
   bool strict = false;
 };
 
-/// Of f11 in sr^-1 and of the normalised elements, in the xy frame, from the noise of the readings.
-Mueller uncertainty_of(const Reduction& reduction, const Mueller& m, const RawMeasurement& raw,
-                       const Options& options) {
-  std::vector<double> variances;
-  for (const double reading : raw.readings) {
-    variances.push_back(variance(options.noise, reading));
-  }
-  const MuellerCovariance c = normalized(reduction.from_readings(variances), m);
-  Mueller u = standard_uncertainty(change_frame(c, raw.geometry, Frame::scattering_plane, Frame::xy));
-  u.elements[0] /= *options.solid_angle * std::cos(raw.geometry.reflected.theta);
-  return u;
-}
-
-Sample reduced(const Reduction& reduction, const RawMeasurement& raw, const Options& options) {
-  const Mueller m = reduction.mueller(raw.readings);
-  Sample result = sample(m, raw.wavelength, raw.geometry, *options.solid_angle);
-  result.uncertainty = uncertainty_of(reduction, m, raw, options);
-  return result;
-}
-
 std::vector<Sample> reduced_file(const Calibration& instrument, const Options& options) {
   const Polarimeter& p = instrument.polarimeter;
   const Reduction reduction(p);
@@ -61,7 +41,7 @@ std::vector<Sample> reduced_file(const Calibration& instrument, const Options& o
                            brief(nanometres(instrument.wavelength)) + " nm");
       }
       try {
-        samples.push_back(reduced(reduction, raw, options));
+        samples.push_back(reduced(reduction, raw, *options.solid_angle, options.noise));
       } catch (const std::invalid_argument& error) {
         throw reader.error(plain_message(error));
       }
