@@ -10,7 +10,7 @@
 
 namespace mmbrdf {
 
-/// Names of the built-in models, in alphabetical order: ptfe (351–1064 nm), ptfe-351, ptfe-532, ptfe-633, ptfe-1064.
+/// Names of the built-in models, by wavelength: ptfe (351–1064 nm), ptfe-351, ptfe-532, ptfe-633, ptfe-1064.
 /// Their provenance says from which data and with which command each was made.
 std::vector<std::string> materials();
 

@@ -30,9 +30,9 @@ PYBIND11_MODULE(_mmbrdf, m) {
   ModelClass model = bind_model(m);
   bind_dataset(m);
   bind_evaluation(model);
-  bind_fit(m);
   bind_mueller(m);
   bind_analysis(m);
   bind_radiometry(m);
   bind_polarimeter(m);
+  bind_fit(m);
 }

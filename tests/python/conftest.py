@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the Python package share."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+
+@pytest.fixture(scope="session")
+def ptfe():
+    return mmbrdf.material("ptfe")
+
+
+@pytest.fixture(scope="session")
+def samples(ptfe):
+    """Simulated at the published geometries, with noise: 1824 samples at 532 nm."""
+    return mmbrdf.simulate(ptfe, 532, mmbrdf.germer2017_grid(), speckle=0.01, seed=1)
+
+
+@pytest.fixture
+def program(tmp_path):
+    """Runs the program in a folder of its own; returns what it prints."""
+
+    def run(*arguments):
+        done = subprocess.run(
+            [os.environ["MMBRDF_PROGRAM"], *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def published():
+    """The folder of the published data; skips the test where there is none."""
+    for folder in (os.environ.get("MMBRDF_DATA"), Path(__file__).parents[3] / "shared/data/germer2017"):
+        if folder and (Path(folder) / "PTFE.data.csv").is_file():
+            return Path(folder)
+    pytest.skip("the published data are not here: set MMBRDF_DATA")
+
+
+@pytest.fixture
+def random_matrices():
+    """Realizable matrices (5, 7, 4, 4) that depolarize, with M11 of about 1: mixtures of five random Jones matrices."""
+    random = np.random.default_rng(1)
+    to_mueller = np.array([[1, 0, 0, 1], [1, 0, 0, -1], [0, 1, 1, 0], [0, 1j, -1j, 0]])
+    matrices = np.zeros((5, 7, 4, 4))
+    for _ in range(5):
+        jones = random.normal(size=(5, 7, 2, 2)) + 1j * random.normal(size=(5, 7, 2, 2))
+        product = np.einsum("...ij,...kl->...ikjl", jones, jones.conj()).reshape(5, 7, 4, 4)
+        matrices += np.real(to_mueller @ product @ np.linalg.inv(to_mueller)) / 20
+    return matrices

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames, conventions, analysis and radiometry over arrays."""
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+QUANTITIES = ("depolarization", "diattenuation", "polarizance", "purity", "entropy", "realizability_margin")
+
+
+@pytest.mark.parametrize("name", [*QUANTITIES, "realizable", "coherency_eigenvalues", "coherency", "diattenuation_vector",
+                                  "polarizance_vector", "normalized", "exchanged", "mirrored", "nearest_realizable"])  # fmt: skip
+def test_quantities_are_taken_matrix_by_matrix(name, random_matrices):
+    quantity = getattr(mmbrdf, name)
+    whole = np.asarray(quantity(random_matrices))
+    for i, j in np.ndindex(5, 7):
+        np.testing.assert_array_equal(whole[i, j], quantity(random_matrices[i, j]))
+    np.testing.assert_array_equal(np.asarray(quantity(random_matrices[::2, ::-1])), whole[::2, ::-1])
+    assert quantity(np.empty((0, 4, 4))).shape[0] == 0
+
+
+def test_a_single_matrix_gives_a_number(random_matrices):
+    assert isinstance(mmbrdf.depolarization(random_matrices[0, 0]), float)
+    assert mmbrdf.depolarization(np.diag([1, 0, 0, 0])) == 0
+    assert mmbrdf.realizable(np.eye(4)) and not mmbrdf.realizable(np.diag([1, 1, 1, -1]))
+
+
+def test_depolarization_is_that_of_eq_21(random_matrices):
+    m = random_matrices
+    expected = np.sqrt((m**2).sum(axis=(-1, -2)) - m[..., 0, 0] ** 2) / (np.sqrt(3) * m[..., 0, 0])
+    np.testing.assert_allclose(mmbrdf.depolarization(m), expected, rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_gradients_are_the_slopes_of_the_quantities(name, random_matrices):
+    quantity, gradient = getattr(mmbrdf, name), getattr(mmbrdf, name + "_gradient")(random_matrices)
+    step = 1e-6 * np.random.default_rng(2).normal(size=(4, 4))
+    difference = (quantity(random_matrices + step) - quantity(random_matrices - step)) / 2
+    np.testing.assert_allclose((gradient * step).sum(axis=(-1, -2)), difference, rtol=1e-4, atol=1e-12)
+
+
+def test_uncertainties_of_quantities_follow_from_the_covariance(ptfe):
+    question = (532, 45, 0, np.linspace(0, 60, 4), 180)
+    f, v = ptfe.evaluate(*question), ptfe.covariance(*question)
+    g = mmbrdf.depolarization_gradient(f)
+    expected = np.sqrt(np.einsum("ni,nij,nj->n", g.reshape(4, 16), v, g.reshape(4, 16)))
+    np.testing.assert_allclose(mmbrdf.standard_uncertainty(g, v), expected, rtol=1e-12)
+
+
+def test_decompositions_multiply_back(random_matrices):
+    parts = mmbrdf.lu_chipman(random_matrices)
+    product = parts.depolarizer @ parts.retarder @ parts.diattenuator
+    np.testing.assert_allclose(product, random_matrices, rtol=0, atol=1e-12 * random_matrices.max())
+    s = mmbrdf.symmetric_decomposition(random_matrices)
+    product = s.diattenuator2 @ s.retarder2 @ s.depolarizer @ np.swapaxes(s.retarder1, -1, -2) @ s.diattenuator1
+    np.testing.assert_allclose(product, random_matrices, rtol=0, atol=1e-8 * random_matrices.max())
+    c = mmbrdf.cloude_decomposition(random_matrices)
+    assert c.weights.shape == (5, 7, 4) and c.components.shape == (5, 7, 4, 4, 4)
+    np.testing.assert_allclose(np.einsum("...q,...qij->...ij", c.weights, c.components), random_matrices, rtol=0, atol=1e-13)
+
+
+def test_co_and_cross_polarized_parts_are_what_polarizers_leave(ptfe):
+    m = ptfe.evaluate(532, 45, 0, np.linspace(-60, 60, 5), 180, frame="sp")
+    parts = mmbrdf.co_and_cross_polarized(m)
+    for name, a, b in (("ss", 1, 1), ("sp", 1, -1), ("ps", -1, 1), ("pp", -1, -1)):
+        expected = (m[:, 0, 0] + a * m[:, 0, 1] + b * m[:, 1, 0] + a * b * m[:, 1, 1]) / 2
+        np.testing.assert_allclose(getattr(parts, name), expected, rtol=1e-15)
+        gradient = getattr(mmbrdf.co_and_cross_polarized_gradients(), name)
+        np.testing.assert_allclose((gradient * m).sum(axis=(-1, -2)), expected, rtol=1e-14)
+    geometry = mmbrdf.in_plane(45, np.linspace(-60, 60, 5))
+    np.testing.assert_allclose(mmbrdf.polarized_curve(ptfe, 532, geometry).ss,
+                               mmbrdf.co_and_cross_polarized(ptfe.evaluate(532, *geometry, frame="sp")).ss)  # fmt: skip
+
+
+def test_frames_change_back_and_forth(ptfe):
+    geometry = mmbrdf.random_geometries(30, seed=4)
+    f = {frame: ptfe.evaluate(532, *geometry, frame=frame) for frame in ("xy", "sp", "scattering_plane")}
+    for before in f:
+        for after in f:
+            changed = mmbrdf.change_frame(f[before], *geometry, from_frame=before, to_frame=after)
+            np.testing.assert_allclose(changed, f[after], rtol=0, atol=1e-14)
+
+
+def test_conventions_and_rotators():
+    np.testing.assert_allclose(mmbrdf.rotator(45) @ [1, 1, 0, 0], [1, 0, -1, 0], atol=1e-15)
+    assert mmbrdf.rotator([0, 30, 60]).shape == (3, 4, 4)
+    m = np.arange(16.0).reshape(4, 4)
+    converted = mmbrdf.convert(m, "germer2017", "s_first_right")
+    np.testing.assert_array_equal(converted[:3, :3], m[:3, :3])
+    np.testing.assert_array_equal(converted[3, :3], -m[3, :3])
+    with pytest.raises(ValueError, match="p_first_left"):
+        mmbrdf.convert(m, "germer2017", "other")
+
+
+def test_impossible_matrices_are_refused():
+    for function in (mmbrdf.depolarization, mmbrdf.lu_chipman, mmbrdf.purity):
+        with pytest.raises(ValueError):
+            function(-np.eye(4))
+        with pytest.raises(ValueError, match="does not end in"):
+            function(np.eye(3))
+
+
+def test_reflectances_and_their_uncertainties(ptfe):
+    dhr = mmbrdf.directional_hemispherical_reflectance(ptfe, [351, 532], theta_i_deg=[[0], [45], [75]])
+    assert dhr.shape == (3, 2) and ((dhr > 0.9) & (dhr < 1.02)).all()
+    polarized = mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 60, stokes=[[1, 1, 0, 0], [1, -1, 0, 0]])
+    unpolarized = mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 60)
+    assert polarized.mean() == pytest.approx(unpolarized, rel=1e-13)
+    assert mmbrdf.hemispherical_directional_reflectance(ptfe, 532, 60) == pytest.approx(unpolarized, rel=1e-13)
+    u = mmbrdf.directional_hemispherical_uncertainty(ptfe, 532, 60)
+    assert 1e-5 < u < 1e-2 and mmbrdf.hemispherical_directional_uncertainty(ptfe, 532, 60) == pytest.approx(u, rel=1e-9)
+    assert 0.95 < mmbrdf.bihemispherical_reflectance(ptfe, 532) < 1
+    assert mmbrdf.bihemispherical_uncertainty(ptfe, [532, 633]).shape == (2,)
+    assert mmbrdf.reflectance_factor(1 / np.pi) == pytest.approx(1)
+
+
+def test_means_over_apertures(ptfe):
+    source, receiver = mmbrdf.Aperture.direction(8, 0), mmbrdf.Aperture.hemisphere()
+    mean, error, converged = mmbrdf.average(ptfe, 532, source, receiver)
+    assert converged and error < 1e-9
+    dhr = mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 8)
+    assert np.pi * mean[0, 0] == pytest.approx(dhr, rel=1e-10)
+    assert mmbrdf.Aperture.cone(30, 0, 5).projected_solid_angle == pytest.approx(
+        np.pi * np.cos(np.radians(30)) * np.sin(np.radians(5)) ** 2
+    )
+    port = receiver.without(mmbrdf.Aperture.cone(8, 180, 4))
+    assert port.projected_solid_angle < receiver.projected_solid_angle
+    with pytest.raises(ValueError):
+        mmbrdf.Aperture.cone(89, 0, 5)

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Evaluation over arrays: laws of broadcasting, and the same bits as the program."""
+
+import csv
+import io
+import warnings
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+ARGUMENTS = ("wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg")
+
+
+def one_by_one(model, *arguments, **options):
+    """The same by a loop over single numbers."""
+    arrays = np.broadcast_arrays(*arguments)
+    flat = [model.evaluate(*map(float, question), **options) for question in zip(*(a.ravel() for a in arrays))]
+    return np.array(flat).reshape(*arrays[0].shape, 4, 4)
+
+
+def test_a_single_geometry_gives_one_matrix(ptfe):
+    f = ptfe.evaluate(wavelength_nm=532, theta_i_deg=45, phi_i_deg=0, theta_r_deg=30, phi_r_deg=180)
+    assert f.shape == (4, 4) and f.dtype == np.float64
+    assert f[0, 0] == pytest.approx(0.3284003276, abs=5e-11)  # README
+
+
+@pytest.mark.parametrize("frame", ["xy", "sp", "scattering_plane"])
+def test_arrays_broadcast_as_numpy_does(ptfe, frame):
+    arguments = (np.array([[[351.0]], [[532.0]]]), 45, [[0.0], [10.0], [200.0]], np.linspace(-70, 70, 5), 180)
+    f = ptfe.evaluate(*arguments, frame=frame)
+    assert f.shape == (2, 3, 5, 4, 4)
+    np.testing.assert_array_equal(f, one_by_one(ptfe, *arguments, frame=frame))
+
+
+def test_wavelengths_may_vary_fastest(ptfe):
+    arguments = (np.linspace(351, 1064, 7), 30, 0, [[20.0], [40.0]], 180)
+    np.testing.assert_array_equal(ptfe.evaluate(*arguments), one_by_one(ptfe, *arguments))
+
+
+def test_strides_and_types_do_not_matter(ptfe):
+    theta = np.arange(0, 80, 5)
+    expected = ptfe.evaluate(532, 45, 0, theta.astype(float), 180)
+    for same in (theta, theta.astype(np.float32), theta.astype(">f8"), np.repeat(theta, 3)[::3], theta[::-1][::-1], list(theta)):
+        np.testing.assert_array_equal(ptfe.evaluate(532, 45, 0, same, 180), expected)
+    grid = np.arange(12.0).reshape(3, 4)
+    np.testing.assert_array_equal(ptfe.evaluate(532, 45, 0, grid.T, 180), ptfe.evaluate(532, 45, 0, grid.T.copy(), 180))
+
+
+def test_arguments_are_left_as_they_were(ptfe):
+    angles = np.array([-30.0, 30.0])
+    ptfe.evaluate(532, angles, 0, angles, 180)
+    np.testing.assert_array_equal(angles, [-30, 30])
+
+
+@pytest.mark.parametrize("shape", [(0,), (3, 0), (0, 2)])
+def test_no_geometries_give_no_matrices(ptfe, shape):
+    nothing = np.empty(shape)
+    assert ptfe.evaluate(532, nothing, 0, 30, 180).shape == (*shape, 4, 4)
+    assert ptfe.evaluate_uncertainty(532, nothing, 0, 30, 180).shape == (*shape, 4, 4)
+    assert ptfe.outside(532, nothing, 0, 30, 180).shape == shape
+
+
+@pytest.mark.parametrize("name", ARGUMENTS)
+def test_shapes_that_do_not_broadcast_are_named(ptfe, name):
+    arguments = dict.fromkeys(ARGUMENTS, 30.0) | {"wavelength_nm": 532.0, "theta_i_deg": [10, 20, 30]}
+    other = "theta_r_deg" if name == "theta_i_deg" else name
+    arguments[other] = [532.0, 532.0] if other == "wavelength_nm" else [10, 20]
+    with pytest.raises(ValueError, match=r"do not broadcast: .*theta_i_deg \(3,\)"):
+        ptfe.evaluate(**arguments)
+
+
+def test_invalid_angles_are_named_with_their_place(ptfe):
+    angles = np.full((2, 3), 30.0)
+    angles[1, 2] = 95
+    with pytest.raises(ValueError, match=r"95,0.*\[-90, 90\].*\[1, 2\]"):
+        ptfe.evaluate(532, angles, 0, 30, 180)
+    with pytest.raises(ValueError, match="nan"):
+        ptfe.evaluate(532, 30, 0, 30, np.nan)
+
+
+def test_other_invalid_arguments_are_refused(ptfe):
+    for wavelength in (0, -532, np.nan, np.inf):
+        with pytest.raises(ValueError, match="wavelength"):
+            ptfe.evaluate(wavelength, 45, 0, 30, 180)
+    with pytest.raises(ValueError, match="351, 532, 633, 1064"):
+        ptfe.evaluate(None, 45, 0, 30, 180)
+    with pytest.raises(ValueError, match="frame 'stokes' is not one of xy, sp, scattering_plane"):
+        ptfe.evaluate(532, 45, 0, 30, 180, frame="stokes")
+    with pytest.raises(ValueError, match="threads = -1"):
+        ptfe.evaluate(532, 45, 0, 30, 180, threads=-1)
+    with pytest.raises(TypeError):
+        ptfe.evaluate(532, "steep", 0, 30, 180)
+    with pytest.raises(TypeError):
+        ptfe.evaluate(532, 45, 0, 30)
+
+
+def test_a_model_of_one_wavelength_needs_none():
+    model = mmbrdf.material("ptfe-532")
+    np.testing.assert_array_equal(
+        model.evaluate(theta_i_deg=45, phi_i_deg=0, theta_r_deg=30, phi_r_deg=180), model.evaluate(532, 45, 0, 30, 180)
+    )
+
+
+def test_every_number_of_threads_gives_the_same_bits(ptfe):
+    geometry = mmbrdf.random_geometries(20000, seed=3)
+    one = ptfe.evaluate(532, *geometry, threads=1)
+    for threads in (0, 2, 3, 7):
+        np.testing.assert_array_equal(ptfe.evaluate(532, *geometry, threads=threads), one)
+
+
+def test_extrapolation_is_said_and_found(ptfe):
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match=r"ptfe: 2 of 3 geometries .*\(theta_i\)"):
+        ptfe.evaluate(532, [30, 80, 85], 0, 30, 180)
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match="wavelength"):
+        ptfe.evaluate([532, 1500], 30, 0, 30, 180)
+    outside = ptfe.outside([532, 1500], [[30], [80]], 0, 85, 180)
+    flags = mmbrdf.Outside
+    assert outside.dtype == np.uint8
+    assert flags(int(outside[0, 0])) == flags.THETA_R
+    assert flags(int(outside[1, 1])) == flags.THETA_I | flags.THETA_R | flags.WAVELENGTH
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ptfe.evaluate(532, 75, 0, 81, 180)
+        with pytest.raises(mmbrdf.ExtrapolationWarning):
+            ptfe.evaluate(532, 80, 0, 30, 180)
+
+
+def test_the_program_gives_the_same_bits(ptfe, program, tmp_path):
+    random = np.random.default_rng(5)
+    rows = np.column_stack(
+        [random.uniform(351, 1064, 200), random.uniform(-75, 75, 200), random.uniform(-180, 360, 200),
+         random.uniform(-75, 75, 200), random.uniform(-180, 360, 200)]
+    )  # fmt: skip
+    text = ",".join(ARGUMENTS) + "\n" + "\n".join(",".join(map(repr, map(float, row))) for row in rows)
+    (tmp_path / "where.csv").write_text(text)
+    for frame in ("xy", "sp", "scattering_plane"):
+        printed = program("evaluate", "ptfe", "--geometries", "where.csv", "--frame", frame)
+        there = [[float(row[f"f{i}{j}"]) for i in range(1, 5) for j in range(1, 5)] for row in csv.DictReader(io.StringIO(printed))]
+        here = ptfe.evaluate(*rows.T, frame=frame)
+        np.testing.assert_array_equal(here.reshape(-1, 16), there)
+
+
+def test_published_coefficients_can_be_evaluated_as_printed(published):
+    model = mmbrdf.load(published / "PTFE.532.coeff.csv")
+    at_zero = (532, 45, 0, 30, 150)
+    np.testing.assert_allclose(model.evaluate(*at_zero, as_printed=True), model.evaluate(*at_zero), rtol=0, atol=1e-15)
+    turned = (532, 45, 70, 30, 220)
+    assert np.abs(model.evaluate(*turned, as_printed=True) - model.evaluate(*turned)).max() > 1e-4
+
+
+def test_uncertainties_are_the_roots_of_the_covariance(ptfe):
+    question = (532, 45, 0, np.linspace(-60, 60, 9), 180)
+    for frame in ("xy", "sp"):
+        u = ptfe.evaluate_uncertainty(*question, frame=frame)
+        v = ptfe.covariance(*question, frame=frame)
+        assert u.shape == (9, 4, 4) and v.shape == (9, 16, 16)
+        np.testing.assert_allclose(u.reshape(9, 16) ** 2, np.diagonal(v, axis1=1, axis2=2), rtol=1e-14)
+        np.testing.assert_allclose(v, np.swapaxes(v, 1, 2), rtol=1e-14, atol=1e-30)
+        assert (u[:, 0, 0] > 1e-4).all()
+
+
+def test_terms_of_type_b_add_to_the_uncertainty(ptfe):
+    question = (532, 45, 0, 30, 180)
+    f, fit = ptfe.evaluate(*question), ptfe.evaluate_uncertainty(*question)
+    scaled = ptfe.evaluate_uncertainty(*question, terms={"scale": 0.003})
+    np.testing.assert_allclose(scaled**2, fit**2 + (0.003 * f) ** 2, rtol=1e-12)
+    assert (ptfe.evaluate_uncertainty(*question, terms={"theta_r_deg": 0.1})[0, 0]) > fit[0, 0]
+    for wrong in ({"theta_r": 0.1}, {"scale_deg": 0.1}, {"weather": 1}, {"scale": -1}):
+        with pytest.raises(ValueError):
+            ptfe.evaluate_uncertainty(*question, terms=wrong)
+
+
+def test_draws_scatter_as_the_covariance_says(ptfe):
+    question = (532, 45, 0, [20, 40], 180)
+    draws = ptfe.evaluate_draws(2000, 1, *question)
+    assert draws.shape == (2000, 2, 4, 4)
+    ratio = draws.std(axis=0)[:, 0, 0] / ptfe.evaluate_uncertainty(*question)[:, 0, 0]
+    np.testing.assert_allclose(ratio, 1, atol=0.08)  # 5 standard deviations of that of 2000 draws
+    np.testing.assert_array_equal(draws[:100], ptfe.evaluate_draws(100, 1, *question)[:100])
+
+
+def test_a_sampling_of_the_whole_sphere_is_estimable(ptfe):
+    assert ptfe.estimable(532, [30, 60], 0, 45, [[90], [180]]).all()
+
+
+def test_models_without_covariance_have_no_uncertainty(published):
+    model = mmbrdf.load(published / "PTFE.532.coeff.csv")
+    assert not model.has_covariance
+    with pytest.raises(ValueError, match="covariance"):
+        model.evaluate_uncertainty(532, 45, 0, 30, 180)
+
+
+def test_results_with_names_go_to_netcdf_and_back(ptfe, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    theta = np.arange(-60.0, 61, 20)
+    named = ptfe.evaluate([[532], [633]], 45, 0, theta, 180, frame="sp", as_xarray=True)
+    assert named.dims == ("wavelength_nm", "theta_r_deg", "row", "column")
+    np.testing.assert_array_equal(named.values, ptfe.evaluate([[532], [633]], 45, 0, theta, 180, frame="sp"))
+    assert named.attrs["units"] == "sr-1" and named.attrs["frame"] == "sp"
+    assert named.theta_r_deg.attrs["units"] == "degree"
+    f11 = float(named.sel(wavelength_nm=633, theta_r_deg=20, row=1, column=1))
+    assert f11 == ptfe.evaluate(633, 45, 0, 20, 180)[0, 0]
+    named.to_netcdf(tmp_path / "brdf.nc")
+    with xarray.open_dataarray(tmp_path / "brdf.nc") as back:
+        assert back.identical(named)
+
+
+def test_geometries_that_vary_together_share_an_axis(ptfe):
+    named = ptfe.evaluate_uncertainty(532, [10, 20, 30], 0, [30, 20, 10], 180, as_xarray=True)
+    assert named.dims == ("axis_0", "row", "column")
+    np.testing.assert_array_equal(named.theta_i_deg, [10, 20, 30])
+    np.testing.assert_array_equal(named.theta_r_deg, [30, 20, 10])
+    assert named.name == "uncertainty"

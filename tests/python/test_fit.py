@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Data sets and fits."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+
+def largest_difference(first, second):
+    """Over all coefficients of two models."""
+    return max(np.abs(a.coefficients - b.coefficients).max() for a, b in zip(first.blocks, second.blocks, strict=True))
+
+
+def test_a_dataset_holds_what_it_was_made_from(ptfe):
+    geometry = mmbrdf.random_geometries(50, seed=2)
+    for frame in ("xy", "sp", "scattering_plane"):
+        f = ptfe.evaluate(532, *geometry, frame=frame)
+        data = mmbrdf.Dataset(532, *geometry, f, frame=frame)
+        assert len(data) == 50 and data.wavelengths_nm == (532,) and data.uncertainty is None
+        np.testing.assert_allclose(data.mueller, ptfe.evaluate(532, *geometry), rtol=0, atol=2e-15)
+        np.testing.assert_allclose(data.f11, f[:, 0, 0], rtol=1e-15)
+        for there, here in zip(data.geometry, geometry):
+            np.testing.assert_allclose(there, here, rtol=0, atol=1e-12)
+
+
+def test_columns_of_a_dataset(samples):
+    assert samples.normalized.shape == (1824, 4, 4) and (samples.normalized[:, 0, 0] == 1).all()
+    np.testing.assert_array_equal(samples.mueller, samples.f11[:, None, None] * samples.normalized)
+    with pytest.raises(ValueError, match="read-only"):
+        samples.normalized[0, 0, 0] = 2
+    assert samples.theta_i_deg.max() == pytest.approx(75)
+    assert repr(samples) == "<mmbrdf.Dataset: 1824 samples at (532.0,) nm>"
+
+
+def test_parts_of_a_dataset(samples):
+    thirds = [samples[i::3] for i in range(3)]
+    assert sum(map(len, thirds)) == len(samples)
+    np.testing.assert_array_equal(thirds[1].f11, samples.f11[1::3])
+    np.testing.assert_array_equal(samples[samples.theta_i_deg > 50].f11, samples.f11[samples.theta_i_deg > 50])
+    np.testing.assert_array_equal(samples[[5, -1]].f11, samples.f11[[5, -1]])
+    assert len(samples[7]) == 1 and len(samples[:0]) == 0
+    with pytest.raises(IndexError):
+        samples[5000]
+    assert len(samples.at_wavelengths(532)) == len(samples)
+    with pytest.raises(ValueError, match="532"):
+        samples.at_wavelengths([633])
+
+
+def test_copies_of_a_dataset_are_the_same(samples, tmp_path):
+    samples.save(tmp_path / "data.csv")
+    for same in (pickle.loads(pickle.dumps(samples)), copy.deepcopy(samples), mmbrdf.read_samples(tmp_path / "data.csv")):
+        np.testing.assert_array_equal(same.mueller, samples.mueller)
+
+
+def test_uncertainties_of_a_dataset_are_kept(ptfe, tmp_path):
+    geometry = mmbrdf.random_geometries(20, seed=2)
+    u = np.full((4, 4), 0.01)
+    data = mmbrdf.Dataset(532, *geometry, ptfe.evaluate(532, *geometry), uncertainty=u)
+    data.save(tmp_path / "data.csv")
+    for one in (data, mmbrdf.load(tmp_path / "data.csv")):
+        np.testing.assert_array_equal(one.uncertainty, np.broadcast_to(u, (20, 4, 4)))
+    with pytest.raises(ValueError, match="frame='xy'"):
+        mmbrdf.Dataset(532, *geometry, ptfe.evaluate(532, *geometry), frame="sp", uncertainty=u)
+
+
+def test_invalid_samples_are_refused(ptfe):
+    f = ptfe.evaluate(532, 45, 0, 30, 180)
+    with pytest.raises(ValueError, match=r"mueller: its shape \(3, 4\) does not end in \(4, 4\)"):
+        mmbrdf.Dataset(532, 45, 0, 30, 180, f[:3])
+    with pytest.raises(ValueError, match="polar angle"):
+        mmbrdf.Dataset(532, 95, 0, 30, 180, f)
+    with pytest.raises(ValueError):
+        mmbrdf.Dataset(532, 45, 0, 30, 180, np.nan * f)
+    with pytest.raises(ValueError, match="wavelength_nm"):
+        mmbrdf.Dataset(-1, 45, 0, 30, 180, f)
+
+
+def test_the_program_fits_the_same_model(samples, program, tmp_path):
+    samples.save(tmp_path / "data.csv")
+    for options, arguments in (
+        ({}, ()),
+        ({"basis": "germer2017"}, ("--basis", "germer2017")),
+        ({"orders": (5, 3), "weights": "speckle", "covariance": "sandwich"},
+         ("--orders", "5,3", "--weights", "speckle", "--covariance", "sandwich")),
+    ):  # fmt: skip
+        program("fit", "data.csv", "-o", "model.json", *arguments)
+        there, here = mmbrdf.load(tmp_path / "model.json"), mmbrdf.fit(mmbrdf.load(tmp_path / "data.csv"), **options).model
+        assert largest_difference(there, here) <= 1e-12
+        for a, b in zip(there.blocks, here.blocks, strict=True):
+            np.testing.assert_allclose(a.covariance, b.covariance, rtol=0, atol=1e-12)
+            assert (a.rank, a.modes) == (b.rank, b.modes)
+
+
+def test_a_fit_says_how_well_it_fits(samples):
+    result = mmbrdf.fit(samples, name="simulated", attribution="nobody")
+    assert result.model.name == "simulated" and result.model.provenance["attribution"] == "nobody"
+    np.testing.assert_array_equal(result.residuals, mmbrdf.residuals(result.model, samples))
+    rms = np.sqrt((result.residuals**2).mean(axis=0))
+    np.testing.assert_allclose(result.rms[1:], rms[1:], rtol=1e-9)
+    assert result.polarization_rms == pytest.approx(np.sqrt((result.rms.ravel()[1:] ** 2).mean()))
+    assert "1824 samples" in repr(result)
+
+
+def test_a_fit_to_a_model_without_noise_is_that_model(ptfe):
+    data = mmbrdf.simulate(ptfe, [351, 532, 633, 1064], mmbrdf.random_geometries(500, seed=1))
+    result = mmbrdf.fit(data, reflectance=ptfe.reflectance)
+    assert largest_difference(result.model, ptfe) < 1e-12
+
+
+def test_data_that_do_not_determine_a_model_are_refused(samples):
+    with pytest.raises(ValueError, match="free"):
+        mmbrdf.fit(samples[:20])
+    assert mmbrdf.fit(samples[:20], minimum_norm=True).model.blocks[0].rank < 40
+    for wrong in ({"basis": "fourier"}, {"weights": "heavy"}, {"orders": (-1, 4)}, {"covariance": "small"}, {"powers": 3},
+                  {"mapping": "flat"}, {"weights": "data"}):  # fmt: skip
+        with pytest.raises(ValueError):
+            mmbrdf.fit(samples, **wrong)
+
+
+def test_a_comparison_says_how_much_and_where(samples, ptfe):
+    there = mmbrdf.compare(ptfe, samples)
+    here = mmbrdf.residuals(ptfe, samples)
+    assert there["samples"] == 1824
+    assert there["f11"]["rms"] == pytest.approx(np.sqrt((here[:, 0, 0] ** 2).mean()), rel=1e-12)
+    worst = np.abs(here[:, 1, 1]).argmax()
+    assert there["m22"]["largest"] == pytest.approx(abs(here[worst, 1, 1]), rel=1e-12)
+    assert there["m22"]["theta_r_deg"] == pytest.approx(samples.theta_r_deg[worst])
+
+
+def test_estimated_noise_is_that_of_the_simulation(samples):
+    (noise,) = mmbrdf.fit(samples, weights="estimated").noise
+    assert noise["wavelength_nm"] == 532
+    assert noise["scale"] == pytest.approx(0.01, rel=0.1)  # 3650 residuals: 5 standard deviations are 6 %
+
+
+def test_the_published_fits_come_out(published):
+    data = mmbrdf.load(published / "PTFE.data.csv")
+    assert len(data) == 7296
+    model = mmbrdf.fit(data.at_wavelengths(532), basis="germer2017").model
+    file = mmbrdf.load(published / "PTFE.532.coeff.csv")
+    assert largest_difference(model, file) < 1e-11

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From readings to a fitted model, as the program does it."""
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+
+@pytest.fixture(scope="module")
+def chain(tmp_path_factory):
+    """A simulated instrument that measured ptfe-532 at 300 geometries: (goniometer, folder, model)."""
+    folder = tmp_path_factory.mktemp("raw")
+    model = mmbrdf.material("ptfe-532")
+    goniometer = mmbrdf.Goniometer(seed=1, speckle=0.01)
+    goniometer.write_references(folder / "references.csv", 532)
+    goniometer.write_raw(folder / "raw.csv", model, 532, mmbrdf.random_geometries(300, seed=1))
+    return goniometer, folder, model
+
+
+def test_optimal_states_have_the_smallest_condition_number():
+    angles = mmbrdf.optimal_angles(131.81, 4)
+    np.testing.assert_allclose(angles, [-51.69, -15.12, 15.12, 51.69], atol=0.01)
+    ideal = mmbrdf.ideal_polarimeter(131.81, angles)
+    assert mmbrdf.condition_number(ideal.generator) == pytest.approx(np.sqrt(3), abs=1e-4)
+
+
+def test_readings_and_matrices_are_each_others_inverse(random_matrices):
+    ideal = mmbrdf.ideal_polarimeter(120, [-60, -20, 10, 50, 80])
+    readings = ideal.readings(random_matrices)
+    assert readings.shape == (5, 7, 5, 5)
+    np.testing.assert_allclose(readings, ideal.analyzer @ random_matrices @ ideal.generator.T, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(ideal.reduce(readings), random_matrices, rtol=0, atol=1e-14)
+    assert ideal.covariance(np.ones((5, 5))).shape == (16, 16)
+    with pytest.raises(ValueError, match=r"readings: its shape \(4, 4\) does not end in \(5, 5\)"):
+        ideal.reduce(np.ones((4, 4)))
+    with pytest.raises(ValueError, match="generator"):
+        mmbrdf.Polarimeter(np.ones(4), np.ones((4, 4)))
+
+
+def test_elements_are_those_of_the_textbook():
+    np.testing.assert_allclose(mmbrdf.polarizer(0), 0.5 * np.array([[1, 1, 0, 0], [1, 1, 0, 0], [0] * 4, [0] * 4]), atol=1e-16)
+    np.testing.assert_allclose(mmbrdf.retarder(180, [0, 90])[0], np.diag([1, 1, -1, -1]), atol=1e-15)
+    film = mmbrdf.film_reflection((1.4607, 1.0, 4.15 + 0.044j), 532, [30, 75])
+    assert film.shape == (2, 4, 4) and mmbrdf.realizable(film).all()
+
+
+def test_the_program_calibrates_and_reduces_to_the_same_numbers(chain, program, tmp_path):
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle)
+    program("calibrate", folder / "references.csv", "--film", "1.4607,1.0,4.15,0.044", "-o", "instrument.json")
+    program("reduce", folder / "raw.csv", "--instrument", "instrument.json", "--solid-angle", goniometer.solid_angle, "-o", "data.csv")
+    there = mmbrdf.load(tmp_path / "data.csv")
+    np.testing.assert_array_equal(there.mueller, data.mueller)
+    np.testing.assert_array_equal(there.uncertainty, data.uncertainty)
+    instrument.save(folder / "instrument.json")
+    for again in (mmbrdf.load_instrument(folder / "instrument.json"), mmbrdf.load_instrument(tmp_path / "instrument.json")):
+        np.testing.assert_array_equal(again.polarimeter.generator, instrument.polarimeter.generator)
+        np.testing.assert_array_equal(again.covariance, instrument.covariance)
+
+
+def test_the_calibrated_instrument_is_the_true_one_within_its_uncertainty(chain):
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    truth, found = goniometer.polarimeter, instrument.polarimeter
+    errors = np.concatenate([(found.generator / found.generator[:, :1].mean() - truth.generator / truth.generator[:, :1].mean()).ravel()])
+    u = np.sqrt(np.diag(instrument.covariance))[: errors.size]
+    assert np.sqrt((errors**2).mean() / (u**2).mean()) < 2  # 16 errors: a ratio of 2 has a probability below 1e-5
+    assert instrument.figure_of_merit == pytest.approx(7.5e-4, rel=0.15)
+
+
+def test_readings_become_a_model_within_its_uncertainty(chain):
+    goniometer, folder, truth = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle, noise={"relative": 0.01})
+    alone = mmbrdf.fit(data, weights="data").model
+    model = mmbrdf.fit(data, weights="data", instrument=instrument).model
+    question = (532, 45, 0, [10, 30, 50], 180)
+    u = model.evaluate_uncertainty(*question)[:, 0, 0]
+    assert (u > alone.evaluate_uncertainty(*question)[:, 0, 0]).all()
+    error = model.evaluate(*question)[:, 0, 0] - truth.evaluate(*question)[:, 0, 0]
+    assert (np.abs(error) < 5 * u).all()
+
+
+def test_what_cannot_be_calibrated_or_reduced_is_refused(chain, tmp_path):
+    goniometer, folder, _ = chain
+    with pytest.raises(FileNotFoundError):
+        mmbrdf.calibrate(tmp_path / "nowhere.csv")
+    with pytest.raises(ValueError, match="wafer"):
+        mmbrdf.calibrate(folder / "references.csv")
+    with pytest.raises(ValueError, match="noise: shots"):
+        mmbrdf.calibrate(folder / "references.csv", film=goniometer.film, noise={"shots": 1})
+    linear = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film, refine=False)
+    assert linear.covariance is None
+    data = mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=goniometer.solid_angle)
+    with pytest.raises(ValueError, match="without a covariance"):
+        mmbrdf.fit(data, instrument=linear)
+    with pytest.raises(ValueError, match="solid"):
+        mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=-1)
