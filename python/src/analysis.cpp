@@ -77,7 +77,12 @@ void bind_quantities(py::module_& m) {
   define(m, "purity", purity, "tr T^2 / M11^2: 1/4 for a perfect depolarizer, 1 for a Jones matrix.");
   define(m, "entropy", entropy,
          "Of the coherency eigenvalues, base 4: 1 for a perfect depolarizer, 0 for a Jones matrix.");
-  define(m, "retardance", retardance, "Angle in radians by which a retarder turns the Poincare sphere.");
+  m.def(
+      "retardance",
+      [](const Doubles& mueller) {
+        return over_matrices(mueller, [](const Mueller& retarder) { return degrees(retardance(retarder)); });
+      },
+      py::arg("mueller"), "Angle in degrees, 0 to 180, by which a retarder turns the Poincare sphere.");
   define(m, "depolarization_power", depolarization_power, "1 - |tr m| / 3 of a depolarizer (Lu & Chipman).");
   m.def(
       "degree_of_polarization",

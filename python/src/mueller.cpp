@@ -97,7 +97,7 @@ void bind_mueller(py::module_& m) {
   m.def(
       "normalized",
       [](const Doubles& mueller) { return over_matrices(mueller, [](const Mueller& f) { return normalized(f); }); },
-      py::arg("mueller"), "M / M11.");
+      py::arg("mueller"), "M / M11: element 11 is 1.");
   m.def(
       "exchanged",
       [](const Doubles& mueller) { return over_matrices(mueller, [](const Mueller& f) { return exchanged(f); }); },

@@ -28,7 +28,11 @@ def program(tmp_path):
 
     def run(*arguments):
         done = subprocess.run(
-            [os.environ["MMBRDF_PROGRAM"], *map(str, arguments)], cwd=tmp_path, capture_output=True, text=True, check=False
+            [os.environ["MMBRDF_PROGRAM"], *map(str, arguments)],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
         )
         assert done.returncode == 0, done.stderr
         return done.stdout

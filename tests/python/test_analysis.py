@@ -48,6 +48,10 @@ def test_uncertainties_of_quantities_follow_from_the_covariance(ptfe):
     np.testing.assert_allclose(mmbrdf.standard_uncertainty(g, v), expected, rtol=1e-12)
 
 
+def test_a_retarder_has_its_retardance():
+    np.testing.assert_allclose(mmbrdf.retardance(mmbrdf.retarder([0, 30, 90, 180], 20)), [0, 30, 90, 180], atol=1e-5)
+
+
 def test_decompositions_multiply_back(random_matrices):
     parts = mmbrdf.lu_chipman(random_matrices)
     product = parts.depolarizer @ parts.retarder @ parts.diattenuator
@@ -57,7 +61,9 @@ def test_decompositions_multiply_back(random_matrices):
     np.testing.assert_allclose(product, random_matrices, rtol=0, atol=1e-8 * random_matrices.max())
     c = mmbrdf.cloude_decomposition(random_matrices)
     assert c.weights.shape == (5, 7, 4) and c.components.shape == (5, 7, 4, 4, 4)
-    np.testing.assert_allclose(np.einsum("...q,...qij->...ij", c.weights, c.components), random_matrices, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(
+        np.einsum("...q,...qij->...ij", c.weights, c.components), random_matrices, rtol=0, atol=1e-13
+    )
 
 
 def test_co_and_cross_polarized_parts_are_what_polarizers_leave(ptfe):

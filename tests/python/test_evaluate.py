@@ -42,7 +42,14 @@ def test_wavelengths_may_vary_fastest(ptfe):
 def test_strides_and_types_do_not_matter(ptfe):
     theta = np.arange(0, 80, 5)
     expected = ptfe.evaluate(532, 45, 0, theta.astype(float), 180)
-    for same in (theta, theta.astype(np.float32), theta.astype(">f8"), np.repeat(theta, 3)[::3], theta[::-1][::-1], list(theta)):
+    for same in (
+        theta,
+        theta.astype(np.float32),
+        theta.astype(">f8"),
+        np.repeat(theta, 3)[::3],
+        theta[::-1][::-1],
+        list(theta),
+    ):
         np.testing.assert_array_equal(ptfe.evaluate(532, 45, 0, same, 180), expected)
     grid = np.arange(12.0).reshape(3, 4)
     np.testing.assert_array_equal(ptfe.evaluate(532, 45, 0, grid.T, 180), ptfe.evaluate(532, 45, 0, grid.T.copy(), 180))
@@ -137,7 +144,10 @@ def test_the_program_gives_the_same_bits(ptfe, program, tmp_path):
     (tmp_path / "where.csv").write_text(text)
     for frame in ("xy", "sp", "scattering_plane"):
         printed = program("evaluate", "ptfe", "--geometries", "where.csv", "--frame", frame)
-        there = [[float(row[f"f{i}{j}"]) for i in range(1, 5) for j in range(1, 5)] for row in csv.DictReader(io.StringIO(printed))]
+        there = [
+            [float(row[f"f{i}{j}"]) for i in range(1, 5) for j in range(1, 5)]
+            for row in csv.DictReader(io.StringIO(printed))
+        ]
         here = ptfe.evaluate(*rows.T, frame=frame)
         np.testing.assert_array_equal(here.reshape(-1, 16), there)
 

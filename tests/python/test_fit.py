@@ -52,7 +52,11 @@ def test_parts_of_a_dataset(samples):
 
 def test_copies_of_a_dataset_are_the_same(samples, tmp_path):
     samples.save(tmp_path / "data.csv")
-    for same in (pickle.loads(pickle.dumps(samples)), copy.deepcopy(samples), mmbrdf.read_samples(tmp_path / "data.csv")):
+    for same in (
+        pickle.loads(pickle.dumps(samples)),
+        copy.deepcopy(samples),
+        mmbrdf.read_samples(tmp_path / "data.csv"),
+    ):
         np.testing.assert_array_equal(same.mueller, samples.mueller)
 
 
@@ -88,7 +92,10 @@ def test_the_program_fits_the_same_model(samples, program, tmp_path):
          ("--orders", "5,3", "--weights", "speckle", "--covariance", "sandwich")),
     ):  # fmt: skip
         program("fit", "data.csv", "-o", "model.json", *arguments)
-        there, here = mmbrdf.load(tmp_path / "model.json"), mmbrdf.fit(mmbrdf.load(tmp_path / "data.csv"), **options).model
+        there, here = (
+            mmbrdf.load(tmp_path / "model.json"),
+            mmbrdf.fit(mmbrdf.load(tmp_path / "data.csv"), **options).model,
+        )
         assert largest_difference(there, here) <= 1e-12
         for a, b in zip(there.blocks, here.blocks, strict=True):
             np.testing.assert_allclose(a.covariance, b.covariance, rtol=0, atol=1e-12)

@@ -55,7 +55,9 @@ def test_published_coefficients_are_a_model(ptfe, tmp_path):
     published.save(tmp_path / "coefficients.csv")
     back = mmbrdf.load(tmp_path / "coefficients.csv")
     assert isinstance(back, mmbrdf.Model) and back.family == "germer2017" and back.name == "coefficients"
-    np.testing.assert_allclose(back.evaluate(532, 45, 30, 30, 80), published.evaluate(532, 45, 30, 30, 80), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(
+        back.evaluate(532, 45, 30, 30, 80), published.evaluate(532, 45, 30, 30, 80), rtol=0, atol=1e-15
+    )
 
 
 def test_samples_are_a_dataset(samples, tmp_path):
@@ -80,7 +82,9 @@ def test_files_that_hold_something_else_are_os_errors_with_the_place(ptfe, tmp_p
     (tmp_path / "broken.json").write_text(json.dumps(broken))
     with pytest.raises(OSError, match=r"broken\.json: .*coefficients"):
         mmbrdf.load(tmp_path / "broken.json")
-    (tmp_path / "broken.csv").write_text("wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,x,0,0,0,1\n")
+    (tmp_path / "broken.csv").write_text(
+        "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,x,0,0,0,1\n"
+    )
     with pytest.raises(OSError, match=r"broken\.csv:"):
         mmbrdf.load(tmp_path / "broken.csv")
     (tmp_path / "empty").write_text("")

@@ -39,7 +39,9 @@ def test_readings_and_matrices_are_each_others_inverse(random_matrices):
 
 
 def test_elements_are_those_of_the_textbook():
-    np.testing.assert_allclose(mmbrdf.polarizer(0), 0.5 * np.array([[1, 1, 0, 0], [1, 1, 0, 0], [0] * 4, [0] * 4]), atol=1e-16)
+    np.testing.assert_allclose(
+        mmbrdf.polarizer(0), 0.5 * np.array([[1, 1, 0, 0], [1, 1, 0, 0], [0] * 4, [0] * 4]), atol=1e-16
+    )
     np.testing.assert_allclose(mmbrdf.retarder(180, [0, 90])[0], np.diag([1, 1, -1, -1]), atol=1e-15)
     film = mmbrdf.film_reflection((1.4607, 1.0, 4.15 + 0.044j), 532, [30, 75])
     assert film.shape == (2, 4, 4) and mmbrdf.realizable(film).all()
@@ -50,12 +52,24 @@ def test_the_program_calibrates_and_reduces_to_the_same_numbers(chain, program, 
     instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
     data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle)
     program("calibrate", folder / "references.csv", "--film", "1.4607,1.0,4.15,0.044", "-o", "instrument.json")
-    program("reduce", folder / "raw.csv", "--instrument", "instrument.json", "--solid-angle", goniometer.solid_angle, "-o", "data.csv")
+    program(
+        "reduce",
+        folder / "raw.csv",
+        "--instrument",
+        "instrument.json",
+        "--solid-angle",
+        goniometer.solid_angle,
+        "-o",
+        "data.csv",
+    )
     there = mmbrdf.load(tmp_path / "data.csv")
     np.testing.assert_array_equal(there.mueller, data.mueller)
     np.testing.assert_array_equal(there.uncertainty, data.uncertainty)
     instrument.save(folder / "instrument.json")
-    for again in (mmbrdf.load_instrument(folder / "instrument.json"), mmbrdf.load_instrument(tmp_path / "instrument.json")):
+    for again in (
+        mmbrdf.load_instrument(folder / "instrument.json"),
+        mmbrdf.load_instrument(tmp_path / "instrument.json"),
+    ):
         np.testing.assert_array_equal(again.polarimeter.generator, instrument.polarimeter.generator)
         np.testing.assert_array_equal(again.covariance, instrument.covariance)
 
@@ -64,7 +78,9 @@ def test_the_calibrated_instrument_is_the_true_one_within_its_uncertainty(chain)
     goniometer, folder, _ = chain
     instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
     truth, found = goniometer.polarimeter, instrument.polarimeter
-    errors = np.concatenate([(found.generator / found.generator[:, :1].mean() - truth.generator / truth.generator[:, :1].mean()).ravel()])
+    errors = np.concatenate(
+        [(found.generator / found.generator[:, :1].mean() - truth.generator / truth.generator[:, :1].mean()).ravel()]
+    )
     u = np.sqrt(np.diag(instrument.covariance))[: errors.size]
     assert np.sqrt((errors**2).mean() / (u**2).mean()) < 2  # 16 errors: a ratio of 2 has a probability below 1e-5
     assert instrument.figure_of_merit == pytest.approx(7.5e-4, rel=0.15)
