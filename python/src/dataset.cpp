@@ -95,9 +95,11 @@ py::tuple wavelengths_nm(const Dataset& data) {
 }
 
 std::string representation(const Dataset& data) {
-  const std::string at = data.samples.empty() ? "" : " at " + std::string(py::str(wavelengths_nm(data))) + " nm";
-  return "<mmbrdf.Dataset: " + std::to_string(data.samples.size()) + " samples" + at +
-         (has_uncertainty(data) ? ", with uncertainties>" : ">");
+  const std::vector<double> at = wavelengths(data.samples);
+  std::string text = "<mmbrdf.Dataset: " + std::to_string(data.samples.size()) + " samples";
+  for (std::size_t i = 0; i < at.size(); ++i)
+    text += (i > 0 ? ", " : " at ") + formatted("{:g}", nanometres(at[i])) + (i + 1 == at.size() ? " nm" : "");
+  return text + (has_uncertainty(data) ? ", with uncertainties>" : ">");
 }
 
 DatasetPointer samples_of(const std::filesystem::path& path) {

@@ -33,7 +33,13 @@ def test_columns_of_a_dataset(samples):
     with pytest.raises(ValueError, match="read-only"):
         samples.normalized[0, 0, 0] = 2
     assert samples.theta_i_deg.max() == pytest.approx(75)
-    assert repr(samples) == "<mmbrdf.Dataset: 1824 samples at (532.0,) nm>"
+
+
+def test_a_person_can_read_what_a_dataset_is(samples, ptfe):
+    assert repr(samples) == "<mmbrdf.Dataset: 1824 samples at 532 nm>"
+    assert repr(samples[:0]) == "<mmbrdf.Dataset: 0 samples>"
+    two = mmbrdf.Dataset([633, 351], 0, 0, 30, 0, ptfe.evaluate(532, 0, 0, 30, 0), uncertainty=np.ones((4, 4)))
+    assert repr(two) == "<mmbrdf.Dataset: 2 samples at 351, 633 nm, with uncertainties>"
 
 
 def test_parts_of_a_dataset(samples):
