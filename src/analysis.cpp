@@ -34,8 +34,8 @@ Scaled scaled(const Mueller& m, const char* what) {
   for (std::size_t i = 0; i < 16; ++i) {
     const double element = m.elements[i];
     if (!std::isfinite(element))
-      throw std::invalid_argument(std::string(what) + ": M" + std::to_string(i / 4 + 1) + std::to_string(i % 4 + 1) +
-                                  " = " + shortest(element) + ", must be finite");
+      throw std::invalid_argument(std::string(what) + ": M" + element_name(i) + " = " + shortest(element) +
+                                  ", must be finite");
     largest = std::max(largest, std::abs(element));
   }
   Scaled result{m, 0};

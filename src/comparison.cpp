@@ -59,8 +59,7 @@ Comparison compare(const Model& model, std::span<const Sample> samples, Rotation
   }
   divide(result.f11, result.samples, "f11");
   divide(result.f11_relative, result.samples, "f11");
-  for (std::size_t e = 1; e < 16; ++e)
-    divide(result.normalized[e], result.samples, "element " + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1));
+  for (std::size_t e = 1; e < 16; ++e) divide(result.normalized[e], result.samples, "element " + element_name(e));
   return result;
 }
 

@@ -50,6 +50,10 @@ Signs signs(StokesConvention from, StokesConvention to) {
 
 }  // namespace
 
+std::string element_name(std::size_t element) {
+  return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
+}
+
 Mueller identity() { return diagonal(1, 1, 1, 1); }
 
 Mueller diagonal(double m11, double m22, double m33, double m44) {

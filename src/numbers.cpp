@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "mmbrdf/geometry.hpp"
+#include "mmbrdf/mueller.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -91,9 +92,7 @@ std::string rounded(double value, int digits) {
   return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr};
 }
 
-std::string sample_element(std::size_t element) {
-  return (element == 0 ? "f" : "m") + std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
-}
+std::string sample_element(std::size_t element) { return (element == 0 ? "f" : "m") + element_name(element); }
 
 double in_degrees(double angle) {
   return roundest(degrees(angle), [=](double value) { return radians(value) == angle; });

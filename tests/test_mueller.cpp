@@ -54,6 +54,7 @@ TEST(Mueller, IsStoredRowByRow) {
   Mueller m;
   m(1, 2) = 7;
   EXPECT_EQ(m.elements[6], 7);
+  EXPECT_EQ(element_name(6), "23");
 }
 
 TEST(Mueller, MatrixTimesMatrixIsOneAfterTheOther) {

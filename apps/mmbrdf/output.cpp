@@ -78,10 +78,6 @@ std::string plain_message(const std::exception& error) {
   return text;
 }
 
-std::string element_name(std::size_t element) {
-  return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
-}
-
 std::string element_columns(bool normalized) {
   std::string text;
   for (std::size_t element = 0; element < 16; ++element) {

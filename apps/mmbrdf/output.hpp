@@ -42,9 +42,6 @@ std::string shortest(double value);
 /// Up to 10 significant digits, no more than needed: 532, 81.87 …
 std::string brief(double value);
 
-/// Of element number 0 … 15 in row-major order: "11" … "44".
-std::string element_name(std::size_t element);
-
 /// ",f11,f12,…,f44", or of normalised elements ",f11,m12,…,m44".
 std::string element_columns(bool normalized);
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace mmbrdf {
 
@@ -23,6 +24,9 @@ struct Mueller {
   double operator()(int row, int column) const { return elements[static_cast<std::size_t>(4 * row + column)]; }
   friend bool operator==(const Mueller&, const Mueller&) = default;
 };
+
+/// Of element number 0 … 15 in row-major order: "11", "12" … "44".
+std::string element_name(std::size_t element);
 
 Mueller identity();
 Mueller diagonal(double m11, double m22, double m33, double m44);
