@@ -81,6 +81,8 @@ std::string to_string(Outside outside) {
   return result.empty() ? "ok" : result;
 }
 
+bool leaves_known_range(Outside outside) { return (outside & ~static_cast<unsigned>(unknown_range)) != 0; }
+
 namespace {
 
 void require_valid(const Validity& validity) {
@@ -154,6 +156,12 @@ void require_valid(const Model& model) {
   require_valid(model.validity);
 }
 
+int mode_count(const Model& model) {
+  std::size_t count = 0;
+  for (const FittedBlock& fitted : model.blocks) count += fitted.block.modes.size();
+  return static_cast<int>(count);
+}
+
 int coefficient_count(const Model& model) {
   std::size_t count = 0;
   for (const FittedBlock& fitted : model.blocks) count += fitted.coefficients.size();
@@ -186,6 +194,16 @@ double only_wavelength(const Model& model) {
     list += (list.empty() ? ", fitted at " : ", ") + shortest(in_nanometres(wavelength));
   throw std::invalid_argument("the model depends on the wavelength" + list + (list.empty() ? "" : " nm") +
                               ": give one");
+}
+
+std::vector<double> known_wavelengths(const Model& model) {
+  if (!model.validity.wavelengths.empty()) return model.validity.wavelengths;
+  if (!model.reflectance.wavelengths.empty()) return model.reflectance.wavelengths;
+  return model.powers == 0 ? std::vector{1.0} : std::vector<double>{};
+}
+
+bool knows_wavelength(const Model& model) {
+  return !model.validity.wavelengths.empty() || !model.reflectance.wavelengths.empty();
 }
 
 }  // namespace mmbrdf

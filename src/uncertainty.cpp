@@ -331,4 +331,8 @@ double PreparedUncertainty::directional_hemispherical_reflectance(const Directio
   return std::sqrt(std::max(slopes.dot(f11.covariance * slopes), 0.0));
 }
 
+bool knows_uncertainty(const Model& model) {
+  return std::ranges::none_of(model.blocks, [](const FittedBlock& fitted) { return fitted.covariance.empty(); });
+}
+
 }  // namespace mmbrdf

@@ -72,6 +72,19 @@ TEST(Model, OfSeveralWavelengthsNeedsOneAndSaysWhichItKnows) {
   EXPECT_NE(message_of([&] { only_wavelength(scaled); }), "nothing was thrown");
 }
 
+TEST(Model, IsShownAtTheWavelengthsItKnows) {
+  Model model = diffuser({1});
+  EXPECT_EQ(known_wavelengths(model), (std::vector<double>{1}));  // any: it does not depend on it
+  EXPECT_FALSE(knows_wavelength(model));
+  EXPECT_EQ(known_wavelengths(diffuser({1, 1})), (std::vector<double>{}));
+  model.reflectance = {{0.4, 0.5}, {1, 0.5}};
+  EXPECT_EQ(known_wavelengths(model), (std::vector<double>{0.4, 0.5}));
+  EXPECT_TRUE(knows_wavelength(model));
+  model.validity.wavelengths = {0.45};
+  EXPECT_EQ(known_wavelengths(model), (std::vector<double>{0.45}));
+  EXPECT_TRUE(knows_wavelength(model));
+}
+
 TEST(Validity, FlagsEachRangeThatTheQuestionLeaves) {
   Model model = diffuser({1});
   model.validity = {{0.351, 0.532}, radians(75), radians(80)};
@@ -101,7 +114,10 @@ TEST(Validity, IsNotLeftByARounding) {
 TEST(Validity, ThatIsUnknownIsSaidToBe) {
   EXPECT_EQ(outside(Validity{}, 10, in_degrees(90, 0, 90, 0)), unknown_range);
   EXPECT_EQ(to_string(outside({{0.5}, {}, radians(75)}, 0.5, {})), "unknown");
-  EXPECT_EQ(to_string(outside({{}, radians(75), radians(75)}, 0.5, in_degrees(80, 0, 0, 0))), "theta_i+unknown");
+  const Outside both = outside({{}, radians(75), radians(75)}, 0.5, in_degrees(80, 0, 0, 0));
+  EXPECT_EQ(to_string(both), "theta_i+unknown");
+  EXPECT_TRUE(leaves_known_range(both));
+  EXPECT_FALSE(leaves_known_range(unknown_range));
 }
 
 TEST(Validity, OfAModelMustBeOne) {
@@ -115,6 +131,7 @@ TEST(Validity, OfAModelMustBeOne) {
 
 TEST(Model, KnowsItsOrdersAndCoefficients) {
   const Model model = random_model(Family::isotropic, {7, 4}, 1, 1);
+  EXPECT_EQ(mode_count(model), 142);
   EXPECT_EQ(coefficient_count(model), 284);
   EXPECT_EQ(orders(model), (Orders{7, 4}));
   EXPECT_NO_THROW(require_valid(model));

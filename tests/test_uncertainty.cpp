@@ -362,6 +362,11 @@ TEST(Uncertainty, IsFiniteWhereF11IsZeroAndNotHiddenWhereItIsNoNumber) {
 TEST(Uncertainty, NeedsACovarianceAndAValidQuestion) {
   const Model without = in_published_form(material("ptfe-532"));
   EXPECT_EQ(message_of([&] { prepare_uncertainty(without, 0.532); }), "the covariance of block 11 is not known");
+  Model without_one = material("ptfe-532");
+  EXPECT_TRUE(knows_uncertainty(without_one));
+  without_one.blocks[2].covariance.clear();
+  EXPECT_FALSE(knows_uncertainty(without_one));
+  EXPECT_EQ(message_of([&] { prepare_uncertainty(without_one, 0.532); }), "the covariance of block 14,41 is not known");
   Model unknown_rank = material("ptfe-532");
   unknown_rank.blocks[1].rank = 0;
   EXPECT_FALSE(prepare_uncertainty(unknown_rank, 0.532).estimable({{0.7, 0}, {0.5, 1}}));

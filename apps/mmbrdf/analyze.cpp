@@ -6,9 +6,9 @@
 
 #include "analyze_report.hpp"
 #include "command.hpp"
-#include "describe.hpp"
 #include "files.hpp"
 #include "mmbrdf/analysis.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/io.hpp"
 #include "output.hpp"
 #include "scan.hpp"

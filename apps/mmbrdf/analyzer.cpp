@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "describe.hpp"
 #include "mmbrdf/analysis.hpp"
+#include "mmbrdf/description.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {

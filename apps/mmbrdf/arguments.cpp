@@ -147,14 +147,6 @@ ReflectanceTable reflectance_from(const std::string& text) {
   return table;
 }
 
-std::string reflectance_argument(const ReflectanceTable& table) {
-  std::string text;
-  for (std::size_t i = 0; i < table.values.size(); ++i) {
-    text += (i > 0 ? "," : "") + brief(nanometres(table.wavelengths[i])) + ":" + shortest(table.values[i]);
-  }
-  return text;
-}
-
 Grid grid_from(const std::string& text) {
   if (text == "germer2017") {
     return {};
@@ -208,21 +200,6 @@ double wavelength_from(const std::optional<double>& wavelength_nm, const Model& 
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--wavelength is required", error.what());
   }
-}
-
-bool knows_wavelength(const Model& model) {
-  return !model.validity.wavelengths.empty() || !model.reflectance.values.empty();
-}
-
-double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e9; }
-
-std::string nanometre_list(const std::vector<double>& wavelengths) {
-  std::vector<std::string> words;
-  words.reserve(wavelengths.size());
-  for (const double wavelength : wavelengths) {
-    words.push_back(brief(nanometres(wavelength)));
-  }
-  return joined(words) + " nm";
 }
 
 std::vector<Geometry> geometries(const Grid& grid, unsigned long seed) {

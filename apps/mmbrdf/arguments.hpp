@@ -37,11 +37,10 @@ struct AnglesDegrees {
 };
 AnglesDegrees angles_degrees(const std::string& text);
 
-std::vector<double> numbers(const std::string& text);             ///< A[,B…]
-std::vector<double> range_from(const std::string& text);          ///< FROM:TO:STEP, both ends included; at most 100 000
-Orders orders_from(const std::string& text);                      ///< F11,OTHER
-ReflectanceTable reflectance_from(const std::string& text);       ///< NM:R[,NM:R…] in any order
-std::string reflectance_argument(const ReflectanceTable& table);  ///< the opposite, exact
+std::vector<double> numbers(const std::string& text);        ///< A[,B…]
+std::vector<double> range_from(const std::string& text);     ///< FROM:TO:STEP, both ends included; at most 100 000
+Orders orders_from(const std::string& text);                 ///< F11,OTHER
+ReflectanceTable reflectance_from(const std::string& text);  ///< NM:R[,NM:R…] in any order, as reflectance_line()
 
 /// germer2017 or random:N
 struct Grid {
@@ -58,14 +57,6 @@ std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
 
 /// Micrometres: what was given, or the model's own if it needs none. Throws CLI::ValidationError for models that do.
 double wavelength_from(const std::optional<double>& wavelength_nm, const Model& model);
-
-/// Whether the wavelength means something to a model that was not asked at a given one.
-bool knows_wavelength(const Model& model);
-
-double nanometres(double wavelength);  ///< to 1e-9 nm: 0.532 gives 532
-
-/// "351, 532, 633, 1064 nm"
-std::string nanometre_list(const std::vector<double>& wavelengths);
 
 std::vector<Geometry> geometries(const Grid& grid, unsigned long seed);
 

@@ -10,6 +10,7 @@
 #include "describe.hpp"
 #include "files.hpp"
 #include "mmbrdf/comparison.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/simulation.hpp"
 #include "output.hpp"
 

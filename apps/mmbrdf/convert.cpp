@@ -11,6 +11,7 @@
 #include "files.hpp"
 #include "mmbrdf/conversion.hpp"
 #include "mmbrdf/dataset.hpp"
+#include "mmbrdf/description.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {
@@ -108,8 +109,8 @@ void record_angles(Model& model, const AnglesDegrees& angles) {
 }
 
 void record_reflectance(Model& model, const ReflectanceTable& table) {
-  const std::string old = reflectance_argument(model.reflectance);
-  if (!old.empty() && old != reflectance_argument(table)) {
+  const std::string old = reflectance_line(model.reflectance);
+  if (!old.empty() && old != reflectance_line(table)) {
     warn("--reflectance replaces the table there was: --reflectance " + old);
   }
   model.reflectance = table;

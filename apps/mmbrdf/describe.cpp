@@ -3,23 +3,14 @@
 
 #include <algorithm>
 #include <iostream>
-#include <stdexcept>
 
-#include "arguments.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/radiometry.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-int mode_count(const Model& model) {
-  std::size_t modes = 0;
-  for (const FittedBlock& block : model.blocks) {
-    modes += block.block.modes.size();
-  }
-  return static_cast<int>(modes);
-}
 
 std::string dumped(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -38,20 +29,7 @@ std::string by_lines(const nlohmann::ordered_json& json) {
   return (table ? "[" : "{") + text + (table ? "\n  ]" : "\n  }");
 }
 
-bool wavelength_unknown(const Model& model) {
-  return model.validity.wavelengths.empty() && model.reflectance.wavelengths.empty();
-}
-
 }  // namespace
-
-std::string basis_line(const Model& model) {
-  const Orders order = orders(model);
-  std::string text = to_string(model.family) + ", orders " + std::to_string(order.f11) + "," +
-                     std::to_string(order.other) + ", wavelength power";
-  text += model.powers == 0 ? " 0" : "s 0 to " + std::to_string(model.powers);
-  return text + ", " + to_string(model.mapping) + " mapping: " + counted(mode_count(model), "mode") + ", " +
-         counted(coefficient_count(model), "coefficient");
-}
 
 nlohmann::ordered_json basis_json(const Model& model) {
   const Orders order = orders(model);
@@ -63,48 +41,6 @@ nlohmann::ordered_json basis_json(const Model& model) {
     json["wavelengths_nm"].push_back(nanometres(wavelength));
   }
   return json;
-}
-
-std::vector<double> known_wavelengths(const Model& model) {
-  if (!model.validity.wavelengths.empty()) {
-    return model.validity.wavelengths;
-  }
-  if (!model.reflectance.wavelengths.empty()) {
-    return model.reflectance.wavelengths;
-  }
-  return model.powers == 0 ? std::vector<double>{1} : std::vector<double>{};
-}
-
-std::string angles_line(const Validity& validity) {
-  if (!validity.theta_i_max && !validity.theta_r_max) {
-    return "not known";
-  }
-  const auto limit = [](const char* name, const std::optional<double>& most) {
-    return name + (most ? format(" <= %.4g", degrees(*most)) : std::string(" not known"));
-  };
-  return limit("theta_i", validity.theta_i_max) + ", " + limit("theta_r", validity.theta_r_max) + " degrees";
-}
-
-std::string fitted_range(const Validity& validity) {
-  std::vector<std::string> parts;
-  if (validity.theta_i_max || validity.theta_r_max) {
-    parts.push_back(angles_line(validity));
-  }
-  if (!validity.wavelengths.empty()) {
-    parts.push_back(nanometre_list(validity.wavelengths));
-  }
-  return parts.empty() ? "not known" : parts.size() == 1 ? parts[0] : parts[0] + " at " + parts[1];
-}
-
-bool leaves_known_range(Outside outside) { return (outside & ~static_cast<unsigned>(unknown_range)) != 0; }
-
-std::string unknown_range_line(const std::string& model, const Validity& validity) {
-  const bool angles = validity.theta_i_max && validity.theta_r_max, wavelengths = !validity.wavelengths.empty();
-  if (angles && wavelengths) {
-    return "";
-  }
-  const std::string what = angles ? "wavelengths" : wavelengths ? "angles" : "wavelengths and angles";
-  return model + " does not say to which " + what + " it was fitted; mmbrdf convert can record them";
 }
 
 void note_unless_printed(const Model& model, const std::string& name) {
@@ -132,7 +68,7 @@ std::string normal_reflectance_line(const Model& model) {
   std::string text;
   for (const double wavelength : known_wavelengths(model)) {
     text += (text.empty() ? "" : ", ") + format("%.6f", directional_hemispherical_reflectance(model, wavelength, {}));
-    text += wavelength_unknown(model) ? "" : " at " + brief(nanometres(wavelength)) + " nm";
+    text += knows_wavelength(model) ? " at " + brief(nanometres(wavelength)) + " nm" : "";
   }
   return text.empty() ? "not known, for the wavelengths are not" : text;
 }
@@ -142,7 +78,7 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
   for (const double wavelength : known_wavelengths(model)) {
     nlohmann::ordered_json entry;
     entry["wavelength_nm"] = nullptr;
-    if (!wavelength_unknown(model)) {
+    if (knows_wavelength(model)) {
       entry["wavelength_nm"] = nanometres(wavelength);
     }
     entry["reflectance"] = directional_hemispherical_reflectance(model, wavelength, {});

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "describe.hpp"
 #include "files.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/io.hpp"
 #include "output.hpp"
 #include "recent_wavelengths.hpp"

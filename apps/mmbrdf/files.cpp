@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/materials.hpp"
 #include "output.hpp"
@@ -127,8 +128,9 @@ void read_samples_at(const std::string& path, const std::optional<std::vector<do
   use(samples);
   for (const double wavelength : wanted) {
     if (std::none_of(there.begin(), there.end(), [&](double one) { return near(one, wavelength); })) {
-      throw std::runtime_error(data_name(path) + ": has samples at " + nanometre_list({there.begin(), there.end()}) +
-                               ", not at all of " + nanometre_list(wanted));
+      throw std::runtime_error(data_name(path) + ": has samples at " +
+                               nanometre_list(std::vector<double>(there.begin(), there.end())) + ", not at all of " +
+                               nanometre_list(wanted));
     }
   }
 }
@@ -178,11 +180,6 @@ bool has_covariance(const Model& model) {
                      [](const FittedBlock& b) { return !b.covariance.empty(); });
 }
 
-bool knows_uncertainty(const Model& model) {
-  return std::none_of(model.blocks.begin(), model.blocks.end(),
-                      [](const FittedBlock& b) { return b.covariance.empty(); });
-}
-
 void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named) {
   const Validity& validity = model.validity;
   std::vector<std::string> lost;
@@ -198,7 +195,7 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
   lose(model.provenance.contains("attribution"), "the attribution");
   lose(!model.provenance.empty(), "the provenance");
   lose(!model.reflectance.values.empty(), "the reflectance that f11 is multiplied by (keep it: --reflectance " +
-                                              reflectance_argument(model.reflectance) + ")");
+                                              reflectance_line(model.reflectance) + ")");
   if (!lost.empty()) {
     warn(base_name(path) + " has no place for: " + joined(lost));
   }

@@ -52,8 +52,7 @@ void require_model_kept(const std::string& model, const std::string& output);
 /// Writes a model; warns if its path is the name of a built-in one. Errors name the path.
 void save(const Model& model, const std::string& path);
 
-bool has_covariance(const Model& model);     ///< of a block, at least
-bool knows_uncertainty(const Model& model);  ///< of all that it predicts: every block has a covariance
+bool has_covariance(const Model& model);  ///< of a block, at least
 
 /// Warns, in one line, of all that is known about `model` and has no place in the coefficient layout of `path`.
 /// `named`: the name was given by hand.

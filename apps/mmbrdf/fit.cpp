@@ -2,6 +2,7 @@
 // mmbrdf fit
 
 #include "mmbrdf/fit.hpp"
+#include "mmbrdf/description.hpp"
 
 #include <cmath>
 #include <filesystem>

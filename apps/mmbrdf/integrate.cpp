@@ -10,11 +10,12 @@
 
 #include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
 #include "files.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/radiometry.hpp"
 #include "mmbrdf/reflectance_uncertainty.hpp"
+#include "mmbrdf/uncertainty.hpp"
 #include "sides.hpp"
 
 namespace mmbrdf::program {

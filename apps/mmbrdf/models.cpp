@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "files.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/materials.hpp"
 #include "output.hpp"
 
@@ -63,7 +64,7 @@ void print_text(const Model& model) {
   print_line("angles", angles_line(validity));
   print_line("reflectance", model.reflectance.values.empty()
                                 ? "none: f11 is that of the coefficients"
-                                : "f11 is multiplied by " + reflectance_argument(model.reflectance));
+                                : "f11 is multiplied by " + reflectance_line(model.reflectance));
   print_line("DHR(0)", normal_reflectance_line(model));
   print_line("frame", frame_line);
   print_line("convention", convention_line);

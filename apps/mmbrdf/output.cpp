@@ -63,10 +63,6 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string counted(long count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 std::string plain_message(const std::exception& error) {
   const std::string text = error.what();
   for (const std::string name : {"fit", "simulate", "compare", "subsets", "evaluate", "normalized",

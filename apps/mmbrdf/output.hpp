@@ -26,9 +26,6 @@ void note(const std::string& message);
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& words);
 
-/// "1 row", "2 rows"
-std::string counted(long count, const std::string& what);
-
 /// What an error says, without the name of the library's function that begins some messages.
 std::string plain_message(const std::exception& error);
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "arguments.hpp"
+#include "mmbrdf/description.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {

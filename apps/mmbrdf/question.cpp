@@ -3,6 +3,7 @@
 
 #include "describe.hpp"
 #include "files.hpp"
+#include "mmbrdf/description.hpp"
 #include "output.hpp"
 
 namespace mmbrdf::program {

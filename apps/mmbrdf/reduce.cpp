@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "files.hpp"
 #include "mmbrdf/analysis.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/readings.hpp"
 #include "output.hpp"
 #include "polarimetry.hpp"

@@ -9,6 +9,7 @@
 #include "describe.hpp"
 #include "files.hpp"
 #include "mmbrdf/comparison.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/diagnostics.hpp"
 #include "mmbrdf/fit.hpp"
 #include "mmbrdf/noise.hpp"
@@ -50,7 +51,7 @@ Json model_json(const ReportedModel& reported) {
             {"basis", basis_line(model)},
             {"fitted range", fitted_range(model.validity)}};
   if (!model.reflectance.values.empty()) {
-    json["reflectance table"] = reflectance_argument(model.reflectance) +
+    json["reflectance table"] = reflectance_line(model.reflectance) +
                                 (model.reflectance.covariance.empty() ? ", exact" : ", with its covariance");
   }
   for (const auto& [name, text] : model.provenance) {

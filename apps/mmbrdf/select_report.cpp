@@ -5,8 +5,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "describe.hpp"
+#include "mmbrdf/description.hpp"
+#include "output.hpp"
 
 namespace mmbrdf::program {
 

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "arguments.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/goniometer.hpp"
 #include "output.hpp"
 #include "polarimetry.hpp"

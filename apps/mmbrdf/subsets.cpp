@@ -2,6 +2,7 @@
 // mmbrdf subsets
 
 #include "mmbrdf/subsets.hpp"
+#include "mmbrdf/description.hpp"
 
 #include <cmath>
 #include <memory>

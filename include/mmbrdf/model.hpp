@@ -49,6 +49,9 @@ enum Outside : unsigned {
 /// "ok", or the reasons joined by "+": "theta_i+wavelength"; "unknown" for unknown_range.
 std::string to_string(Outside outside);
 
+/// Whether an angle or the wavelength is outside, and not only unknown.
+bool leaves_known_range(Outside outside);
+
 /// Modes that were fitted together, with their coefficients and what is known about them.
 struct FittedBlock {
   Block block;
@@ -85,6 +88,7 @@ struct Model {
 /// Throws std::invalid_argument if blocks, coefficient counts or the reflectance table do not fit together.
 void require_valid(const Model& model);
 
+int mode_count(const Model& model);
 int coefficient_count(const Model& model);
 Orders orders(const Model& model);
 
@@ -178,6 +182,13 @@ PreparedModel prepare(const Model& model, double wavelength, Rotation rotation =
 /// Models that need no wavelength: with highest power 0, and no reflectance table or one with a single node. Returns
 /// their wavelength, or 1 if that is unknown. Throws std::invalid_argument, with the fitted wavelengths, for others.
 double only_wavelength(const Model& model);
+
+/// Wavelengths (micrometres) at which to show a model: the fitted ones, else the nodes of its reflectance table, else 1
+/// for a model with highest power 0. Empty if it depends on the wavelength and says nothing.
+std::vector<double> known_wavelengths(const Model& model);
+
+/// Whether these are its own. If not, and it has one, that stands for any wavelength.
+bool knows_wavelength(const Model& model);
 
 /// Bound on |error| / |f11| of an evaluated element for fitted models up to orders 7, 4, away from zeros of f11.
 inline constexpr double evaluation_error = 1e-13;

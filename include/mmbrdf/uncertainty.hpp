@@ -83,6 +83,9 @@ class PreparedUncertainty {
 /// at this wavelength.
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
 
+/// Whether the covariance of every block is known: without one of them there is no uncertainty of any prediction.
+bool knows_uncertainty(const Model& model);
+
 inline constexpr double covariance_tolerance = 1e-9;
 
 }  // namespace mmbrdf

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/description.hpp"
+
+#include <cmath>
+#include <optional>
+
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+/// 532, 632.8
+std::string nanometre_text(double wavelength) { return rounded(nanometres(wavelength), 10); }
+
+std::string limit(const std::string& name, const std::optional<double>& most) {
+  return name + (most ? " <= " + rounded(degrees(*most), 4) : " not known");
+}
+
+}  // namespace
+
+std::string basis_line(const Model& model) {
+  const Orders order = orders(model);
+  return to_string(model.family) + ", orders " + std::to_string(order.f11) + "," + std::to_string(order.other) +
+         ", wavelength power" + (model.powers == 0 ? " 0" : "s 0 to " + std::to_string(model.powers)) + ", " +
+         to_string(model.mapping) + " mapping: " + counted(mode_count(model), "mode") + ", " +
+         counted(coefficient_count(model), "coefficient");
+}
+
+std::string angles_line(const Validity& validity) {
+  if (!validity.theta_i_max && !validity.theta_r_max) return "not known";
+  return limit("theta_i", validity.theta_i_max) + ", " + limit("theta_r", validity.theta_r_max) + " degrees";
+}
+
+std::string fitted_range(const Validity& validity) {
+  const bool angles = validity.theta_i_max || validity.theta_r_max;
+  if (validity.wavelengths.empty()) return angles_line(validity);
+  return (angles ? angles_line(validity) + " at " : "") + nanometre_list(validity.wavelengths);
+}
+
+std::string unknown_range_line(const std::string& model, const Validity& validity) {
+  const bool angles = validity.theta_i_max && validity.theta_r_max, wavelengths = !validity.wavelengths.empty();
+  if (angles && wavelengths) return "";
+  const std::string what = angles ? "wavelengths" : wavelengths ? "angles" : "wavelengths and angles";
+  return model + " does not say to which " + what + " it was fitted; mmbrdf convert can record them";
+}
+
+std::string reflectance_line(const ReflectanceTable& table) {
+  std::string text;
+  for (std::size_t i = 0; i < table.values.size(); ++i)
+    text += (i > 0 ? "," : "") + nanometre_text(table.wavelengths[i]) + ":" + shortest(table.values[i]);
+  return text;
+}
+
+std::string nanometre_list(std::span<const double> wavelengths) {
+  std::string text;
+  for (const double wavelength : wavelengths) text += (text.empty() ? "" : ", ") + nanometre_text(wavelength);
+  return text + " nm";
+}
+
+double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e9; }
+
+std::string counted(long count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+}  // namespace mmbrdf
