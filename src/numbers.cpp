@@ -92,6 +92,11 @@ std::string rounded(double value, int digits) {
   return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr};
 }
 
+std::string fixed(double value, int decimals) {
+  std::array<char, 350> text;  // the largest double has 309 digits before the point
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed, decimals).ptr};
+}
+
 std::string sample_element(std::size_t element) { return (element == 0 ? "f" : "m") + element_name(element); }
 
 double in_degrees(double angle) {

@@ -27,6 +27,9 @@ std::string shortest(double value);
 /// At most this many significant digits, for messages.
 std::string rounded(double value, int digits);
 
+/// With this many decimals, for messages.
+std::string fixed(double value, int decimals);
+
 /// What samples hold, as their columns are called: "f11", "m12" … "m44" for 0, 1 … 15.
 std::string sample_element(std::size_t element);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mmbrdf report: what a model is and how far it can be trusted. What is said is gathered in report_facts.cpp.
+// mmbrdf report: what the library reports on a model, as Markdown or JSON.
 
 #include <algorithm>
 #include <cctype>
@@ -10,8 +10,8 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "files.hpp"
+#include "mmbrdf/report.hpp"
 #include "output.hpp"
-#include "report_facts.hpp"
 
 namespace mmbrdf::program {
 
@@ -125,20 +125,18 @@ void report(const Options& options) {
   require_model_kept(options.model, options.output);
   require_kept(options.data, options.output, "data");
   const Model model = open_model(options.model);
-  std::vector<double> wavelengths = known_wavelengths(model);
-  if (options.wavelengths_nm) {
-    wavelengths = micrometres(*options.wavelengths_nm);
+  const std::string name = base_name(options.model);
+  if (!options.wavelengths_nm && known_wavelengths(model).empty()) {
+    throw CLI::ValidationError("--wavelength is required", name + " does not say to which wavelengths it was fitted");
   }
-  if (wavelengths.empty()) {
-    throw CLI::ValidationError("--wavelength is required",
-                               base_name(options.model) + " does not say to which wavelengths it was fitted");
-  }
-  ReportedModel reported{base_name(options.model), model, wavelengths,
-                         options.wavelengths_nm || knows_wavelength(model)};
-  Json facts = model_facts(reported);
+  const std::vector<double> wavelengths = micrometres(options.wavelengths_nm.value_or(std::vector<double>{}));
+  std::vector<Sample> samples;
+  std::optional<ReportedSamples> data;
   if (!options.data.empty()) {
-    add_data_facts(facts, reported, data_name(options.data), samples_at(options.data, options.wavelengths_nm));
+    samples = samples_at(options.data, options.wavelengths_nm);
+    data = {data_name(options.data), samples};
   }
+  const Json facts = Json::parse(report_json(model, name, wavelengths, data));
   if (options.format == Format::text) {
     return write_text(options.output, markdown(facts));
   }

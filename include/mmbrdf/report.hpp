@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What a model is and how far it can be trusted: all that can be said of it, and of samples beside it, as JSON text
+/// for programs that show it. `mmbrdf report` prints it as Markdown.
+///
+/// The text is one object in one line. Its fields come in this order, and so do those of their rows; a row is an
+/// object, and all rows of a field have the same names:
+///
+///   title                 "Report on" and the name that the model was called by
+///   warnings              sentences, without a full stop; none if there is nothing to be wary of
+///   model                 name, basis and fitted range in words, reflectance table if there is one, then the
+///   provenance
+///                         with its own names: texts
+///   fit                   row by block: block, coefficients, rank, condition, covariance (true or false: known)
+///   realizability         row by wavelength and largest polar angle, the fitted one where it is known and 90 degrees:
+///                         wavelength_nm, theta_max_deg, geometries, unrealizable, smallest_margin, margin_at,
+///                         f11_not_positive, smallest_f11, largest_dhr, dhr_at_theta_i_deg (model_diagnostics)
+///   reflectances          row by wavelength and quantity: wavelength_nm, quantity, value, u. Quantities are "dhr,
+///                         theta_i 0", 8, 45, 60 and 75 degrees, "bhr", "reflectance factor 0:45" and "… 45:0"
+///
+/// and with samples also
+///
+///   data                  name, samples, wavelengths in words, and which of the following is of which model
+///   residuals             samples − model: row for f11 in sr⁻¹, for f11 relative to f11, and for each of the 15
+///   others:
+///                         element ("11" … "44"), unit ("sr^-1" or "f11"), rms, mean, largest, wavelength_nm, at
+///                         (compare)
+///   reciprocity           row by block: block, rows, more_coefficients, rms, rms_without, F, p (symmetry_tests);
+///   mirror_symmetry       rms_without is what is left without the symmetry
+///   dependence_on_phi_i   the same; where the source has one azimuth in the samples, the sentence that says so
+///   noise                 row by wavelength whose law is known: wavelength_nm, scale, u_scale, exponent_cos_theta_i,
+///                         u_exponent_i, exponent_cos_theta_r, u_exponent_r (estimate_noise)
+///   leverage              row by block: block, rank, largest_leverage, sample, at (sample_diagnostics)
+///   outliers              row by element of a sample, the largest first and at most listed_outliers: sample, element,
+///                         studentized, wavelength_nm, at
+///
+/// Samples are numbered from 1. Numbers are those of the functions named, and read back to the same bits. null stands
+/// for what is not known: the rank and condition of a fit, an uncertainty u, the wavelength of a model that does not
+/// depend on it and does not say to which it was fitted; and for a number that is not finite. A place, margin_at or at,
+/// is "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees". Bytes of names that are not UTF-8 become U+FFFD.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/model.hpp"
+
+namespace mmbrdf {
+
+/// A symmetry is said to be broken where p is below the first, and the rms without it is smaller by more than this part
+/// of itself: the F test alone finds the least misfit of thousands of rows significant.
+inline constexpr double significant_p = 1e-3, noticeable_fall = 0.05;
+
+/// A sample whose leverage exceeds this is said to decide a block almost alone where it is.
+inline constexpr double high_leverage = 0.5;
+
+/// Elements of samples beyond this many standard deviations are outliers; warnings say how many there are.
+inline constexpr double outlier_threshold = 5;
+inline constexpr std::size_t listed_outliers = 20;
+
+/// Samples to set beside a model, and what they are called.
+struct ReportedSamples {
+  std::string name;
+  std::span<const Sample> samples;
+};
+
+/// Of the model called `name`, at these wavelengths (micrometres); none given: at known_wavelengths(model). Residuals
+/// and noise are those of the model as it is; symmetries, leverage and outliers are of fits of its basis to the
+/// samples, without weights. Throws std::invalid_argument for an invalid model or wavelength, if there is no wavelength
+/// to report on, and for samples as compare(), symmetry_tests() and fit() do.
+std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths = {},
+                        const std::optional<ReportedSamples>& samples = {});
+
+}  // namespace mmbrdf

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "mmbrdf/comparison.hpp"
+#include "mmbrdf/description.hpp"
+#include "mmbrdf/diagnostics.hpp"
+#include "mmbrdf/fit.hpp"
+#include "mmbrdf/noise.hpp"
+#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/reflectance_uncertainty.hpp"
+#include "mmbrdf/uncertainty.hpp"
+#include "numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Warnings = std::vector<std::string>;
+
+struct Reported {
+  const Model& model;
+  const std::string& name;
+  std::vector<double> wavelengths;  // to report on
+  bool known_wavelengths;           // no: there is one, and it stands for a wavelength that nobody has said
+};
+
+/// A field of the report, and what there is to warn of in it.
+struct Field {
+  Json value = Json::array();
+  Warnings warnings{};
+};
+
+std::string at(const Geometry& g) {
+  return "theta_i " + rounded(degrees(g.incident.theta), 4) + ", theta_r " + rounded(degrees(g.reflected.theta), 4) +
+         ", phi_r - phi_i " + rounded(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360), 4) + " degrees";
+}
+
+std::string count_of(std::size_t count, const std::string& what) { return counted(static_cast<long>(count), what); }
+
+std::string nm(double wavelength) { return nanometre_list(std::array{wavelength}); }
+
+std::string nm(const Reported& reported, double wavelength) {
+  return reported.known_wavelengths ? nm(wavelength) : "its wavelength";
+}
+
+Json wavelength_json(const Reported& reported, double wavelength) {
+  return reported.known_wavelengths ? Json(nanometres(wavelength)) : Json(nullptr);
+}
+
+Warnings range_warnings(const Reported& reported) {
+  const Model& model = reported.model;
+  Warnings warnings;
+  if (std::string line = unknown_range_line(reported.name, model.validity); !line.empty()) warnings.push_back(line);
+  for (const double wavelength : reported.wavelengths)
+    if (outside(model.validity, wavelength, {}) & outside_wavelength)
+      warnings.push_back(nm(wavelength) + " lies outside the fitted range: what is said of it is extrapolated from " +
+                         nanometre_list(model.validity.wavelengths));
+  if (!knows_uncertainty(model))
+    warnings.push_back("the covariance of the coefficients is not known, or not of all, and no uncertainty with it");
+  for (const FittedBlock& fitted : model.blocks) {
+    const std::size_t count = fitted.coefficients.size(), rank = static_cast<std::size_t>(fitted.rank);
+    if (rank > 0 && rank < count)
+      warnings.push_back("the data left " + std::to_string(count - rank) + " of " + count_of(count, "combination") +
+                         " of block " + fitted.block.name + " free");
+  }
+  return warnings;
+}
+
+Json model_json(const Reported& reported) {
+  const Model& model = reported.model;
+  Json json{{"name", model.name.empty() ? reported.name : model.name},
+            {"basis", basis_line(model)},
+            {"fitted range", fitted_range(model.validity)}};
+  const ReflectanceTable& table = model.reflectance;
+  if (!table.values.empty())
+    json["reflectance table"] =
+        reflectance_line(table) + (table.covariance.empty() ? ", exact" : ", with its covariance");
+  for (const auto& [name, text] : model.provenance) json[name] = text;
+  return json;
+}
+
+Json fit_json(const Model& model) {
+  Json rows = Json::array();
+  for (const FittedBlock& fitted : model.blocks)
+    rows.push_back({{"block", fitted.block.name},
+                    {"coefficients", fitted.coefficients.size()},
+                    {"rank", fitted.rank > 0 ? Json(fitted.rank) : Json(nullptr)},
+                    {"condition", fitted.condition > 0 ? Json(fitted.condition) : Json(nullptr)},
+                    {"covariance", !fitted.covariance.empty()}});
+  return rows;
+}
+
+/// Within the fitted angles, and up to the horizon.
+std::vector<double> polar_limits(const Validity& validity) {
+  if (!validity.theta_i_max || !validity.theta_r_max) return {radians(90)};
+  return {std::max(*validity.theta_i_max, *validity.theta_r_max), radians(90)};
+}
+
+Warnings unphysical(const ModelDiagnostics& d, const std::string& wavelength) {
+  const bool fitted = d.theta_max < radians(90);
+  const std::string where = (fitted ? "within the fitted angles at " : "up to the horizon at ") + wavelength;
+  Warnings warnings;
+  if (d.unrealizable > 0)
+    warnings.push_back(std::to_string(d.unrealizable) + " of " + std::to_string(d.geometries) + " matrices " + where +
+                       " cannot exist; the smallest eigenvalue / f11 is " + rounded(d.margin.value, 3) + " at " +
+                       at(d.margin.geometry));
+  if (d.not_positive_f11 > 0)
+    warnings.push_back("f11 is not positive at " + std::to_string(d.not_positive_f11) + " of " +
+                       counted(d.geometries, "direction") + " " + where + ", down to " + rounded(d.f11.value, 3) +
+                       " sr^-1 at " + at(d.f11.geometry));
+  if (fitted && d.dhr > 1)
+    warnings.push_back("the directional-hemispherical reflectance reaches " + fixed(d.dhr, 4) + " at theta_i " +
+                       rounded(degrees(d.dhr_theta_i), 4) + " degrees, " + wavelength +
+                       ": more light comes back than falls in");
+  return warnings;
+}
+
+Field realizability(const Reported& reported) {
+  Field field;
+  for (const double wavelength : reported.wavelengths)
+    for (const double theta_max : polar_limits(reported.model.validity)) {
+      const ModelDiagnostics d = model_diagnostics(reported.model, wavelength, theta_max);
+      field.value.push_back({{"wavelength_nm", wavelength_json(reported, wavelength)},
+                             {"theta_max_deg", degrees(theta_max)},
+                             {"geometries", d.geometries},
+                             {"unrealizable", d.unrealizable},
+                             {"smallest_margin", d.margin.value},
+                             {"margin_at", at(d.margin.geometry)},
+                             {"f11_not_positive", d.not_positive_f11},
+                             {"smallest_f11", d.f11.value},
+                             {"largest_dhr", d.dhr},
+                             {"dhr_at_theta_i_deg", degrees(d.dhr_theta_i)}});
+      std::ranges::move(unphysical(d, nm(reported, wavelength)), std::back_inserter(field.warnings));
+    }
+  return field;
+}
+
+/// Quantities at one wavelength, each with its uncertainty where there is a covariance.
+void add_reflectances(Json& rows, const Reported& reported, double wavelength) {
+  const Model& model = reported.model;
+  std::optional<PreparedUncertainty> u;
+  if (knows_uncertainty(model)) u = prepare_uncertainty(model, wavelength);
+  const auto add = [&](const std::string& quantity, double value, auto uncertainty) {
+    rows.push_back({{"wavelength_nm", wavelength_json(reported, wavelength)},
+                    {"quantity", quantity},
+                    {"value", value},
+                    {"u", u ? Json(uncertainty()) : Json(nullptr)}});
+  };
+  for (const int theta : {0, 8, 45, 60, 75}) {
+    const Direction incident{radians(theta), 0};
+    add("dhr, theta_i " + std::to_string(theta), directional_hemispherical_reflectance(model, wavelength, incident),
+        [&] { return directional_hemispherical_uncertainty(model, *u, incident); });
+  }
+  add("bhr", bihemispherical_reflectance(model, wavelength), [&] { return bihemispherical_uncertainty(model, *u); });
+  const PreparedModel prepared = prepare(model, wavelength);
+  for (const auto& [name, geometry] : {std::pair("0:45", Geometry{{0, 0}, {radians(45), radians(180)}}),
+                                       std::pair("45:0", Geometry{{radians(45), 0}, {0, 0}})})
+    add(std::string("reflectance factor ") + name, reflectance_factor(prepared.f11(geometry)),
+        [&, &place = geometry] { return reflectance_factor(standard_uncertainty(u->evaluate(place))(0, 0)); });
+}
+
+Json reflectances(const Reported& reported) {
+  Json rows = Json::array();
+  for (const double wavelength : reported.wavelengths) add_reflectances(rows, reported, wavelength);
+  return rows;
+}
+
+Field data_field(const Model& model, const ReportedSamples& data) {
+  Field field{{{"name", data.name},
+               {"samples", data.samples.size()},
+               {"wavelengths", nanometre_list(wavelengths(data.samples))},
+               {"residuals and noise", "of the model as it is"},
+               {"symmetries, leverage and outliers", "of fits of its basis to these samples, without weights"}}};
+  const auto count = std::ranges::count_if(data.samples, [&](const Sample& s) {
+    return leaves_known_range(outside(model.validity, s.wavelength, s.geometry));
+  });
+  if (count > 0)
+    field.warnings.push_back(std::to_string(count) + " of " + count_of(data.samples.size(), "sample") +
+                             " lie outside the range that the model was fitted to: their residuals are of "
+                             "extrapolations");
+  return field;
+}
+
+Json difference_json(const std::string& element, const std::string& unit, const Difference& d) {
+  return {{"element", element},  {"unit", unit},         {"rms", d.rms},
+          {"mean", d.mean},      {"largest", d.largest}, {"wavelength_nm", nanometres(d.wavelength)},
+          {"at", at(d.geometry)}};
+}
+
+Json residuals_json(const Comparison& comparison) {
+  Json rows = Json::array();
+  rows.push_back(difference_json("11", "sr^-1", comparison.f11));
+  rows.push_back(difference_json("11", "f11", comparison.f11_relative));
+  for (std::size_t e = 1; e < 16; ++e)
+    rows.push_back(difference_json(element_name(e), "f11", comparison.normalized[e]));
+  return rows;
+}
+
+/// The tests of a symmetry; `what` is what the data are said to break.
+Field symmetry(const std::vector<FTest>& tests, const std::string& what) {
+  Field field;
+  for (const FTest& test : tests) {
+    field.value.push_back({{"block", test.block},
+                           {"rows", test.rows},
+                           {"more_coefficients", test.extra},
+                           {"rms", test.rms},
+                           {"rms_without", test.rms_extended},
+                           {"F", test.f},
+                           {"p", test.p}});
+    if (test.p < significant_p && test.rms_extended < (1 - noticeable_fall) * test.rms)
+      field.warnings.push_back("the data break " + what + " in block " + test.block + ": F = " + rounded(test.f, 3) +
+                               ", and without it the rms falls from " + rounded(test.rms, 3) + " to " +
+                               rounded(test.rms_extended, 3));
+  }
+  return field;
+}
+
+Field noise(const Model& model, std::span<const Sample> samples) {
+  Field field;
+  for (const double wavelength : wavelengths(samples)) {
+    const std::vector<Sample> here = at_wavelengths(samples, std::array{wavelength});
+    try {
+      const auto& [law, covariance, rows] = estimate_noise(here, residuals(model, here));
+      field.value.push_back({{"wavelength_nm", nanometres(wavelength)},
+                             {"scale", law.scale},
+                             {"u_scale", law.scale * std::sqrt(covariance[0])},
+                             {"exponent_cos_theta_i", law.incident_exponent},
+                             {"u_exponent_i", std::sqrt(covariance[4])},
+                             {"exponent_cos_theta_r", law.reflected_exponent},
+                             {"u_exponent_r", std::sqrt(covariance[8])}});
+    } catch (const std::invalid_argument& error) {
+      field.warnings.push_back("the law of the noise at " + nm(wavelength) + " is not known: " + error.what());
+    }
+  }
+  return field;
+}
+
+/// Of a fit of the same basis to these samples, without weights.
+SampleDiagnostics refitted(const Model& model, std::span<const Sample> samples) {
+  FitOptions options;
+  options.minimum_norm = true;
+  if (!model.reflectance.values.empty() && wavelengths(samples).size() > 1)
+    options.reflectance = ReflectanceTable{model.reflectance.wavelengths, model.reflectance.values};
+  return sample_diagnostics(samples, fit(samples, {model.family, orders(model), model.mapping}, options));
+}
+
+Field leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
+  Field field;
+  for (const SampleDiagnostics::Leverage& block : diagnostics.leverage) {
+    const double largest = block.values[block.largest];
+    field.value.push_back({{"block", block.block},
+                           {"rank", block.rank},
+                           {"largest_leverage", largest},
+                           {"sample", block.largest + 1},
+                           {"at", at(samples[block.largest].geometry)}});
+    if (largest > high_leverage)
+      field.warnings.push_back("sample " + std::to_string(block.largest + 1) + " decides block " + block.block +
+                               " almost alone where it is: its leverage is " + fixed(largest, 2));
+  }
+  return field;
+}
+
+Field outlier_field(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
+  const std::vector<Outlier> found = outliers(diagnostics, outlier_threshold);
+  Field field;
+  for (const Outlier& outlier : std::span(found).first(std::min(found.size(), listed_outliers))) {
+    const Sample& sample = samples[outlier.sample];
+    field.value.push_back({{"sample", outlier.sample + 1},
+                           {"element", element_name(outlier.element)},
+                           {"studentized", outlier.studentized},
+                           {"wavelength_nm", nanometres(sample.wavelength)},
+                           {"at", at(sample.geometry)}});
+  }
+  if (!found.empty())
+    field.warnings.push_back(count_of(found.size(), "element") + " of samples lie more than " +
+                             shortest(outlier_threshold) + " standard deviations off; the largest are listed");
+  return field;
+}
+
+void add(Json& report, const std::string& name, Field field) {
+  report[name] = std::move(field.value);
+  for (std::string& warning : field.warnings) report["warnings"].push_back(std::move(warning));
+}
+
+void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
+  add(report, "data", data_field(model, data));
+  report["residuals"] = residuals_json(compare(model, data.samples));
+  const SymmetryTests tests = symmetry_tests(data.samples, orders(model), model.mapping);
+  add(report, "reciprocity", symmetry(tests.reciprocity, "reciprocity"));
+  add(report, "mirror_symmetry", symmetry(tests.mirror, "mirror symmetry"));
+  add(report, "dependence_on_phi_i", symmetry(tests.azimuth, "isotropy"));
+  if (tests.one_azimuth)
+    report["dependence_on_phi_i"] =
+        "the source has one azimuth in these data: whether the sample is isotropic cannot be told";
+  add(report, "noise", noise(model, data.samples));
+  const SampleDiagnostics diagnostics = refitted(model, data.samples);
+  add(report, "leverage", leverage(diagnostics, data.samples));
+  add(report, "outliers", outlier_field(diagnostics, data.samples));
+}
+
+/// Throws unless there is something to report on.
+Reported reported(const Model& model, const std::string& name, std::span<const double> wavelengths) {
+  require_valid(model);
+  Reported result{
+      model, name, {wavelengths.begin(), wavelengths.end()}, !wavelengths.empty() || knows_wavelength(model)};
+  if (wavelengths.empty()) result.wavelengths = known_wavelengths(model);
+  if (result.wavelengths.empty())
+    throw std::invalid_argument("report: " + name + " does not say to which wavelengths it was fitted: give some");
+  for (const double wavelength : result.wavelengths) require_wavelength(wavelength);
+  return result;
+}
+
+}  // namespace
+
+std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths,
+                        const std::optional<ReportedSamples>& samples) {
+  const Reported what = reported(model, name, wavelengths);
+  Json report{{"title", "Report on " + name}, {"warnings", range_warnings(what)}};
+  report["model"] = model_json(what);
+  report["fit"] = fit_json(model);
+  add(report, "realizability", realizability(what));
+  report["reflectances"] = reflectances(what);
+  if (samples) add_samples(report, model, *samples);
+  return report.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace mmbrdf

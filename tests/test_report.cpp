@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cases.hpp"
+#include "mmbrdf/comparison.hpp"
+#include "mmbrdf/diagnostics.hpp"
+#include "mmbrdf/fit.hpp"
+#include "mmbrdf/materials.hpp"
+#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/reflectance_uncertainty.hpp"
+#include "mmbrdf/simulation.hpp"
+#include "random_model.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array green{0.532};
+
+const std::vector<std::string> of_the_model{"title", "warnings", "model", "fit", "realizability", "reflectances"};
+const std::vector<std::string> of_samples{"data",  "residuals", "reciprocity", "mirror_symmetry", "dependence_on_phi_i",
+                                          "noise", "leverage",  "outliers"};
+
+std::vector<std::string> names(const Json& object) {
+  std::vector<std::string> result;
+  for (const auto& [name, value] : object.items()) result.push_back(name);
+  return result;
+}
+
+Json report(const Model& model, std::span<const double> wavelengths = {}) {
+  return Json::parse(report_json(model, "it", wavelengths));
+}
+
+Json report(const Model& model, std::span<const Sample> samples) {
+  return Json::parse(report_json(model, "it", {}, ReportedSamples{"data.csv", samples}));
+}
+
+/// Of all azimuths, with noise.
+std::vector<Sample> measured(const Model& model, int count = 300) {
+  return simulate(model, green, random_geometries(count, 3), 0.01, 7);
+}
+
+/// Whether one of the warnings begins so.
+bool warns(const Json& report, const std::string& beginning) {
+  return std::ranges::any_of(report["warnings"],
+                             [&](const Json& line) { return line.get<std::string>().starts_with(beginning); });
+}
+
+/// A small fit of what was measured, so that it has all there is to report on.
+Model fitted(std::span<const Sample> samples) { return fit(samples, {Family::isotropic, {4, 2}}).model; }
+
+TEST(Report, HasItsFieldsInOrder) {
+  const Model model = material("ptfe-532");
+  const Json alone = report(model), beside = report(model, measured(model));
+  EXPECT_EQ(names(alone), of_the_model);
+  EXPECT_EQ(alone["warnings"], Json::array());
+  std::vector<std::string> all = of_the_model;
+  all.insert(all.end(), of_samples.begin(), of_samples.end());
+  EXPECT_EQ(names(beside), all);
+  for (const char* name : {"title", "model", "fit", "realizability", "reflectances"})
+    EXPECT_EQ(alone[name], beside[name]) << name;
+  for (const auto& [name, rows] : beside.items()) {
+    if (!rows.is_array() || name == "warnings") continue;
+    for (const Json& row : rows) EXPECT_EQ(names(row), names(rows.front())) << name;
+  }
+  EXPECT_EQ(beside["residuals"].size(), 17U);
+}
+
+TEST(Report, SaysOfTheModelWhatItSaysOfItself) {
+  Model model = material("ptfe");
+  const Json json = report(model, green);
+  EXPECT_EQ(json["title"], "Report on it");
+  std::vector<std::string> expected{"name", "basis", "fitted range", "reflectance table"};
+  for (const auto& [name, text] : model.provenance) expected.push_back(name);
+  EXPECT_EQ(names(json["model"]), expected);
+  EXPECT_EQ(json["model"]["name"], "ptfe");
+  EXPECT_EQ(json["fit"][2]["block"], "14,41");
+  EXPECT_EQ(json["fit"][2]["condition"].get<double>(), model.blocks[2].condition);
+  model.name.clear();
+  EXPECT_EQ(report(model, green)["model"]["name"], "it");
+}
+
+TEST(Report, IsOfTheWavelengthsAndAnglesThatTheModelWasFittedTo) {
+  Model model = diffuser({0.2, 0.1});
+  model.validity = {{0.4, 0.5}, radians(60), radians(70)};
+  const Json json = report(model);
+  std::vector<std::pair<double, double>> places;
+  for (const Json& row : json["realizability"]) places.emplace_back(row["wavelength_nm"], row["theta_max_deg"]);
+  EXPECT_EQ(places, (std::vector<std::pair<double, double>>{{400, 70}, {400, 90}, {500, 70}, {500, 90}}));
+}
+
+TEST(Report, HasTheNumbersOfTheModelToTheLastBit) {
+  const Model model = material("ptfe");
+  const Json json = report(model, green);
+  const ModelDiagnostics d = model_diagnostics(model, green[0]);
+  const Json& horizon = json["realizability"][1];
+  EXPECT_EQ(horizon["wavelength_nm"].get<double>(), 532);
+  EXPECT_EQ(horizon["theta_max_deg"].get<double>(), 90);
+  EXPECT_EQ(horizon["smallest_margin"].get<double>(), d.margin.value);
+  EXPECT_EQ(horizon["smallest_f11"].get<double>(), d.f11.value);
+  EXPECT_EQ(horizon["largest_dhr"].get<double>(), d.dhr);
+  const PreparedUncertainty u = prepare_uncertainty(model, green[0]);
+  const Direction at_60{radians(60), 0};
+  const Json& dhr = json["reflectances"][3];
+  EXPECT_EQ(dhr["quantity"], "dhr, theta_i 60");
+  EXPECT_EQ(dhr["value"].get<double>(), directional_hemispherical_reflectance(model, green[0], at_60));
+  EXPECT_EQ(dhr["u"].get<double>(), directional_hemispherical_uncertainty(model, u, at_60));
+  const Json& bhr = json["reflectances"][5];
+  EXPECT_EQ(bhr["value"].get<double>(), bihemispherical_reflectance(model, green[0]));
+  EXPECT_EQ(bhr["u"].get<double>(), bihemispherical_uncertainty(model, u));
+  const Json& factor = json["reflectances"][7];
+  const Geometry to_the_normal{{radians(45), 0}, {0, 0}};
+  EXPECT_EQ(factor["quantity"], "reflectance factor 45:0");
+  EXPECT_EQ(factor["value"].get<double>(), reflectance_factor(prepare(model, green[0]).f11(to_the_normal)));
+  EXPECT_EQ(factor["u"].get<double>(), reflectance_factor(standard_uncertainty(u.evaluate(to_the_normal))(0, 0)));
+}
+
+TEST(Report, HasTheNumbersOfTheSamplesToTheLastBit) {
+  const std::vector<Sample> samples = measured(material("ptfe-532"));
+  const Model model = fitted(samples);
+  const Json json = report(model, samples);
+  const Comparison c = compare(model, samples);
+  EXPECT_EQ(json["residuals"][0]["rms"].get<double>(), c.f11.rms);
+  EXPECT_EQ(json["residuals"][16]["element"], "44");
+  EXPECT_EQ(json["residuals"][16]["largest"].get<double>(), c.normalized[15].largest);
+  const SymmetryTests tests = symmetry_tests(samples, orders(model));
+  EXPECT_EQ(json["reciprocity"][0]["F"].get<double>(), tests.reciprocity[0].f);
+  EXPECT_EQ(json["mirror_symmetry"][1]["p"].get<double>(), tests.mirror[1].p);
+  EXPECT_EQ(json["dependence_on_phi_i"][2]["rms_without"].get<double>(), tests.azimuth[2].rms_extended);
+  const NoiseEstimate noise = estimate_noise(samples, residuals(model, samples));
+  EXPECT_EQ(json["noise"][0]["scale"].get<double>(), noise.law.scale);
+  EXPECT_EQ(json["noise"][0]["u_exponent_r"].get<double>(), std::sqrt(noise.covariance[8]));
+  const SampleDiagnostics diagnostics = sample_diagnostics(samples, fit(samples, {Family::isotropic, {4, 2}}));
+  const SampleDiagnostics::Leverage& block = diagnostics.leverage[3];
+  EXPECT_EQ(json["leverage"][3]["largest_leverage"].get<double>(), block.values[block.largest]);
+  EXPECT_EQ(json["leverage"][3]["sample"], block.largest + 1);
+}
+
+TEST(Report, WarnsOfAModelThatIsNotPhysical) {
+  Model model = material("ptfe-532");
+  for (double& a : model.blocks.back().coefficients) a *= 3;  // of 44
+  const Json json = report(model);
+  EXPECT_GT(json["realizability"][0]["unrealizable"].get<int>(), 0);
+  EXPECT_TRUE(warns(json, json["realizability"][0]["unrealizable"].dump() +
+                              " of 27225 matrices within the fitted angles at 532 nm cannot exist"));
+  model = material("ptfe-532");
+  for (double& a : model.blocks.front().coefficients) a *= 1.1;
+  EXPECT_TRUE(warns(report(model), "the directional-hemispherical reflectance reaches 1.08"));
+  for (double& a : model.blocks.front().coefficients) a *= -1;
+  EXPECT_TRUE(warns(report(model), "f11 is not positive at 27225 of 27225 directions within the fitted angles"));
+}
+
+TEST(Report, WarnsOfWhatIsNotKnown) {
+  const Model model = material("ptfe-532");
+  EXPECT_TRUE(warns(report(model, std::array{0.6}), "600 nm lies outside the fitted range"));
+  Model without = model;
+  without.blocks[2].covariance.clear();
+  const Json json = report(without);
+  EXPECT_TRUE(warns(json, "the covariance of the coefficients is not known, or not of all"));
+  EXPECT_EQ(json["fit"][2]["covariance"], false);
+  for (const Json& row : json["reflectances"]) EXPECT_TRUE(row["u"].is_null());
+  Model free = model;
+  free.blocks[0].rank = 39;
+  EXPECT_TRUE(warns(report(free), "the data left 1 of 40 combinations of block 11 free"));
+}
+
+TEST(Report, OfAModelOfNoKnownWavelengthNamesNone) {
+  const Model model = diffuser({0.3});
+  const Json json = report(model);
+  EXPECT_TRUE(warns(json, "it does not say to which wavelengths and angles it was fitted"));
+  EXPECT_EQ(json["realizability"].size(), 1U);  // up to the horizon
+  EXPECT_TRUE(json["realizability"][0]["wavelength_nm"].is_null());
+  EXPECT_TRUE(json["fit"][0]["rank"].is_null());
+  EXPECT_TRUE(json["fit"][0]["condition"].is_null());
+  EXPECT_EQ(report(model, green)["realizability"][0]["wavelength_nm"].get<double>(), 532);
+}
+
+TEST(Report, WarnsOfSamplesThatBreakASymmetry) {
+  std::vector<Sample> samples = measured(material("ptfe-532"));
+  for (Sample& s : samples) s.normalized(3, 3) += 0.1 * s.geometry.incident.theta;  // and not of reflected.theta
+  EXPECT_TRUE(warns(report(fitted(samples), samples), "the data break reciprocity in block 44: F = "));
+  for (Sample& s : samples) s.geometry.incident.phi = 0;
+  EXPECT_EQ(report(fitted(samples), samples)["dependence_on_phi_i"],
+            "the source has one azimuth in these data: whether the sample is isotropic cannot be told");
+}
+
+TEST(Report, ListsTheFirstOutliersAndCountsAll) {
+  std::vector<Sample> samples = measured(material("ptfe-532"), 400);
+  for (std::size_t e = 1; e < 16; ++e) samples[70].normalized.elements[e] = samples[200].normalized.elements[e] = 2;
+  samples[70].normalized(3, 3) = 3;
+  const Json json = report(material("ptfe-532"), samples);
+  ASSERT_EQ(json["outliers"].size(), listed_outliers);
+  EXPECT_EQ(json["outliers"][0]["sample"], 71);
+  EXPECT_EQ(json["outliers"][0]["element"], "44");
+  const auto found = outliers(sample_diagnostics(samples, fit(samples)), outlier_threshold);
+  EXPECT_GT(found.size(), listed_outliers);
+  EXPECT_TRUE(warns(json, std::to_string(found.size()) + " elements of samples lie more than 5 standard deviations"));
+}
+
+TEST(Report, WarnsOfSamplesBeyondTheRangeAndOfFewOfThem) {
+  const Model model = material("ptfe-532");
+  std::vector<Sample> samples = simulate(model, green, std::vector{in_degrees(80, 0, 10, 0), in_degrees(30, 0, 20, 9)});
+  const Json json = report(model, samples);
+  EXPECT_TRUE(warns(json, "1 of 2 samples lie outside the range that the model was fitted to"));
+  EXPECT_TRUE(warns(json, "the law of the noise at 532 nm is not known: "));
+  EXPECT_EQ(json["noise"], Json::array());
+  EXPECT_TRUE(warns(json, "sample 1 decides block 11 almost alone where it is: its leverage is 1.00"));
+}
+
+TEST(Report, IsOneLineOfUtf8) {
+  const std::string text = report_json(diffuser({0.3}), "\xff\n");
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_EQ(Json::parse(text)["title"], "Report on \xef\xbf\xbd\n");
+}
+
+TEST(Report, RefusesWhatThereIsNothingToSayOf) {
+  const Model model = material("ptfe-532");
+  EXPECT_EQ(message_of([] {
+              report(diffuser({0.3, 0.1}));
+            }),
+            "report: it does not say to which wavelengths it was fitted: give some");
+  EXPECT_EQ(message_of([&] { report(model, std::array{-0.5}); }), "wavelength -500 nm is not positive");
+  EXPECT_EQ(message_of([&] { report(model, std::vector<Sample>{}); }), "compare: no samples");
+  EXPECT_EQ(message_of([] { report(Model{}); }), "model has no modes of element 11");
+}
+
+}  // namespace
+}  // namespace mmbrdf
