@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import enum as _enum
 import os as _os
-from typing import Any as _Any
+from collections.abc import Sequence as _Sequence
 from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
@@ -94,8 +94,31 @@ def load(path: str | _os.PathLike[str]) -> Model | Dataset:
     return read_samples(path) if first[:1].isalpha() else load_model(path)
 
 
-def report(model: Model, data: Dataset | None, path: str | _os.PathLike[str], **options: _Any) -> None:
-    """Writes one HTML page about a model, and the samples it stands beside: see mmbrdf.report_page.write."""
-    from . import report_page
+def _write_report(
+    model: Model,
+    data: Dataset | None,
+    path: str | _os.PathLike[str],
+    *,
+    name: str = "",
+    data_name: str = "samples",
+    wavelength_nm: float | _Sequence[float] | None = None,
+    theta_i_deg: float = 45,
+) -> None:
+    """Writes one self-contained HTML page: what `mmbrdf report` prints about a model, and samples beside it, with pictures.
 
-    report_page.write(model, data, path, **options)
+    name, data_name  what the model and the samples are called
+    wavelength_nm    at which to report; None: at those it was fitted to
+    theta_i_deg      angle of incidence of the pictures of the model
+
+    Needs matplotlib. Raises ValueError for samples that do not go with the model, OSError for a path that cannot be
+    written; then an earlier file is left as it was.
+    """
+    from . import _report
+
+    text = _report.page(
+        model, data, name=name, data_name=data_name, wavelength_nm=wavelength_nm, theta_i_deg=theta_i_deg
+    )
+    _report.write(path, text)
+
+
+report = _write_report

@@ -111,9 +111,9 @@ inline py::object unwrapped(const py::array& array) {
   return array.ndim() == 0 ? array.attr("__getitem__")(py::tuple()) : py::object(array);
 }
 
-/// f(position) at each position, without the GIL.
+/// f(position) at each position, without the GIL, on all cores if there are many.
 template <class F>
-py::object map(const Broadcast& broadcast, F f, int threads = 1) {
+py::object map(const Broadcast& broadcast, F f) {
   using Result = std::invoke_result_t<F, std::size_t>;
   using Out = Layout<Result>;
   const std::vector<py::ssize_t> core = Out::core();
@@ -122,7 +122,7 @@ py::object map(const Broadcast& broadcast, F f, int threads = 1) {
   for (const py::ssize_t n : core) length *= static_cast<std::size_t>(n);
   auto* const out = result.mutable_data();
   without_gil([&] {
-    in_parts(broadcast.size(), threads, 256, [&](std::size_t begin, std::size_t end) {
+    in_parts(broadcast.size(), 0, 2048, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) Out::store(f(i), out + i * length);
     });
   });

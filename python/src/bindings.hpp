@@ -76,5 +76,6 @@ void bind_mueller(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_radiometry(py::module_& m);
 void bind_polarimeter(py::module_& m);
+void bind_report(py::module_& m);
 
 }  // namespace mmbrdf::python

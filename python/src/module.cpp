@@ -35,4 +35,5 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_radiometry(m);
   bind_polarimeter(m);
   bind_fit(m);
+  bind_report(m);
 }

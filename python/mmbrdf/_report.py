@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A report on a model as one HTML page: what `mmbrdf report` prints, with pictures. Nothing in it is loaded from elsewhere."""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import html
+import io
+import json
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import Dataset, Model, __version__, load, material, materials, plot, report_json
+
+_STYLE = """
+:root { color-scheme: light; --line: #d5d9de; --soft: #f4f6f8; --warn: #fff4d6; --text: #1d2430; --dim: #5b6573; }
+body { font: 15px/1.5 system-ui, sans-serif; color: var(--text); margin: 0 auto; padding: 1.5rem; max-width: 64rem; }
+h1 { font-size: 1.6rem; margin: 0 0 .2rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .6rem; }
+p.dim, figcaption { color: var(--dim); font-size: .87rem; }
+ul.warnings { background: var(--warn); border-left: 4px solid #e0a100; padding: .7rem 1rem .7rem 2rem; margin: 1rem 0; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .22rem .7rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+thead th { background: var(--soft); border-bottom: 2px solid var(--line); }
+thead th, thead + tbody td { white-space: nowrap; } thead + tbody td.number { text-align: right; }
+figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
+.pair { display: flex; flex-wrap: wrap; gap: 1rem; } .pair figure { flex: 1 1 22rem; }
+@media print { body { max-width: none; } h2 { break-after: avoid; } figure { break-inside: avoid; } }
+"""
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "<td>not known</td>"
+    if isinstance(value, bool):
+        return f"<td>{'yes' if value else 'no'}</td>"
+    if isinstance(value, (int, float)):
+        return f'<td class="number">{value:.6g}</td>'
+    return f"<td>{html.escape(str(value))}</td>"
+
+
+def _table(rows: list[dict[str, Any]]) -> str:
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in rows[0])
+    body = "\n".join("<tr>" + "".join(map(_cell, row.values())) + "</tr>" for row in rows)
+    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>'
+
+
+def _section(value: Any) -> str:
+    """A field of the facts: a sentence, a list of sentences, a table of names and values, or a table."""
+    if isinstance(value, str):
+        return f"<p>{html.escape(value)}</p>"
+    if not value:
+        return "<p>none</p>"
+    if isinstance(value, dict):
+        rows = "\n".join(f"<tr><th>{html.escape(name)}</th>{_cell(field)}</tr>" for name, field in value.items())
+        return f'<div class="scroll"><table><tbody>{rows}</tbody></table></div>'
+    if isinstance(value[0], dict):
+        return _table(value)
+    return "<ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in value) + "</ul>"
+
+
+def _picture(figure: Any, caption: str, kind: str = "png") -> str:
+    """The figure within the page: svg for curves, png for maps."""
+    buffer = io.BytesIO()
+    # Without a date the same model gives the same page.
+    figure.savefig(
+        buffer, format=kind, dpi=110, bbox_inches="tight", metadata={"Date": None} if kind == "svg" else None
+    )
+    data = base64.b64encode(buffer.getvalue()).decode("ascii")
+    mime = "svg+xml" if kind == "svg" else kind
+    text = html.escape(caption)
+    return f'<figure><img alt="{text}" src="data:image/{mime};base64,{data}"><figcaption>{text}</figcaption></figure>'
+
+
+def _model_pictures(model: Model, wavelength_nm: float, theta_i_deg: float) -> Iterator[str]:
+    at = f"{wavelength_nm:g} nm, theta_i = {theta_i_deg:g} degrees"
+    yield _picture(
+        plot.hemisphere(model, wavelength_nm, theta_i_deg)[0],
+        f"The model over the hemisphere of reflected directions, {at}: f11, and the other elements divided by it.",
+    )
+    yield '<div class="pair">'
+    bands = ", with bands of k = 2" if model.has_covariance else ""
+    yield _picture(
+        plot.in_plane_curves(model, wavelength_nm, theta_i_deg)[0],
+        f"Co- and cross-polarized BRDF in the plane of incidence, {at}{bands}.",
+        "svg",
+    )
+    yield _picture(
+        plot.realizability_map(model, wavelength_nm, theta_i_deg)[0],
+        f"Smallest coherency eigenvalue / f11, {at}: a matrix where it is negative cannot exist.",
+    )
+    yield "</div>"
+
+
+def _residual_pictures(model: Model, data: Dataset, wavelength_nm: float) -> Iterator[str]:
+    """At the smallest, a middle and the largest angle of incidence that the data have."""
+    here = data.at_wavelengths(wavelength_nm)
+    angles = np.unique(np.round(here.theta_i_deg, 1))
+    for theta_i_deg in dict.fromkeys((angles[0], angles[len(angles) // 2], angles[-1])):
+        near = here[np.abs(here.theta_i_deg - theta_i_deg) < 0.5]
+        figure = plot.residual_map(model, near, wavelength_nm, float(theta_i_deg), phi_i_deg=float(near.phi_i_deg[0]))[
+            0
+        ]
+        yield _picture(figure, f"Samples - model at {wavelength_nm:g} nm, theta_i = {theta_i_deg:g} degrees.")
+
+
+def _on_a_grid(data: Dataset) -> bool:
+    """Whether the samples are many for each direction of the source: then a map of them says something."""
+    sources = np.round(np.column_stack([data.wavelength_nm, data.theta_i_deg, data.phi_i_deg]), 1)
+    return len(data) >= 50 * len(np.unique(sources, axis=0))
+
+
+def _spectra(model: Model) -> Iterator[str]:
+    for power in range(model.powers + 1):
+        caption = f"Coefficients that multiply the wavelength in micrometres to the power {power}."
+        yield _picture(plot.coefficient_spectrum(model, power=power)[0], caption, "svg")
+
+
+def _pictures_behind(
+    field: str, model: Model, data: Dataset | None, wavelengths_nm: Sequence[float], theta_i_deg: float
+) -> dict[str, Iterator[str]]:
+    """What is shown behind a field of the facts: parts by heading."""
+    if field == "fit":
+        at = {f"The model at {nm:g} nm": _model_pictures(model, nm, theta_i_deg) for nm in wavelengths_nm}
+        return {**at, "Coefficients": _spectra(model)}
+    if field == "residuals" and data is not None and _on_a_grid(data):
+        maps = (text for nm in data.wavelengths_nm for text in _residual_pictures(model, data, nm))
+        return {"Residuals on the hemisphere": maps}
+    return {}
+
+
+def page(
+    model: Model,
+    data: Dataset | None = None,
+    *,
+    name: str = "",
+    data_name: str = "samples",
+    wavelength_nm: float | Sequence[float] | None = None,
+    theta_i_deg: float = 45,
+) -> str:
+    """The report as HTML text: see mmbrdf.report()."""
+    chosen = None if wavelength_nm is None else [float(one) for one in np.atleast_1d(wavelength_nm)]
+    facts = json.loads(report_json(model, name or model.name or "the model", chosen, data, data_name))
+    title = html.escape(facts.pop("title"))
+    warnings = facts.pop("warnings")
+    parts = [
+        f"<h1>{title}</h1>",
+        f'<p class="dim">mmbrdf {__version__}; uncertainties are standard (k = 1) and of the fit alone</p>',
+    ]
+    if warnings:
+        lines = "".join(f"<li>{html.escape(warning)}</li>" for warning in warnings)
+        parts.append(f'<ul class="warnings">{lines}</ul>')
+    shown = chosen or list(model.wavelengths_nm) or list(model.reflectance) or [1000.0]
+    for field, value in facts.items():
+        parts += [f"<h2>{html.escape(field.capitalize().replace('_', ' '))}</h2>", _section(value)]
+        for heading, pictures in _pictures_behind(field, model, data, shown, theta_i_deg).items():
+            parts += [f"<h2>{html.escape(heading)}</h2>", *pictures]
+    body = "\n".join(parts)
+    return (
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head>\n'
+        f"<body>\n{body}\n</body></html>\n"
+    )
+
+
+def write(path: str | os.PathLike[str], text: str) -> None:
+    """All of it or nothing: a temporary file in the same folder, renamed."""
+    target = Path(path)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}")
+    try:
+        temporary.write_text(text, encoding="utf-8")
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """python3 -m mmbrdf.report"""
+    parser = argparse.ArgumentParser(prog="python3 -m mmbrdf.report", description=__doc__)
+    parser.add_argument("model", metavar="MODEL", help="built-in name, JSON model or coefficient CSV")
+    parser.add_argument("data", metavar="DATA.csv", nargs="?", help="samples to set beside it")
+    parser.add_argument("-o", "--output", metavar="REPORT.html", required=True, help="where the page goes")
+    parser.add_argument("-w", "--wavelength", metavar="NM", type=float, nargs="+", help="wavelengths to report on")
+    parser.add_argument(
+        "--theta-i", metavar="DEG", type=float, default=45, help="angle of incidence of the pictures [45]"
+    )
+    options = parser.parse_args(arguments)
+    try:
+        model = material(options.model) if options.model in materials() else load(options.model)
+        data = load(options.data) if options.data else None
+        for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
+            if thing is not None and not isinstance(thing, kind):
+                raise ValueError(f"{name}: expected a {kind.__name__.lower()}")
+        names = {"name": Path(options.model).name, "data_name": Path(options.data or "").name}
+        text = page(model, data, wavelength_nm=options.wavelength, theta_i_deg=options.theta_i, **names)
+        write(options.output, text)
+    except (OSError, ValueError) as error:
+        print(f"{parser.prog}: {error}", file=sys.stderr)
+        return 1
+    return 0

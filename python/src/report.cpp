@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Facts about models.
+#include "mmbrdf/report.hpp"
+
+#include <pybind11/stl.h>
+
+#include "dataset.hpp"
+
+namespace mmbrdf::python {
+
+void bind_report(py::module_& m) {
+  m.def(
+      "report_json",
+      [](const ModelObject& model, const std::string& name, const std::optional<std::vector<double>>& wavelengths_nm,
+         const DatasetPointer& data, const std::string& data_name) {
+        const std::vector<double> wavelengths = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
+        return without_gil([&] {
+          return report_json(model.model(), name, wavelengths,
+                             data ? std::optional(ReportedSamples{data_name, data->samples}) : std::nullopt);
+        });
+      },
+      py::arg("model"), py::arg("name"), py::arg("wavelength_nm") = py::none(), py::arg("data") = py::none(),
+      py::arg("data_name") = "samples",
+      "What is known about a model, and about samples beside it, as the JSON text that `mmbrdf report --format json`\n"
+      "prints: title, warnings, model, fit, realizability, reflectances and, with samples, residuals, symmetries,\n"
+      "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
+}
+
+}  // namespace mmbrdf::python

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report page: complete, self-contained, and shown by a browser."""
+
+import html.parser
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import mmbrdf
+
+pytest.importorskip("matplotlib")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """A report on a fit to simulated data, as text and file."""
+    folder = tmp_path_factory.mktemp("report")
+    data = mmbrdf.simulate(mmbrdf.material("ptfe"), 532, mmbrdf.germer2017_grid(), speckle=0.01, seed=1)
+    model = mmbrdf.fit(data, name="sample & co").model
+    mmbrdf.report(model, data, folder / "report.html", data_name="<simulated>")
+    return model, data, folder / "report.html"
+
+
+class Outline(html.parser.HTMLParser):
+    """Headings, pictures and links of a page, and whether each element that was opened is closed."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.headings, self.pictures, self.links = [], [], [], []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+        for name, value in attributes:
+            if name in ("src", "href"):
+                (self.pictures if value.startswith("data:image/") else self.links).append(value)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, text):
+        if self.open and self.open[-1] in ("h1", "h2"):
+            self.headings.append(text)
+
+
+def test_the_page_says_what_the_program_says(page):
+    model, data, path = page
+    facts = json.loads(mmbrdf.report_json(model, model.name, data=data))
+    outline = Outline(path.read_text())
+    assert outline.headings[0] == "Report on sample & co"
+    for field in facts:
+        if field not in ("title", "warnings"):
+            assert field.capitalize().replace("_", " ") in outline.headings
+    assert outline.open == []
+    (bhr,) = [row["value"] for row in facts["reflectances"] if row["quantity"] == "bhr"]
+    assert f"{bhr:.6g}" in path.read_text()
+
+
+def test_the_facts_are_those_of_the_program(ptfe, program):
+    printed = program("report", "ptfe", "--format", "json")
+    assert json.loads(printed) == json.loads(mmbrdf.report_json(ptfe, "ptfe"))
+
+
+def test_the_page_needs_nothing_else(page):
+    outline = Outline(page[2].read_text())
+    assert outline.links == []
+    assert len(outline.pictures) == 7  # hemisphere, curves, realizability, coefficients, three maps of residuals
+    assert not re.search(r"https?://(?!www\.w3\.org)", re.sub(r'src="data:[^"]*"', "", page[2].read_text()))
+
+
+def test_names_are_text_and_not_markup(page):
+    text = page[2].read_text()
+    assert "sample &amp; co" in text and "&lt;simulated&gt;" in text and "<simulated>" not in text
+
+
+def test_warnings_come_first(tmp_path):
+    model = mmbrdf.in_published_form(mmbrdf.material("ptfe-532"))
+    mmbrdf.report(model, None, tmp_path / "report.html", wavelength_nm=532)
+    text = re.sub(r"<style>.*?</style>", "", (tmp_path / "report.html").read_text(), flags=re.DOTALL)
+    assert (
+        text.index('class="warnings"') < text.index("<h2>")
+        and "the covariance of the coefficients is not known" in text
+    )
+
+
+def test_nothing_is_left_behind_by_an_error(page, tmp_path):
+    model, _, _ = page
+    with pytest.raises(FileNotFoundError):
+        mmbrdf.report(model, None, tmp_path / "no/report.html")
+    (tmp_path / "report.html").write_text("earlier")
+    with pytest.raises(ValueError):
+        mmbrdf.report(model, None, tmp_path / "report.html", wavelength_nm=-1)
+    assert (tmp_path / "report.html").read_text() == "earlier"
+    assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
+
+
+def run_module(*arguments, folder):
+    command = [sys.executable, "-m", "mmbrdf.report", *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_it_runs_as_a_program(tmp_path):
+    done = run_module("ptfe-532", "-o", "report.html", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Report on ptfe-532" in (tmp_path / "report.html").read_text()
+    for arguments, message in (
+        (("nowhere.json", "-o", "other.html"), "nowhere.json"),
+        (("ptfe-532", "report.html", "-o", "other.html"), "report.html"),
+        (("ptfe-532", "-o", "no/other.html"), "no/"),
+    ):
+        done = run_module(*arguments, folder=tmp_path)
+        assert done.returncode == 1 and message in done.stderr and done.stderr.count("\n") == 1
+    assert not (tmp_path / "other.html").exists()
+
+
+def test_importing_the_module_leaves_the_function():
+    import mmbrdf.report
+
+    assert callable(mmbrdf.report)
+
+
+def test_a_browser_shows_it(page, tmp_path):
+    browser = os.environ.get("MMBRDF_BROWSER") or shutil.which("chromium")
+    if not browser:
+        pytest.skip("no chromium: ./dev packages browser, or set MMBRDF_BROWSER")
+    options = (
+        "--headless --no-sandbox --disable-gpu --hide-scrollbars --no-first-run --disable-background-networking".split()
+    )
+    common = [
+        browser,
+        *options,
+        "--disable-component-update",
+        "--disable-sync",
+        f"--user-data-dir={tmp_path / 'profile'}",
+    ]
+    dom = subprocess.run(
+        [*common, "--virtual-time-budget=5000", "--dump-dom", page[2].as_uri()],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    ).stdout
+    assert Outline(dom).headings[0] == "Report on sample & co"
+    picture = tmp_path / "page.png"
+    subprocess.run(
+        [*common, "--window-size=1100,6000", f"--screenshot={picture}", page[2].as_uri()],
+        capture_output=True,
+        timeout=120,
+        check=True,
+    )
+    import matplotlib.image
+
+    pixels = matplotlib.image.imread(picture)[..., :3]
+    colourful = (pixels.max(axis=-1) - pixels.min(axis=-1)) > 0.4  # the maps: a broken picture has none
+    assert colourful.mean() > 0.005
