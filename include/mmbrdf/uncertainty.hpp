@@ -78,8 +78,8 @@ class PreparedUncertainty {
   std::shared_ptr<const Blocks> blocks_;
 };
 
-/// Throws std::invalid_argument for an invalid model or wavelength (micrometres), a block whose covariance or rank is
-/// not known, a covariance with an eigenvalue below −covariance_tolerance times its largest, or numbers that overflow
+/// Throws std::invalid_argument for an invalid model or wavelength (micrometres), a block whose covariance is not
+/// known, a covariance with an eigenvalue below −covariance_tolerance times its largest, or numbers that overflow
 /// at this wavelength.
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "mmbrdf/description.hpp"
 #include "mmbrdf/model.hpp"
 
 namespace mmbrdf::python {
@@ -41,9 +42,6 @@ using ModelPointer = std::shared_ptr<ModelObject>;
 /// nm → micrometres. Throws std::invalid_argument unless it is positive.
 double micrometres(double wavelength_nm);
 std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
-
-/// to 1e-9 nm: 0.532 gives 532.
-double nanometres(double wavelength);
 
 /// {nm: reflectance}
 ReflectanceTable reflectance_table(const std::map<double, double>& by_nanometres);

@@ -121,8 +121,7 @@ py::dict compared(const ModelObject& model, const Dataset& data, bool as_printed
   result["f11"] = dict_of(comparison.f11);
   result["f11_relative"] = dict_of(comparison.f11_relative);
   result["polarization_rms"] = polarization_rms(comparison);
-  for (std::size_t e = 1; e < 16; ++e)
-    result[py::str("m" + std::to_string(e / 4 + 1) + std::to_string(e % 4 + 1))] = dict_of(comparison.normalized[e]);
+  for (std::size_t e = 1; e < 16; ++e) result[py::str("m" + element_name(e))] = dict_of(comparison.normalized[e]);
   return result;
 }
 

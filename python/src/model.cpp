@@ -15,6 +15,7 @@
 #include "mmbrdf/conversion.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/materials.hpp"
+#include "mmbrdf/uncertainty.hpp"
 
 namespace mmbrdf::python {
 
@@ -57,14 +58,8 @@ py::object covariance_of(const BlockView& block) {
 std::vector<std::string> elements_of(const BlockView& block) {
   std::vector<std::string> result;
   for (const auto& [row, column] : block.fitted().block.elements)
-    result.push_back(std::to_string(row + 1) + std::to_string(column + 1));
+    result.push_back(element_name(static_cast<std::size_t>(4 * row + column)));
   return result;
-}
-
-bool has_covariance(const Model& model) {
-  for (const FittedBlock& block : model.blocks)
-    if (block.covariance.empty()) return false;
-  return true;
 }
 
 std::vector<double> in_nanometres(const std::vector<double>& wavelengths) {
@@ -163,7 +158,7 @@ void bind_properties(ModelClass& c) {
       .def_property_readonly("reflectance", reflectance_of,
                              "Table that multiplies f11: {wavelength in nm: value}; empty: 1")
       .def_property_readonly(
-          "has_covariance", [](const ModelObject& o) { return has_covariance(o.model()); },
+          "has_covariance", [](const ModelObject& o) { return knows_uncertainty(o.model()); },
           "Whether uncertainties of all elements are known")
       .def_property_readonly(
           "provenance", [](const ModelObject& o) { return o.model().provenance; },
@@ -194,8 +189,6 @@ std::vector<double> micrometres(const std::vector<double>& wavelengths_nm) {
   for (const double wavelength_nm : wavelengths_nm) result.push_back(micrometres(wavelength_nm));
   return result;
 }
-
-double nanometres(double wavelength) { return std::round(wavelength * 1e12) / 1e9; }
 
 ReflectanceTable reflectance_table(const std::map<double, double>& by_nanometres) {
   ReflectanceTable table;
