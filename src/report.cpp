@@ -83,7 +83,7 @@ Json model_json(const Reported& reported) {
   if (!table.values.empty())
     json["reflectance table"] =
         reflectance_line(table) + (table.covariance.empty() ? ", exact" : ", with its covariance");
-  for (const auto& [name, text] : model.provenance) json[name] = text;
+  for (const auto& [name, text] : model.provenance) json[json.contains(name) ? "provenance: " + name : name] = text;
   return json;
 }
 

@@ -91,6 +91,14 @@ TEST(Report, SaysOfTheModelWhatItSaysOfItself) {
   EXPECT_EQ(report(model, green)["model"]["name"], "it");
 }
 
+TEST(Report, KeepsWhatTheProvenanceSaysUnderANameThatIsTaken) {
+  Model model = material("ptfe-532");
+  model.provenance["name"] = "another";
+  const Json told = report(model)["model"];
+  EXPECT_EQ(told["name"], "ptfe-532");
+  EXPECT_EQ(told["provenance: name"], "another");
+}
+
 TEST(Report, IsOfTheWavelengthsAndAnglesThatTheModelWasFittedTo) {
   Model model = diffuser({0.2, 0.1});
   model.validity = {{0.4, 0.5}, radians(60), radians(70)};

@@ -7,9 +7,8 @@
 ///
 ///   title                 "Report on" and the name that the model was called by
 ///   warnings              sentences, without a full stop; none if there is nothing to be wary of
-///   model                 name, basis and fitted range in words, reflectance table if there is one, then the
-///   provenance
-///                         with its own names: texts
+///   model                 name, basis and fitted range in words, reflectance table if there is one; then what the
+///                         provenance says, with its own names, or "provenance: name" where one of those is taken
 ///   fit                   row by block: block, coefficients, rank, condition, covariance (true or false: known)
 ///   realizability         row by wavelength and largest polar angle, the fitted one where it is known and 90 degrees:
 ///                         wavelength_nm, theta_max_deg, geometries, unrealizable, smallest_margin, margin_at,
@@ -20,10 +19,9 @@
 /// and with samples also
 ///
 ///   data                  name, samples, wavelengths in words, and which of the following is of which model
-///   residuals             samples − model: row for f11 in sr⁻¹, for f11 relative to f11, and for each of the 15
-///   others:
-///                         element ("11" … "44"), unit ("sr^-1" or "f11"), rms, mean, largest, wavelength_nm, at
-///                         (compare)
+///   residuals             samples − model: a row for f11 in sr⁻¹, one for f11 relative to f11, one for each of the 15
+///                         other elements: element ("11" … "44"), unit ("sr^-1" or "f11"), rms, mean, largest,
+///                         wavelength_nm, at (compare)
 ///   reciprocity           row by block: block, rows, more_coefficients, rms, rms_without, F, p (symmetry_tests);
 ///   mirror_symmetry       rms_without is what is left without the symmetry
 ///   dependence_on_phi_i   the same; where the source has one azimuth in the samples, the sentence that says so
