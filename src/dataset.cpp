@@ -21,17 +21,18 @@ bool same_wavelength(double a, double b) { return std::abs(a - b) <= wavelength_
 
 void require_wavelength(const Sample& sample, std::size_t index) {
   if (sample.wavelength > 0 && std::isfinite(sample.wavelength)) return;
-  throw std::invalid_argument("sample " + std::to_string(index + 1) + ": wavelength = " + shortest(sample.wavelength) +
-                              " micrometres, must be positive");
+  throw std::invalid_argument("sample " + std::to_string(index + 1) +
+                              ": wavelength = " + shortest(in_nanometres(sample.wavelength)) + " nm, must be positive");
 }
 
 void require_samples_at(std::span<const double> present, double wavelength) {
   const auto found = [&](double other) { return same_wavelength(wavelength, other); };
   if (std::any_of(present.begin(), present.end(), found)) return;
   std::string list;
-  for (double other : present) list += (list.empty() ? "" : ", ") + shortest(other);
-  throw std::invalid_argument("wavelength = " + shortest(wavelength) + " micrometres: " +
-                              (list.empty() ? "there are no samples" : "no sample; there are samples at " + list));
+  for (double other : present) list += (list.empty() ? "" : ", ") + shortest(in_nanometres(other));
+  throw std::invalid_argument(
+      "wavelength = " + shortest(in_nanometres(wavelength)) +
+      " nm: " + (list.empty() ? "there are no samples" : "no sample; there are samples at " + list + " nm"));
 }
 
 /// The direction with cosines x and y.

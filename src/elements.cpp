@@ -16,8 +16,9 @@ void require_valid(const Film& film, double wavelength, double theta_i) {
   const auto require = [](bool good, const char* what, double value) {
     if (!good) throw std::invalid_argument(std::string("film: ") + what + " " + shortest(value));
   };
-  require(wavelength > 0 && std::isfinite(wavelength), "wavelength of", wavelength);
-  require(theta_i >= 0 && theta_i < std::numbers::pi / 2, "angle of incidence of", theta_i);
+  require(wavelength > 0 && std::isfinite(wavelength), "wavelength (nm) of", in_nanometres(wavelength));
+  require(theta_i >= 0 && theta_i < std::numbers::pi / 2, "angle of incidence (degrees, from 0 to below 90) of",
+          in_degrees(theta_i));
   require(film.thickness >= 0 && std::isfinite(film.thickness), "thickness of", film.thickness);
   for (const Complex n : {film.film_index, film.substrate_index}) {
     require(n.real() > 0 && std::isfinite(n.real()), "refractive index of", n.real());

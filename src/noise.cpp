@@ -150,6 +150,14 @@ double weight(const NoiseLaw& law, const Geometry& geometry) {
   return result;
 }
 
+std::string to_string(const NoiseEstimate& estimate) {
+  const auto& [law, covariance, rows] = estimate;
+  return "sigma^2 = " + fixed(law.scale, 5) + "^2 cos(theta_i)^" + fixed(law.incident_exponent, 3) +
+         " / cos(theta_r)^" + fixed(law.reflected_exponent, 3) + ", u " +
+         fixed(law.scale * std::sqrt(covariance[0]), 5) + ", " + fixed(std::sqrt(covariance[4]), 3) + ", " +
+         fixed(std::sqrt(covariance[8]), 3);
+}
+
 NoiseEstimate estimate_noise(std::span<const Sample> samples, std::span<const Mueller> residuals,
                              std::span<const Element> elements) {
   if (samples.size() != residuals.size())

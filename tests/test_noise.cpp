@@ -46,6 +46,14 @@ TEST(Noise, LawIsOneFormula) {
 
 // 100 measurements of known noise. Estimates divided by their own uncertainties have a standard deviation of 1; that of
 // 100 such is known to 7 %, and their mean to 0.1. The limits are three times these.
+TEST(Noise, IsALineForPeople) {
+  const NoiseEstimate estimate{{.scale = 0.0051, .incident_exponent = 0.8, .reflected_exponent = -1.25},
+                               {4e-4, 0, 0, 0, 0.0036, 0, 0, 0, 0.0025},
+                               100};
+  EXPECT_EQ(to_string(estimate),
+            "sigma^2 = 0.00510^2 cos(theta_i)^0.800 / cos(theta_r)^-1.250, u 0.00010, 0.060, 0.050");
+}
+
 TEST(Noise, EstimatesScatterAboutTheTruthAsTheirCovarianceSays) {
   constexpr int repetitions = 100;
   std::array<double, 3> sums{}, squares{};

@@ -141,11 +141,7 @@ void print_json(const FitReport& report) {
 }  // namespace
 
 std::string noise_line(const FitResult& result, std::size_t i) {
-  const auto& [law, covariance, rows] = result.noise[i];
-  return brief(nanometres(result.model.validity.wavelengths[i])) + " nm: " +
-         format("sigma^2 = %.5f^2 cos(theta_i)^%.3f / cos(theta_r)^%.3f, u %.5f, %.3f, %.3f", law.scale,
-                law.incident_exponent, law.reflected_exponent, law.scale * std::sqrt(covariance[0]),
-                std::sqrt(covariance[4]), std::sqrt(covariance[8]));
+  return nanometre_list(std::array{result.model.validity.wavelengths[i]}) + ": " + to_string(result.noise[i]);
 }
 
 void print(const FitReport& report, Format format) {

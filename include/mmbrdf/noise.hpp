@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,10 @@ struct NoiseEstimate {
   std::array<double, 9> covariance{};
   long rows = 0;  ///< residuals that were used
 };
+
+/// "sigma^2 = 0.00510^2 cos(theta_i)^0.803 / cos(theta_r)^1.042, u 0.00012, 0.060, 0.040": the law, and the standard
+/// uncertainties of its three numbers.
+std::string to_string(const NoiseEstimate& estimate);
 
 /// The law under which these residuals are most likely, if they are Gaussian, independent and of mean 0. ln σ² is
 /// linear in (ln scale, a, b), so the likelihood has one maximum, found by Fisher's scoring. The residuals of a fit are

@@ -20,7 +20,11 @@ from typing import NamedTuple as _NamedTuple
 import numpy as _np
 
 from ._mmbrdf import *  # noqa: F403: the names of the library
-from ._mmbrdf import Dataset, Model, __version__, load_model, read_samples  # noqa: F401
+from ._mmbrdf import Dataset as Dataset
+from ._mmbrdf import Model as Model
+from ._mmbrdf import __version__ as __version__
+from ._mmbrdf import load_model as load_model
+from ._mmbrdf import read_samples as read_samples
 
 _Array = _np.ndarray
 

@@ -2,11 +2,12 @@
 """Types of the compiled part; what each does is in its docstring."""
 
 import os
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, overload
 
 import mmbrdf
 import numpy as np
+import xarray
 from numpy.typing import ArrayLike, NDArray
 
 __version__: str
@@ -58,78 +59,194 @@ class Model:
     def to_json(self) -> str: ...
     @staticmethod
     def from_json(text: str) -> Model: ...
+    @overload
     def evaluate(
         self,
-        wavelength_nm: ArrayLike | None = ...,
-        theta_i_deg: ArrayLike = ...,
-        phi_i_deg: ArrayLike = ...,
-        theta_r_deg: ArrayLike = ...,
-        phi_r_deg: ArrayLike = ...,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
         *,
-        frame: str = "xy",
-        as_printed: bool = False,
-        threads: int = 0,
-        as_xarray: bool = False,
-    ) -> NDArray[np.float64] | Any: ...
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> NDArray[np.float64]: ...
+    @overload
+    def evaluate(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> NDArray[np.float64]: ...
+    @overload
+    def evaluate(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
+    def evaluate(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
     def evaluate_uncertainty(
         self,
-        wavelength_nm: ArrayLike | None = ...,
-        theta_i_deg: ArrayLike = ...,
-        phi_i_deg: ArrayLike = ...,
-        theta_r_deg: ArrayLike = ...,
-        phi_r_deg: ArrayLike = ...,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
         *,
-        frame: str = "xy",
-        as_printed: bool = False,
-        terms: dict[str, float] | None = None,
-        threads: int = 0,
-        as_xarray: bool = False,
-    ) -> NDArray[np.float64] | Any: ...
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> NDArray[np.float64]: ...
+    @overload
+    def evaluate_uncertainty(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> NDArray[np.float64]: ...
+    @overload
+    def evaluate_uncertainty(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
+    def evaluate_uncertainty(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        threads: int | None = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
     def covariance(
         self,
-        wavelength_nm: ArrayLike | None = ...,
-        theta_i_deg: ArrayLike = ...,
-        phi_i_deg: ArrayLike = ...,
-        theta_r_deg: ArrayLike = ...,
-        phi_r_deg: ArrayLike = ...,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
         *,
-        frame: str = "xy",
-        as_printed: bool = False,
-        terms: dict[str, float] | None = None,
-        threads: int = 0,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        threads: int | None = ...,
     ) -> NDArray[np.float64]: ...
+    @overload
+    def covariance(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        threads: int | None = ...,
+    ) -> NDArray[np.float64]: ...
+    @overload
     def outside(
         self,
-        wavelength_nm: ArrayLike | None = ...,
-        theta_i_deg: ArrayLike = ...,
-        phi_i_deg: ArrayLike = ...,
-        theta_r_deg: ArrayLike = ...,
-        phi_r_deg: ArrayLike = ...,
-    ) -> int | NDArray[np.uint8]: ...
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+    ) -> NDArray[np.uint8]: ...
+    @overload
+    def outside(
+        self, *, theta_i_deg: ArrayLike, phi_i_deg: ArrayLike, theta_r_deg: ArrayLike, phi_r_deg: ArrayLike
+    ) -> NDArray[np.uint8]: ...
+    @overload
     def estimable(
         self,
-        wavelength_nm: ArrayLike | None = ...,
-        theta_i_deg: ArrayLike = ...,
-        phi_i_deg: ArrayLike = ...,
-        theta_r_deg: ArrayLike = ...,
-        phi_r_deg: ArrayLike = ...,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
         *,
-        as_printed: bool = False,
-        threads: int = 0,
-    ) -> bool | NDArray[np.bool_]: ...
+        as_printed: bool = ...,
+        threads: int | None = ...,
+    ) -> NDArray[np.bool_]: ...
+    @overload
+    def estimable(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+    ) -> NDArray[np.bool_]: ...
     def evaluate_draws(
         self,
         count: int,
         seed: int,
-        wavelength_nm: ArrayLike | None = ...,
-        theta_i_deg: ArrayLike = ...,
-        phi_i_deg: ArrayLike = ...,
-        theta_r_deg: ArrayLike = ...,
-        phi_r_deg: ArrayLike = ...,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
         *,
-        frame: str = "xy",
-        as_printed: bool = False,
-        threads: int = 0,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
     ) -> NDArray[np.float64]: ...
 
 class Dataset:
@@ -163,6 +280,7 @@ class Dataset:
     @property
     def uncertainty(self) -> NDArray[np.float64] | None: ...
     def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[Dataset]: ...
     def __getitem__(self, which: object) -> Dataset: ...
     @property
     def wavelengths_nm(self) -> tuple[float, ...]: ...

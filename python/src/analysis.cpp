@@ -16,7 +16,7 @@ namespace {
 template <class Result>
 void define(py::module_& m, const char* name, Result (*quantity)(const Mueller&), const char* doc) {
   m.def(
-      name, [quantity](const Doubles& mueller) { return over_matrices(mueller, quantity); }, py::arg("mueller"), doc);
+      name, [quantity](const Given& mueller) { return over_matrices(mueller, quantity); }, py::arg("mueller"), doc);
 }
 
 template <std::size_t n>
@@ -52,7 +52,7 @@ py::object named(const char* name, const py::tuple& values) {
   return py::module_::import("mmbrdf").attr(name)(*values);
 }
 
-py::object standard_uncertainties(const Doubles& gradient, const Doubles& covariance) {
+py::object standard_uncertainties(const Given& gradient, const Given& covariance) {
   const Broadcast broadcast({{"gradient", gradient, {4, 4}}, {"covariance", covariance, {16, 16}}});
   return map(broadcast, [&](std::size_t i) {
     MuellerCovariance of_elements;
@@ -79,14 +79,14 @@ void bind_quantities(py::module_& m) {
          "Of the coherency eigenvalues, base 4: 1 for a perfect depolarizer, 0 for a Jones matrix.");
   m.def(
       "retardance",
-      [](const Doubles& mueller) {
+      [](const Given& mueller) {
         return over_matrices(mueller, [](const Mueller& retarder) { return degrees(retardance(retarder)); });
       },
       py::arg("mueller"), "Angle in degrees, 0 to 180, by which a retarder turns the Poincare sphere.");
   define(m, "depolarization_power", depolarization_power, "1 - |tr m| / 3 of a depolarizer (Lu & Chipman).");
   m.def(
       "degree_of_polarization",
-      [](const Doubles& mueller, const Doubles& stokes) {
+      [](const Given& mueller, const Given& stokes) {
         const Broadcast broadcast({{"mueller", mueller, {4, 4}}, {"stokes", stokes, {4}}});
         return map(broadcast, [&](std::size_t i) {
           return degree_of_polarization(broadcast.mueller(0, i), broadcast.at<4>(1, i));
@@ -128,7 +128,7 @@ void bind_gradients(py::module_& m) {
 void bind_parts(py::module_& m) {
   m.def(
       "co_and_cross_polarized",
-      [](const Doubles& mueller) {
+      [](const Given& mueller) {
         return named("PolarizedBrdf", split(over_matrices(mueller,
                                                           [](const Mueller& f) {
                                                             const PolarizedBrdf p = co_and_cross_polarized(f);
@@ -141,7 +141,7 @@ void bind_parts(py::module_& m) {
       "polarization.");
   m.def(
       "cloude_decomposition",
-      [](const Doubles& mueller) {
+      [](const Given& mueller) {
         const py::object all = over_matrices(mueller, [](const Mueller& f) {
           const CloudeDecomposition d = cloude_decomposition(f);
           std::array<double, 68> values;
@@ -161,13 +161,13 @@ void bind_parts(py::module_& m) {
       "CloudeDecomposition(weights (..., 4), components (..., 4, 4, 4)): M = sum of weight x component, falling.");
   m.def(
       "nearest_realizable",
-      [](const Doubles& mueller) {
+      [](const Given& mueller) {
         return over_matrices(mueller, [](const Mueller& f) { return nearest_realizable(f).matrix; });
       },
       py::arg("mueller"), "The realizable matrices closest in the sum of squares, with the same M11.");
   m.def(
       "lu_chipman",
-      [](const Doubles& mueller) {
+      [](const Given& mueller) {
         return named("LuChipman",
                      split_matrices(over_matrices(mueller,
                                                   [](const Mueller& f) {
@@ -179,7 +179,7 @@ void bind_parts(py::module_& m) {
       py::arg("mueller"), "LuChipman(depolarizer, retarder, diattenuator): M is their product. Each (..., 4, 4).");
   m.def(
       "symmetric_decomposition",
-      [](const Doubles& mueller) {
+      [](const Given& mueller) {
         return named(
             "SymmetricDecomposition",
             split_matrices(

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 namespace mmbrdf::python {
@@ -53,6 +55,23 @@ double loaded(const char* data) {
 
 }  // namespace
 
+Doubles doubles(const char* name, const Given& given) {
+  const std::string argument = name;
+  const py::module_ numpy = py::module_::import("numpy");
+  if (given.is_none()) throw py::type_error(argument + ": None is not a number");
+  if (numpy.attr("ma").attr("is_masked")(given).cast<bool>())
+    throw py::value_error(argument + ": a part of it is masked; leave it out");
+  py::array array;
+  try {
+    array = numpy.attr("asarray")(given);
+  } catch (const py::error_already_set&) {
+    throw py::type_error(argument + ": expected a number or an array of numbers");
+  }
+  if (std::string("biuf").find(array.dtype().kind()) == std::string::npos)
+    throw py::type_error(argument + ": expected real numbers, not " + std::string(py::str(array.dtype())));
+  return Doubles(array);
+}
+
 Broadcast::Broadcast(std::vector<Operand> operands) : operands_(std::move(operands)) {
   for (const Operand& operand : operands_) widen(shape_, outer_shape(operand), operands_);
   for (const py::ssize_t length : shape_) size_ *= static_cast<std::size_t>(length);
@@ -93,20 +112,22 @@ void Broadcast::gather(std::size_t which, std::size_t begin, std::size_t end, do
   }
 }
 
-std::string Broadcast::place(std::size_t position) const {
-  if (shape_.empty()) return "";
-  std::string result = "]";
+std::invalid_argument Broadcast::at_place(const std::invalid_argument& error, std::size_t position) const {
+  if (size_ == 1) return error;
+  std::string place = "]";
   for (std::size_t d = shape_.size(); d-- > 0;) {
     const auto length = static_cast<std::size_t>(shape_[d]);
-    result = (d > 0 ? ", " : "[") + std::to_string(position % length) + result;
+    place = (d > 0 ? ", " : "[") + std::to_string(position % length) + place;
     position /= length;
   }
-  return result;
+  return std::invalid_argument(error.what() + std::string(", at ") + place);
 }
 
 void in_parts(std::size_t size, int threads, std::size_t least,
               const std::function<void(std::size_t, std::size_t)>& work) {
-  if (threads < 0) throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be 0 or more");
+  if (threads < 0 || threads > most_threads)
+    throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be from 0 to " +
+                                std::to_string(most_threads));
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   const std::size_t wanted = threads == 0 ? cores : static_cast<std::size_t>(threads);
   const std::size_t parts = std::clamp<std::size_t>(size / std::max<std::size_t>(least, 1), 1, wanted);
@@ -118,16 +139,22 @@ void in_parts(std::size_t size, int threads, std::size_t least,
       errors[p] = std::current_exception();
     }
   };
-  std::vector<std::thread> others;
-  for (std::size_t p = 1; p < parts; ++p) others.emplace_back(part, p);
+  std::vector<std::jthread> others;
+  others.reserve(parts);
+  std::size_t next = 1;
+  try {
+    for (; next < parts; ++next) others.emplace_back(part, next);
+  } catch (const std::system_error&) {  // no more threads to be had: this one does the rest
+  }
+  for (std::size_t p = next; p < parts; ++p) part(p);
   part(0);
-  for (std::thread& thread : others) thread.join();
+  others.clear();  // all are done
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
 }
 
-std::vector<Operand> direction_operands(const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
-                                        const Doubles& phi_r) {
+std::vector<Operand> direction_operands(const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                                        const Given& phi_r) {
   return {{"theta_i_deg", theta_i}, {"phi_i_deg", phi_i}, {"theta_r_deg", theta_r}, {"phi_r_deg", phi_r}};
 }
 
@@ -139,11 +166,13 @@ void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, st
     for (std::size_t a = 0; a < 4; ++a) broadcast.gather(first + a, begin, begin + count, angles[a].data());
     for (std::size_t i = 0; i < count; ++i) {
       try {
-        *out++ = {direction_from_degrees(angles[0][i], angles[1][i]),
-                  direction_from_degrees(angles[2][i], angles[3][i])};
+        const Direction incident = direction_from_degrees(angles[0][i], angles[1][i]);
+        const Direction reflected = direction_from_degrees(angles[2][i], angles[3][i]);
+        if (!std::isfinite(incident.phi)) throw std::invalid_argument("phi_i_deg is not finite");
+        if (!std::isfinite(reflected.phi)) throw std::invalid_argument("phi_r_deg is not finite");
+        *out++ = {incident, reflected};
       } catch (const std::invalid_argument& error) {
-        const std::string place = broadcast.place(begin + i);
-        throw std::invalid_argument("direction " + std::string(error.what()) + (place.empty() ? "" : ", at " + place));
+        throw broadcast.at_place(std::invalid_argument("direction " + std::string(error.what())), begin + i);
       }
     }
   }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -20,14 +21,22 @@ namespace mmbrdf::python {
 
 namespace py = pybind11;
 
-/// Any array of real numbers, with the strides it has; other types are converted to double.
+/// What was given for an argument that takes numbers or arrays of them; not looked at yet.
+using Given = py::object;
+
 using Doubles = py::array_t<double, py::array::forcecast>;
+
+/// An array of real numbers, with the strides it has. Throws TypeError, naming the argument, for what is not made of
+/// integers, floating-point numbers or truth values, and ValueError where something is masked: it would count.
+Doubles doubles(const char* name, const Given& given);
 
 /// An argument: `core` are the lengths of its last axes, at most two, which do not broadcast. {4, 4} for matrices.
 struct Operand {
+  Operand(const char* its_name, const Given& given, std::vector<py::ssize_t> its_core = {})
+      : name(its_name), array(doubles(its_name, given)), core(std::move(its_core)) {}
   const char* name;
   Doubles array;
-  std::vector<py::ssize_t> core{};
+  std::vector<py::ssize_t> core;
 };
 
 /// Several arrays as numpy broadcasts them. Reading needs no GIL.
@@ -38,6 +47,9 @@ class Broadcast {
 
   const std::vector<py::ssize_t>& shape() const { return shape_; }
   std::size_t size() const { return size_; }
+
+  /// How many numbers were given for one of the operands.
+  std::size_t given(std::size_t which) const { return static_cast<std::size_t>(operands_[which].array.size()); }
 
   /// Copies what operand `which` has at the positions begin … end − 1 of the result (C order), core after core.
   void gather(std::size_t which, std::size_t begin, std::size_t end, double* out) const;
@@ -52,8 +64,8 @@ class Broadcast {
   double number(std::size_t which, std::size_t position) const { return at<1>(which, position)[0]; }
   Mueller mueller(std::size_t which, std::size_t position) const { return {at<16>(which, position)}; }
 
-  /// "[2, 5]" for messages; "" where there is but one.
-  std::string place(std::size_t position) const;
+  /// The error with its place: "…, at [2, 5]", counted from 0. As it is where there is but one.
+  std::invalid_argument at_place(const std::invalid_argument& error, std::size_t position) const;
 
  private:
   struct Source {
@@ -68,7 +80,9 @@ class Broadcast {
 };
 
 /// Calls work(begin, end) for parts of 0 … size − 1, on several threads if there is enough to do. `threads` 0: as many
-/// as there are cores. The GIL must not be needed. Throws what the work throws; of several, that of the first part.
+/// as there are cores. The GIL must not be needed. Throws what the work throws; of several, that of the first part; and
+/// std::invalid_argument unless 0 ≤ threads ≤ most_threads.
+inline constexpr int most_threads = 1024;
 void in_parts(std::size_t size, int threads, std::size_t least, const std::function<void(std::size_t, std::size_t)>&);
 
 /// Runs without the GIL.
@@ -123,7 +137,13 @@ py::object map(const Broadcast& broadcast, F f) {
   auto* const out = result.mutable_data();
   without_gil([&] {
     in_parts(broadcast.size(), 0, 2048, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) Out::store(f(i), out + i * length);
+      for (std::size_t i = begin; i < end; ++i) {
+        try {
+          Out::store(f(i), out + i * length);
+        } catch (const std::invalid_argument& error) {
+          throw broadcast.at_place(error, i);
+        }
+      }
     });
   });
   return unwrapped(result);
@@ -131,14 +151,14 @@ py::object map(const Broadcast& broadcast, F f) {
 
 /// f(Mueller) for an array of matrices, (…, 4, 4).
 template <class F>
-py::object over_matrices(const Doubles& mueller, F f) {
+py::object over_matrices(const Given& mueller, F f) {
   const Broadcast broadcast({{"mueller", mueller, {4, 4}}});
   return map(broadcast, [&](std::size_t i) { return f(broadcast.mueller(0, i)); });
 }
 
 /// The last four operands of a question, from `first`: theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg.
-std::vector<Operand> direction_operands(const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
-                                        const Doubles& phi_r);
+std::vector<Operand> direction_operands(const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                                        const Given& phi_r);
 
 /// Geometries of the positions begin … end − 1, whose angles in degrees are the operands from `first`. Throws
 /// std::invalid_argument, with the place in the array, for invalid angles.

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,7 +20,7 @@
 namespace mmbrdf::python {
 
 /// A model as Python holds it: it never changes, so what has been prepared of it stays right.
-class ModelObject {
+class ModelObject : public std::enable_shared_from_this<ModelObject> {
  public:
   explicit ModelObject(Model model) : model_(std::move(model)) {}
 
@@ -27,6 +28,9 @@ class ModelObject {
 
   /// Micrometres: those of the argument, or the model's own for None.
   double wavelength(const std::optional<double>& wavelength_nm) const;
+
+  /// The argument wavelength_nm, or the model's own for None.
+  Operand wavelength_operand(const std::optional<Given>& wavelength_nm) const;
 
   /// At a wavelength in micrometres.
   PreparedModel prepared(double wavelength, Rotation rotation) const;
@@ -54,7 +58,13 @@ inline std::string formatted(const char* format, double value) {
 }
 
 /// Throws as Python's open(): FileNotFoundError and the like.
-void require_readable(const std::string& path);
+void require_readable(const std::filesystem::path& path);
+
+/// The same for a file that is to be written: there must be a folder for it, and none in its place.
+void require_place(const std::filesystem::path& path);
+
+/// Warns, as Python warnings do, that `count` of `size` questions to a model lie outside its fitted range. None: not.
+void warn_outside(const ModelObject& model, unsigned reasons, std::size_t count, std::size_t size);
 
 /// An array that shows memory of `owner` without a copy, and cannot be written to.
 template <class T>
@@ -72,6 +82,7 @@ void bind_dataset(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_mueller(py::module_& m);
 void bind_analysis(py::module_& m);
+void bind_apertures(py::module_& m);
 void bind_radiometry(py::module_& m);
 void bind_polarimeter(py::module_& m);
 void bind_report(py::module_& m);

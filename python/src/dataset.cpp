@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -17,12 +18,12 @@ namespace mmbrdf::python {
 
 namespace {
 
-DatasetPointer pointer(std::vector<Sample> samples) { return std::make_shared<Dataset>(Dataset{std::move(samples)}); }
+DatasetPointer pointer(std::vector<Sample> samples) { return std::make_shared<Dataset>(std::move(samples)); }
 
 /// mueller as measured (sr⁻¹) in a frame → f11 and normalised elements in the xy frame. Uncertainties are of those.
-DatasetPointer from_arrays(const Doubles& wavelength_nm, const Doubles& theta_i, const Doubles& phi_i,
-                           const Doubles& theta_r, const Doubles& phi_r, const Doubles& mueller,
-                           const std::string& frame_name, const std::optional<Doubles>& uncertainty) {
+DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                           const Given& phi_r, const Given& mueller, const std::string& frame_name,
+                           const std::optional<Given>& uncertainty) {
   const Frame frame = frame_from(frame_name);
   std::vector<Operand> operands = direction_operands(theta_i, phi_i, theta_r, phi_r);
   operands.push_back({"wavelength_nm", wavelength_nm});
@@ -57,11 +58,11 @@ py::array_t<double> column(const Dataset& data, F f) {
 }
 
 /// A member of each sample, without a copy.
-py::array matrices(const DatasetPointer& data, Mueller Sample::*member) {
+py::array matrices(Dataset& data, Mueller Sample::*member) {
   constexpr auto step = static_cast<py::ssize_t>(sizeof(Sample)), size = static_cast<py::ssize_t>(sizeof(double));
-  const Sample* const first = data->samples.data();
-  return view(first ? (first->*member).elements.data() : nullptr,
-              {static_cast<py::ssize_t>(data->samples.size()), 4, 4}, {step, 4 * size, size}, py::cast(data));
+  const Sample* const first = data.samples.data();
+  return view(first ? (first->*member).elements.data() : nullptr, {static_cast<py::ssize_t>(data.samples.size()), 4, 4},
+              {step, 4 * size, size}, py::cast(data.shared_from_this()));
 }
 
 py::array_t<double> mueller(const Dataset& data) {
@@ -118,8 +119,8 @@ py::tuple geometry_of(const std::vector<Geometry>& geometries) {
   return py::module_::import("mmbrdf").attr("Geometry")(angles[0], angles[1], angles[2], angles[3]);
 }
 
-std::vector<Geometry> all_geometries(const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
-                                     const Doubles& phi_r) {
+std::vector<Geometry> all_geometries(const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                                     const Given& phi_r) {
   const Broadcast broadcast(direction_operands(theta_i, phi_i, theta_r, phi_r));
   std::vector<Geometry> result(broadcast.size());
   gather(broadcast, 0, 0, result.size(), result.data());
@@ -134,11 +135,30 @@ DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wa
 }
 
 /// A number, or a sequence of numbers.
-std::vector<double> numbers(const Doubles& values) {
+std::vector<double> numbers(const Given& values) {
   const Broadcast broadcast({{"wavelength_nm", values}});
   std::vector<double> result(broadcast.size());
   broadcast.gather(0, 0, result.size(), result.data());
   return result;
+}
+
+/// The bits of all samples, behind what tells how they are laid out.
+const std::string pickle_head = "mmbrdf.Dataset 1, " + std::to_string(sizeof(Sample)) + " bytes a sample\n";
+
+py::bytes pickled(const Dataset& data) {
+  std::string text = pickle_head;
+  text.append(reinterpret_cast<const char*>(data.samples.data()), data.samples.size() * sizeof(Sample));
+  return text;
+}
+
+DatasetPointer unpickled(const py::bytes& bytes) {
+  const std::string_view text = bytes;
+  if (!text.starts_with(pickle_head) || (text.size() - pickle_head.size()) % sizeof(Sample) != 0)
+    throw std::invalid_argument("Dataset: not pickled by this version of mmbrdf on such a machine");
+  std::vector<Sample> samples((text.size() - pickle_head.size()) / sizeof(Sample));
+  std::memcpy(samples.data(), text.data() + pickle_head.size(), text.size() - pickle_head.size());
+  require_valid(samples);
+  return pointer(std::move(samples));
 }
 
 void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
@@ -169,13 +189,13 @@ void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
           "f11", [](const Dataset& d) { return column(d, [](const Sample& s) { return s.f11; }); },
           "(N,), the unpolarized BRDF in sr^-1")
       .def_property_readonly(
-          "normalized", [](const DatasetPointer& d) { return matrices(d, &Sample::normalized); },
+          "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
           "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1: a view")
       .def_property_readonly("mueller", mueller, "(N, 4, 4) in sr^-1, xy frame")
       .def_property_readonly(
           "uncertainty",
-          [](const DatasetPointer& d) -> py::object {
-            return has_uncertainty(*d) ? py::object(matrices(d, &Sample::uncertainty)) : py::object(py::none());
+          [](Dataset& d) -> py::object {
+            return has_uncertainty(d) ? py::object(matrices(d, &Sample::uncertainty)) : py::object(py::none());
           },
           "(N, 4, 4), standard uncertainties: element 11 of f11 in sr^-1, the others of f_ij / f11: a view. None: not "
           "known");
@@ -187,8 +207,7 @@ std::vector<Geometry> geometries_from(const py::sequence& angles) {
   if (angles.size() != 4)
     throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
                                 " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
-  return all_geometries(angles[0].cast<Doubles>(), angles[1].cast<Doubles>(), angles[2].cast<Doubles>(),
-                        angles[3].cast<Doubles>());
+  return all_geometries(angles[0], angles[1], angles[2], angles[3]);
 }
 
 py::object dataset_object(std::vector<Sample> samples) { return py::cast(pointer(std::move(samples))); }
@@ -219,31 +238,27 @@ void bind_dataset(py::module_& m) {
           "Geometry of all samples: four arrays (N,)")
       .def(
           "at_wavelengths",
-          [](const Dataset& d, const Doubles& nm) {
+          [](const Dataset& d, const Given& nm) {
             return pointer(at_wavelengths(d.samples, micrometres(numbers(nm))));
           },
           py::arg("wavelength_nm"), "Only the samples at these. Raises ValueError if there are none at one of them.")
       .def(
-          "save", [](const Dataset& d, const std::filesystem::path& path) { write_samples(path, d.samples); },
-          py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
-      .def(py::pickle(
-          [](const Dataset& d) {
-            return py::bytes(reinterpret_cast<const char*>(d.samples.data()), d.samples.size() * sizeof(Sample));
+          "save",
+          [](const Dataset& d, const std::filesystem::path& path) {
+            if (d.samples.empty()) throw std::invalid_argument("save: a dataset without samples");
+            require_place(path);
+            write_samples(path, d.samples);
           },
-          [](const py::bytes& bytes) {
-            const std::string_view text = bytes;
-            if (text.size() % sizeof(Sample) != 0) throw std::invalid_argument("Dataset: damaged pickle");
-            std::vector<Sample> samples(text.size() / sizeof(Sample));
-            std::memcpy(samples.data(), text.data(), text.size());
-            return pointer(std::move(samples));
-          }));
+          py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
+      .def(py::pickle(&pickled, &unpickled));
   m.def("read_samples", samples_of, py::arg("path"),
         "A Dataset from CSV in the published layout or the project's own. Raises OSError for a file that cannot be "
         "read,\nwith line and column for one that holds something else.");
   m.def(
       "simulate",
-      [](const ModelObject& model, const Doubles& nm, const py::sequence& geometry, double speckle,
-         unsigned long seed) { return simulated(model, numbers(nm), geometry, speckle, seed); },
+      [](const ModelObject& model, const Given& nm, const py::sequence& geometry, double speckle, unsigned long seed) {
+        return simulated(model, numbers(nm), geometry, speckle, seed);
+      },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("speckle") = 0.0,
       py::arg("seed") = 0,
       "Samples that a model would give: each wavelength at all geometries, with Gaussian noise of the speckle law,\n"
@@ -260,7 +275,7 @@ void bind_dataset(py::module_& m) {
       "Pairs of directions, each uniform in projected direction cosines. The same seed gives the same pairs.");
   m.def(
       "in_plane",
-      [](double theta_i, const Doubles& theta_r) {
+      [](double theta_i, const Given& theta_r) {
         std::vector<double> angles = numbers(theta_r);
         for (double& angle : angles) angle = radians(angle);
         return geometry_of(in_plane(radians(theta_i), angles));

@@ -10,7 +10,8 @@
 namespace mmbrdf::python {
 
 /// Samples as Python holds them: they never change, so arrays may show their memory.
-struct Dataset {
+struct Dataset : std::enable_shared_from_this<Dataset> {
+  explicit Dataset(std::vector<Sample> its_samples) : samples(std::move(its_samples)) {}
   std::vector<Sample> samples;
 };
 using DatasetPointer = std::shared_ptr<Dataset>;

@@ -26,12 +26,12 @@ struct Some {
 /// What a model is asked for: wavelengths and directions, broadcast.
 class Question {
  public:
-  Question(ModelPointer model, const std::optional<Doubles>& wavelength_nm, const Doubles& theta_i,
-           const Doubles& phi_i, const Doubles& theta_r, const Doubles& phi_r, bool as_printed)
-      : model_(std::move(model)),
+  Question(ModelObject& model, const std::optional<Given>& wavelength_nm, const Given& theta_i, const Given& phi_i,
+           const Given& theta_r, const Given& phi_r, bool as_printed)
+      : model_(model.shared_from_this()),
         rotation_(rotation(as_printed)),
         broadcast_(operands(*model_, wavelength_nm, theta_i, phi_i, theta_r, phi_r)),
-        one_wavelength_(!wavelength_nm || wavelength_nm->size() == 1) {}
+        one_wavelength_(broadcast_.given(0) == 1) {}
 
   const Broadcast& broadcast() const { return broadcast_; }
   const ModelObject& model() const { return *model_; }
@@ -49,7 +49,13 @@ class Question {
     }
     std::vector<double> wavelengths(broadcast_.size());
     broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
-    for (double& wavelength : wavelengths) wavelength = micrometres(wavelength);
+    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+      try {
+        wavelengths[i] = micrometres(wavelengths[i]);
+      } catch (const std::invalid_argument& error) {
+        throw broadcast_.at_place(error, i);
+      }
+    }
     std::vector<std::size_t> order(wavelengths.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -64,13 +70,11 @@ class Question {
   }
 
  private:
-  static std::vector<Operand> operands(const ModelObject& model, const std::optional<Doubles>& wavelength_nm,
-                                       const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
-                                       const Doubles& phi_r) {
+  static std::vector<Operand> operands(const ModelObject& model, const std::optional<Given>& wavelength_nm,
+                                       const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                                       const Given& phi_r) {
     std::vector<Operand> result = direction_operands(theta_i, phi_i, theta_r, phi_r);
-    const Doubles wavelength = wavelength_nm ? *wavelength_nm : Doubles(std::vector<py::ssize_t>{});
-    if (!wavelength_nm) Doubles(wavelength).mutable_data()[0] = 1000 * only_wavelength(model.model());
-    result.insert(result.begin(), {"wavelength_nm", wavelength});
+    result.insert(result.begin(), model.wavelength_operand(wavelength_nm));
     return result;
   }
 
@@ -112,14 +116,7 @@ class Range {
     }
   }
 
-  void warn(const ModelObject& model, std::size_t size) const {
-    if (count_ == 0) return;
-    const std::string text = model.model().name + ": " + std::to_string(count_) + " of " + std::to_string(size) +
-                             " geometries lie outside the fitted range (" +
-                             to_string(static_cast<Outside>(reasons_.load())) + ")";
-    const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
-    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
-  }
+  void warn(const ModelObject& model, std::size_t size) const { warn_outside(model, reasons_, count_, size); }
 
  private:
   static unsigned known(Outside outside) { return outside & ~static_cast<unsigned>(unknown_range); }
@@ -179,15 +176,18 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
 
 /// {"scale": 0.003, "theta_i_deg": 0.02}: names as in the program's --term, angles with their unit.
 std::vector<TypeBTerm> terms_from(const std::optional<std::map<std::string, double>>& named) {
+  static const std::map<std::string, ErrorOf> known{{"scale", ErrorOf::scale},
+                                                    {"theta_i_deg", ErrorOf::theta_i},
+                                                    {"theta_r_deg", ErrorOf::theta_r},
+                                                    {"azimuth_deg", ErrorOf::azimuth},
+                                                    {"calibration", ErrorOf::calibration}};
   std::vector<TypeBTerm> terms;
   for (const auto& [name, uncertainty] : named.value_or(std::map<std::string, double>{})) {
-    const bool angle = name.ends_with("_deg");
-    const ErrorOf what = error_from(angle ? name.substr(0, name.size() - 4) : name);
-    if (angle == (what == ErrorOf::scale || what == ErrorOf::calibration))
+    const auto what = known.find(name);
+    if (what == known.end())
       throw std::invalid_argument("terms: " + name +
-                                  ": expected scale, theta_i_deg, theta_r_deg, azimuth_deg or "
-                                  "calibration");
-    terms.push_back({name, what, angle ? radians(uncertainty) : uncertainty});
+                                  ": expected scale, theta_i_deg, theta_r_deg, azimuth_deg or calibration");
+    terms.push_back({name, what->second, name.ends_with("_deg") ? radians(uncertainty) : uncertainty});
   }
   return terms;
 }
@@ -256,16 +256,19 @@ py::object evaluate_draws(const Question& question, Frame frame, int count, unsi
   py::array_t<double> result(shape);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());
   const std::size_t size = question.broadcast().size();
+  Range range;
   without_gil([&] {
     const Draws draws(question.model().model(), count, seed, question.rotation_of_model());
     question.each(
         threads, 16, [&](double wavelength) { return draws.at(wavelength); },
         [&](const std::vector<PreparedModel>& models, const Some& some) {
+          range.count(models.front(), some.geometries);
           for (std::size_t d = 0; d < models.size(); ++d)
             for (std::size_t i = 0; i < some.geometries.size(); ++i)
               out[d * size + some.position(i)] = models[d].evaluate(some.geometries[i], frame);
         });
   });
+  range.warn(question.model(), size);
   return result;
 }
 
@@ -306,9 +309,11 @@ constexpr const char* draws_doc =
     "(count, ..., 4, 4). Other arguments as those of evaluate(). The same seed gives the same draws.";
 
 /// The answer as it is, or with names.
-py::object labelled(const py::object& values, const char* quantity, const ModelPointer& model, const std::string& frame,
-                    const py::dict& arguments) {
-  return py::module_::import("mmbrdf._xarray").attr("labelled")(values, quantity, model, frame, arguments);
+py::object labelled(const py::object& values, const char* quantity, ModelObject& model, const std::string& frame,
+                    const py::dict& arguments, bool as_printed, const Terms& terms = {}) {
+  return py::module_::import("mmbrdf._xarray")
+      .attr("labelled")(values, quantity, model.shared_from_this(), frame, arguments,
+                        py::arg("as_printed") = as_printed, py::arg("terms") = terms);
 }
 
 /// Declares a method that has the arguments of a question before its own.
@@ -318,9 +323,10 @@ void define(ModelClass& c, const char* name, Function function, const char* doc,
         py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), own..., doc);
 }
 
-using Wavelength = std::optional<Doubles>;
+using Wavelength = std::optional<Given>;
+using Threads = std::optional<int>;
 
-py::dict arguments(const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr, const Doubles& pr) {
+py::dict arguments(const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr) {
   py::dict result;
   result["wavelength_nm"] = w;
   for (const Operand& operand : direction_operands(ti, pi, tr, pr)) result[operand.name] = operand.array;
@@ -331,51 +337,51 @@ py::dict arguments(const Wavelength& w, const Doubles& ti, const Doubles& pi, co
 
 void bind_evaluation(ModelClass& c) {
   const py::arg_v frame = py::arg("frame") = "xy", as_printed = py::arg("as_printed") = false,
-                  threads = py::arg("threads") = 0, terms = py::arg("terms") = py::none(),
+                  threads = py::arg("threads") = py::none(), terms = py::arg("terms") = py::none(),
                   as_xarray = py::arg("as_xarray") = false;
   define(
       c, "evaluate",
-      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
-         const Doubles& pr, const std::string& name, bool printed, int count, bool names) {
-        const py::object values = evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count);
-        return names ? labelled(values, "brdf", model, name, arguments(w, ti, pi, tr, pr)) : values;
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
+         const std::string& name, bool printed, Threads count, bool names) {
+        const py::object values = evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count.value_or(0));
+        return names ? labelled(values, "brdf", model, name, arguments(w, ti, pi, tr, pr), printed) : values;
       },
       evaluate_doc, frame, as_printed, threads, as_xarray);
   define(
       c, "evaluate_uncertainty",
-      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
-         const Doubles& pr, const std::string& name, bool printed, const Terms& named, int count, bool names) {
-        const py::object values =
-            evaluate_uncertainty({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named), count);
-        return names ? labelled(values, "uncertainty", model, name, arguments(w, ti, pi, tr, pr)) : values;
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
+         const std::string& name, bool printed, const Terms& named, Threads count, bool names) {
+        const py::object values = evaluate_uncertainty({model, w, ti, pi, tr, pr, printed}, frame_from(name),
+                                                       terms_from(named), count.value_or(0));
+        return names ? labelled(values, "uncertainty", model, name, arguments(w, ti, pi, tr, pr), printed, named)
+                     : values;
       },
       uncertainty_doc, frame, as_printed, terms, threads, as_xarray);
   define(
       c, "covariance",
-      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
-         const Doubles& pr, const std::string& name, bool printed, const Terms& named, int count) {
-        return covariance({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named), count);
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
+         const std::string& name, bool printed, const Terms& named, Threads count) {
+        return covariance({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named), count.value_or(0));
       },
       covariance_doc, frame, as_printed, terms, threads);
   define(
       c, "outside",
-      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
-         const Doubles& pr) {
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr) {
         return outside_of({model, w, ti, pi, tr, pr, false});
       },
       outside_doc);
   define(
       c, "estimable",
-      [](const ModelPointer& model, const Wavelength& w, const Doubles& ti, const Doubles& pi, const Doubles& tr,
-         const Doubles& pr, bool printed, int count) {
-        return estimable({model, w, ti, pi, tr, pr, printed}, count);
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
+         bool printed, Threads count) {
+        return estimable({model, w, ti, pi, tr, pr, printed}, count.value_or(0));
       },
       estimable_doc, as_printed, threads);
   c.def(
       "evaluate_draws",
-      [](const ModelPointer& model, int count, unsigned long seed, const Wavelength& w, const Doubles& ti,
-         const Doubles& pi, const Doubles& tr, const Doubles& pr, const std::string& name, bool printed, int most) {
-        return evaluate_draws({model, w, ti, pi, tr, pr, printed}, frame_from(name), count, seed, most);
+      [](ModelObject& model, int count, unsigned long seed, const Wavelength& w, const Given& ti, const Given& pi,
+         const Given& tr, const Given& pr, const std::string& name, bool printed, Threads most) {
+        return evaluate_draws({model, w, ti, pi, tr, pr, printed}, frame_from(name), count, seed, most.value_or(0));
       },
       py::arg("count"), py::arg("seed"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"),
       py::arg("phi_i_deg"), py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), frame, as_printed, threads,

@@ -17,7 +17,8 @@ namespace mmbrdf::python {
 namespace {
 
 /// A fit, and what it was asked for.
-struct Fitted {
+struct Fitted : std::enable_shared_from_this<Fitted> {
+  Fitted(FitResult its_result, ModelPointer its_model) : result(std::move(its_result)), model(std::move(its_model)) {}
   FitResult result;
   ModelPointer model;
 };
@@ -32,17 +33,25 @@ struct Request {
 };
 
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
+  if (as_printed && family != "germer2017")
+    throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
   return {family_from(family), {orders.first, orders.second}, disc_mapping_from(mapping), rotation(as_printed)};
 }
 
 /// Says from what and how the model was made.
-void sign(Model& model, const Request& request, std::size_t rows) {
+void sign(FitResult& result, const Request& request, std::size_t rows) {
+  Model& model = result.model;
   model.name = request.name;
   model.provenance["rows"] = std::to_string(rows);
   model.provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
   model.provenance["weights"] = to_string(request.weights);
   if (request.options.covariance != Covariance::residuals)
     model.provenance["covariance"] = to_string(request.options.covariance);
+  std::string noise;
+  for (std::size_t i = 0; i < result.noise.size(); ++i)
+    noise += (i > 0 ? "; " : "") + nanometre_list(std::array{model.validity.wavelengths[i]}) + ": " +
+             to_string(result.noise[i]);
+  if (!noise.empty()) model.provenance["noise"] = noise;
   if (!request.attribution.empty()) model.provenance["attribution"] = request.attribution;
 }
 
@@ -63,9 +72,9 @@ FittedPointer fitted(const Dataset& data, const Request& request) {
   return without_gil([&] {
     FitResult result = fit(data.samples, request.basis, request.options, request.weights);
     if (request.instrument) add_instrument(result, data, request);
-    sign(result.model, request, data.samples.size());
+    sign(result, request, data.samples.size());
     auto model = std::make_shared<ModelObject>(result.model);
-    return std::make_shared<Fitted>(Fitted{std::move(result), std::move(model)});
+    return std::make_shared<Fitted>(std::move(result), std::move(model));
   });
 }
 
@@ -129,7 +138,7 @@ void bind_result(py::module_& m) {
   py::class_<Fitted, FittedPointer>(m, "FitResult", "What fit() found: the model, and how well it fits.")
       .def_property_readonly("model", [](const Fitted& f) { return f.model; })
       .def_property_readonly(
-          "residuals", [](const FittedPointer& f) { return matrices_of(f->result.residuals, py::cast(f)); },
+          "residuals", [](Fitted& f) { return matrices_of(f.result.residuals, py::cast(f.shared_from_this())); },
           "(N, 4, 4), measured - model in the xy frame: element 11 of f11 in sr^-1, the others of "
           "f_ij / f11: a view")
       .def_property_readonly("rms", rms_of,

@@ -6,6 +6,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -28,9 +29,9 @@ struct BlockView {
   const FittedBlock& fitted() const { return owner->model().blocks[index]; }
 };
 
-std::vector<BlockView> blocks_of(const ModelPointer& model) {
+std::vector<BlockView> blocks_of(ModelObject& model) {
   std::vector<BlockView> result;
-  for (std::size_t b = 0; b < model->model().blocks.size(); ++b) result.push_back({model, b});
+  for (std::size_t b = 0; b < model.model().blocks.size(); ++b) result.push_back({model.shared_from_this(), b});
   return result;
 }
 
@@ -199,8 +200,34 @@ ReflectanceTable reflectance_table(const std::map<double, double>& by_nanometres
   return table;
 }
 
-void require_readable(const std::string& path) {
+Operand ModelObject::wavelength_operand(const std::optional<Given>& wavelength_nm) const {
+  return {"wavelength_nm", wavelength_nm ? *wavelength_nm : py::float_(1000 * only_wavelength(model_))};
+}
+
+void require_readable(const std::filesystem::path& path) {
   py::module_::import("builtins").attr("open")(path, "rb").attr("close")();
+}
+
+void require_place(const std::filesystem::path& path) {
+  const auto refuse = [&](PyObject* type, int number) {
+    errno = number;
+    PyErr_SetFromErrnoWithFilename(type, path.c_str());
+    throw py::error_already_set();
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) refuse(PyExc_IsADirectoryError, EISDIR);
+  if (!std::filesystem::is_directory(path.has_parent_path() ? path.parent_path() : ".", ignored))
+    refuse(PyExc_FileNotFoundError, ENOENT);
+}
+
+void warn_outside(const ModelObject& model, unsigned reasons, std::size_t count, std::size_t size) {
+  if (count == 0) return;
+  const std::string text = model.model().name + ": " + std::to_string(count) + " of " +
+                           counted(static_cast<long>(size), "question") + " outside the fitted range (" +
+                           to_string(static_cast<Outside>(reasons)) + "), which is " +
+                           fitted_range(model.model().validity);
+  const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
+  if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 ModelClass bind_model(py::module_& m) {
@@ -210,7 +237,11 @@ ModelClass bind_model(py::module_& m) {
                "From material(), load() or fit(). It does not change; it can be pickled and compared.");
   bind_properties(c);
   c.def(
-       "save", [](const ModelObject& o, const std::filesystem::path& path) { save_model(path, o.model()); },
+       "save",
+       [](const ModelObject& o, const std::filesystem::path& path) {
+         require_place(path);
+         save_model(path, o.model());
+       },
        py::arg("path"),
        "Writes JSON, or the published coefficient layout if the path ends in .csv, which has no place for\n"
        "covariance, range and provenance. Raises OSError if it cannot be written; nothing is half-written.")

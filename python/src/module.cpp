@@ -32,6 +32,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_evaluation(model);
   bind_mueller(m);
   bind_analysis(m);
+  bind_apertures(m);
   bind_radiometry(m);
   bind_polarimeter(m);
   bind_fit(m);

@@ -30,8 +30,8 @@ StokesConvention convention_from(const std::string& name) {
   throw std::invalid_argument("convention '" + name + "' is not one of " + known);
 }
 
-py::object changed_frame(const Doubles& mueller, const Doubles& theta_i, const Doubles& phi_i, const Doubles& theta_r,
-                         const Doubles& phi_r, const std::string& from, const std::string& to) {
+py::object changed_frame(const Given& mueller, const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                         const Given& phi_r, const std::string& from, const std::string& to) {
   const Frame before = frame_from(from), after = frame_from(to);
   std::vector<Operand> operands = direction_operands(theta_i, phi_i, theta_r, phi_r);
   operands.push_back({"mueller", mueller, {4, 4}});
@@ -41,7 +41,7 @@ py::object changed_frame(const Doubles& mueller, const Doubles& theta_i, const D
   });
 }
 
-py::object converted(const Doubles& mueller, const std::string& from, const std::string& to) {
+py::object converted(const Given& mueller, const std::string& from, const std::string& to) {
   const StokesConvention before = convention_from(from), after = convention_from(to);
   return over_matrices(mueller, [&](const Mueller& m) { return convert(m, before, after); });
 }
@@ -56,7 +56,7 @@ py::object over_numbers(std::vector<Operand> operands, F f) {
 void bind_elements(py::module_& m) {
   m.def(
       "rotator",
-      [](const Doubles& angle) {
+      [](const Given& angle) {
         return over_numbers({{"angle_deg", angle}},
                             [](const Broadcast& b, std::size_t i) { return rotator(radians(b.number(0, i))); });
       },
@@ -65,7 +65,7 @@ void bind_elements(py::module_& m) {
       "[1, 0, -1, 0].");
   m.def(
       "polarizer",
-      [](const Doubles& azimuth, const Doubles& extinction) {
+      [](const Given& azimuth, const Given& extinction) {
         return over_numbers(
             {{"azimuth_deg", azimuth}, {"extinction", extinction}},
             [](const Broadcast& b, std::size_t i) { return polarizer(radians(b.number(0, i)), b.number(1, i)); });
@@ -74,7 +74,7 @@ void bind_elements(py::module_& m) {
       "Passes light along the azimuth and the part `extinction` of that across it: (..., 4, 4).");
   m.def(
       "retarder",
-      [](const Doubles& retardance, const Doubles& azimuth) {
+      [](const Given& retardance, const Given& azimuth) {
         return over_numbers({{"retardance_deg", retardance}, {"azimuth_deg", azimuth}},
                             [](const Broadcast& b, std::size_t i) {
                               return retarder(radians(b.number(0, i)), radians(b.number(1, i)));
@@ -96,15 +96,15 @@ void bind_mueller(py::module_& m) {
         "'s_first_right', 'p_first_left', 'p_first_right', … (docs/conventions.md).");
   m.def(
       "normalized",
-      [](const Doubles& mueller) { return over_matrices(mueller, [](const Mueller& f) { return normalized(f); }); },
+      [](const Given& mueller) { return over_matrices(mueller, [](const Mueller& f) { return normalized(f); }); },
       py::arg("mueller"), "M / M11: element 11 is 1.");
   m.def(
       "exchanged",
-      [](const Doubles& mueller) { return over_matrices(mueller, [](const Mueller& f) { return exchanged(f); }); },
+      [](const Given& mueller) { return over_matrices(mueller, [](const Mueller& f) { return exchanged(f); }); },
       py::arg("mueller"), "The matrices measured when source and detector change places (Eq. 12).");
   m.def(
       "mirrored",
-      [](const Doubles& mueller) { return over_matrices(mueller, [](const Mueller& f) { return mirrored(f); }); },
+      [](const Given& mueller) { return over_matrices(mueller, [](const Mueller& f) { return mirrored(f); }); },
       py::arg("mueller"), "Those of the mirror image, at the mirrored geometry.");
 }
 

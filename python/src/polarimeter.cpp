@@ -20,7 +20,7 @@ namespace mmbrdf::python {
 
 namespace {
 
-std::vector<Stokes> states_from(const Doubles& states, const char* name) {
+std::vector<Stokes> states_from(const Given& states, const char* name) {
   const Broadcast broadcast({{name, states, {4}}});
   if (broadcast.shape().size() != 1) throw std::invalid_argument(std::string(name) + ": expected an array (states, 4)");
   std::vector<Stokes> result;
@@ -35,7 +35,7 @@ py::array_t<double> array_of(const std::vector<Stokes>& states) {
   return result;
 }
 
-std::vector<double> numbers(const Doubles& values, const char* name, double factor = 1) {
+std::vector<double> numbers(const Given& values, const char* name, double factor = 1) {
   const Broadcast broadcast({{name, values}});
   std::vector<double> result(broadcast.size());
   broadcast.gather(0, 0, result.size(), result.data());
@@ -45,11 +45,11 @@ std::vector<double> numbers(const Doubles& values, const char* name, double fact
 
 constexpr double degree = radians(1);
 
-Operand readings_operand(const Polarimeter& p, const Doubles& readings, const char* name) {
+Operand readings_operand(const Polarimeter& p, const Given& readings, const char* name) {
   return {name, readings, {static_cast<py::ssize_t>(p.analyzer.size()), static_cast<py::ssize_t>(p.generator.size())}};
 }
 
-py::object reduced(const Polarimeter& p, const Doubles& readings) {
+py::object reduced(const Polarimeter& p, const Given& readings) {
   const Reduction reduction(p);
   const Broadcast broadcast({readings_operand(p, readings, "readings")});
   return map(broadcast, [&](std::size_t i) {
@@ -59,7 +59,7 @@ py::object reduced(const Polarimeter& p, const Doubles& readings) {
   });
 }
 
-py::object reduced_covariance(const Polarimeter& p, const Doubles& variances) {
+py::object reduced_covariance(const Polarimeter& p, const Given& variances) {
   const Reduction reduction(p);
   const Broadcast broadcast({readings_operand(p, variances, "variances")});
   auto result = new_array<double>(broadcast, {16, 16});
@@ -72,7 +72,7 @@ py::object reduced_covariance(const Polarimeter& p, const Doubles& variances) {
   return result;
 }
 
-py::object readings_of(const Polarimeter& p, const Doubles& mueller) {
+py::object readings_of(const Polarimeter& p, const Given& mueller) {
   const Broadcast broadcast({{"mueller", mueller, {4, 4}}});
   auto result = new_array<double>(
       broadcast, {static_cast<py::ssize_t>(p.analyzer.size()), static_cast<py::ssize_t>(p.generator.size())});
@@ -96,6 +96,10 @@ ReadingNoise noise_from(const std::map<std::string, double>& named) {
   return noise;
 }
 
+void require_limit(double saturation) {
+  if (!(saturation > 0)) throw std::invalid_argument("saturation: must be positive");
+}
+
 /// (index of the film, thickness in micrometres, complex index of the substrate)
 Film film_from(const std::tuple<std::complex<double>, double, std::complex<double>>& film) {
   return {std::get<0>(film), std::get<1>(film), std::get<2>(film)};
@@ -107,6 +111,7 @@ using Noise = std::map<std::string, double>;
 CalibrationPointer calibrated(const std::filesystem::path& path, const std::optional<FilmTuple>& film, int dial_sense,
                               double extinction, bool refine, bool phase, const Noise& noise, double saturation) {
   require_readable(path);
+  require_limit(saturation);
   CalibrationOptions options;
   options.dial_sense = dial_sense;
   options.extinction = extinction;
@@ -144,7 +149,7 @@ std::vector<Sample> reduced_file(const std::filesystem::path& path, const Calibr
 
 void bind_states(py::module_& m) {
   m.def(
-      "condition_number", [](const Doubles& states) { return condition_number(states_from(states, "states")); },
+      "condition_number", [](const Given& states) { return condition_number(states_from(states, "states")); },
       py::arg("states"), "Of states (n, 4): 3^0.5 at best, infinite for fewer than four independent ones.");
   m.def(
       "optimal_angles",
@@ -157,7 +162,7 @@ void bind_states(py::module_& m) {
       "Azimuths in degrees of a retarder behind a polarizer that make the condition number smallest: (states,).");
   m.def(
       "film_reflection",
-      [](const FilmTuple& film, double nm, const Doubles& theta_i) {
+      [](const FilmTuple& film, double nm, const Given& theta_i) {
         const Film layer = film_from(film);
         const Broadcast broadcast({{"theta_i_deg", theta_i}});
         return map(broadcast, [&](std::size_t i) {
@@ -173,7 +178,7 @@ void bind_instrument(py::module_& m) {
   py::class_<Polarimeter>(m, "Polarimeter",
                           "What states a polarimeter makes (generator (n, 4)) and responds to (analyzer (n, 4)). A "
                           "reading is\nanalyzer @ M @ generator.")
-      .def(py::init([](const Doubles& generator, const Doubles& analyzer) {
+      .def(py::init([](const Given& generator, const Given& analyzer) {
              return Polarimeter{states_from(generator, "generator"), states_from(analyzer, "analyzer")};
            }),
            py::arg("generator"), py::arg("analyzer"))
@@ -195,7 +200,7 @@ void bind_instrument(py::module_& m) {
       });
   m.def(
       "ideal_polarimeter",
-      [](double retardance, const Doubles& azimuths) {
+      [](double retardance, const Given& azimuths) {
         return ideal_polarimeter(radians(retardance), numbers(azimuths, "azimuths_deg", degree));
       },
       py::arg("retardance_deg"), py::arg("azimuths_deg"),
@@ -208,12 +213,13 @@ void bind_calibration(py::module_& m) {
       .def_property_readonly("polarimeter", [](const Calibration& c) { return c.polarimeter; })
       .def_property_readonly(
           "covariance",
-          [](const CalibrationPointer& c) -> py::object {
-            if (c->covariance.empty()) return py::none();
+          [](const py::object& self) -> py::object {
+            const auto& c = self.cast<const Calibration&>();
+            if (c.covariance.empty()) return py::none();
             const auto n =
-                static_cast<py::ssize_t>(4 * (c->polarimeter.generator.size() + c->polarimeter.analyzer.size()));
+                static_cast<py::ssize_t>(4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size()));
             constexpr py::ssize_t size = sizeof(double);
-            return view(c->covariance.data(), {n, n}, {n * size, size}, py::cast(c));
+            return view(c.covariance.data(), {n, n}, {n * size, size}, self);
           },
           "Of the components of all generator, then all analyzer states: a view; None: not known")
       .def_readonly("scale_uncertainty", &Calibration::scale_uncertainty, "Relative")
@@ -234,7 +240,11 @@ void bind_calibration(py::module_& m) {
       .def_readonly("degrees_of_freedom", &Calibration::degrees_of_freedom)
       .def_readonly("provenance", &Calibration::provenance)
       .def(
-          "save", [](const Calibration& c, const std::filesystem::path& path) { save_instrument(path, c); },
+          "save",
+          [](const Calibration& c, const std::filesystem::path& path) {
+            require_place(path);
+            save_instrument(path, c);
+          },
           py::arg("path"), "Writes an instrument file")
       .def("__repr__", [](const Calibration& c) {
         return "<mmbrdf.Calibration: " + formatted("{:g}", nanometres(c.wavelength)) + " nm, figure of merit " +
@@ -256,12 +266,13 @@ void bind_calibration(py::module_& m) {
         "dark, shot and relative. Raises ValueError, saying what is missing, where they do not determine it.");
   m.def(
       "reduce",
-      [](const std::filesystem::path& path, const CalibrationPointer& instrument, double solid_angle,
-         const Noise& noise, double saturation) {
+      [](const std::filesystem::path& path, const Calibration& instrument, double solid_angle, const Noise& noise,
+         double saturation) {
         require_readable(path);
+        require_limit(saturation);
         const ReadingNoise law = noise_from(noise);
         return dataset_object(
-            without_gil([&] { return reduced_file(path, *instrument, solid_angle, law, saturation); }));
+            without_gil([&] { return reduced_file(path, instrument, solid_angle, law, saturation); }));
       },
       py::arg("raw"), py::arg("instrument"), py::kw_only(), py::arg("solid_angle"),
       py::arg("noise") = Noise{{"relative", 1e-3}}, py::arg("saturation") = never_saturated,
@@ -297,6 +308,7 @@ void bind_goniometer(py::module_& m) {
           [](const Goniometer& g, const std::filesystem::path& path, double nm, int count, unsigned long seed) {
             const Polarimeter& p = g.polarimeter();
             const double wavelength = micrometres(nm);
+            require_place(path);
             write_references(
                 path, {wavelength, {p.generator.size(), p.analyzer.size()}, g.references(wavelength, count, seed)});
           },
@@ -306,6 +318,7 @@ void bind_goniometer(py::module_& m) {
           "write_raw",
           [](const Goniometer& g, const std::filesystem::path& path, const ModelObject& model, double nm,
              const py::sequence& angles, unsigned long seed) {
+            require_place(path);
             const std::vector<Geometry> geometries = geometries_from(angles);
             const Polarimeter& p = g.polarimeter();
             const double wavelength = micrometres(nm);

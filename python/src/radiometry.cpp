@@ -4,7 +4,11 @@
 
 #include <pybind11/stl.h>
 
-#include "bindings.hpp"
+#include <atomic>
+#include <functional>
+#include <map>
+#include <mutex>
+
 #include "dataset.hpp"
 #include "mmbrdf/reflectance_uncertainty.hpp"
 #include "mmbrdf/subsets.hpp"
@@ -13,42 +17,86 @@ namespace mmbrdf::python {
 
 namespace {
 
-using Wavelength = std::optional<Doubles>;
+using Wavelength = std::optional<Given>;
 
-Operand wavelength_operand(const ModelObject& model, const Wavelength& wavelength_nm) {
-  if (wavelength_nm) return {"wavelength_nm", *wavelength_nm};
-  Doubles own(std::vector<py::ssize_t>{});
-  own.mutable_data()[0] = 1000 * only_wavelength(model.model());
-  return {"wavelength_nm", own};
+/// What was made for each wavelength (micrometres). May be asked by many threads.
+template <class T>
+class ForWavelengths {
+ public:
+  explicit ForWavelengths(std::function<T(double)> make) : make_(std::move(make)) {}
+  const T& at(double wavelength) {
+    const std::lock_guard lock(mutex_);
+    const auto known = made_.find(wavelength);
+    return known != made_.end() ? known->second : made_.emplace(wavelength, make_(wavelength)).first->second;
+  }
+
+ private:
+  std::function<T(double)> make_;
+  std::mutex mutex_;
+  std::map<double, T> made_;
+};
+
+using Uncertainties = ForWavelengths<PreparedUncertainty>;
+
+Uncertainties uncertainties_of(const ModelObject& o) {
+  return Uncertainties([&o](double wavelength) { return prepare_uncertainty(o.model(), wavelength); });
 }
+
+/// Counts questions that leave the fitted range of a model.
+class Range {
+ public:
+  explicit Range(const ModelObject& model) : model_(model) {}
+  void count(double wavelength, const Geometry& geometry) {
+    const Outside where = outside(model_.model().validity, wavelength, geometry);
+    if (!leaves_known_range(where)) return;
+    reasons_ |= where & ~static_cast<unsigned>(unknown_range);
+    ++count_;
+  }
+  void warn(std::size_t size) const { warn_outside(model_, reasons_, count_, size); }
+
+ private:
+  const ModelObject& model_;
+  std::atomic<unsigned> reasons_ = 0;
+  std::atomic<std::size_t> count_ = 0;
+};
+
+/// Which of the two directions of a geometry is asked for; the other is anywhere.
+enum class Side { incident, reflected };
 
 /// f(wavelength in micrometres, direction, Stokes vector) over arrays.
 template <class F>
-py::object over_directions(const ModelObject& model, const Wavelength& nm, const char* theta_name, const Doubles& theta,
-                           const Doubles& phi, const std::optional<Doubles>& stokes, F f) {
-  std::vector<Operand> operands{wavelength_operand(model, nm), {theta_name, theta}, {"phi", phi}};
-  if (stokes) operands.push_back({"stokes", *stokes, {4}});
-  const Broadcast broadcast(operands);
-  return map(broadcast, [&](std::size_t i) {
+py::object over_directions(const ModelObject& model, Side side, const Wavelength& nm, const Given& theta,
+                           const Given& phi, const std::optional<Given>& stokes, F f) {
+  const bool incident = side == Side::incident;
+  std::vector<Operand> operands{model.wavelength_operand(nm),
+                                {incident ? "theta_i_deg" : "theta_r_deg", theta},
+                                {incident ? "phi_i_deg" : "phi_r_deg", phi}};
+  if (stokes) operands.push_back({incident ? "stokes" : "analyzer", *stokes, {4}});
+  const Broadcast broadcast(std::move(operands));
+  Range range(model);
+  const py::object result = map(broadcast, [&](std::size_t i) {
     const Direction direction = direction_from_degrees(broadcast.number(1, i), broadcast.number(2, i));
-    const Stokes light = stokes ? broadcast.at<4>(3, i) : Stokes{1, 0, 0, 0};
-    return f(micrometres(broadcast.number(0, i)), direction, light);
+    const double wavelength = micrometres(broadcast.number(0, i));
+    range.count(wavelength, incident ? Geometry{direction, {}} : Geometry{{}, direction});
+    return f(wavelength, direction, stokes ? broadcast.at<4>(3, i) : Stokes{1, 0, 0, 0});
   });
+  range.warn(broadcast.size());
+  return result;
 }
 
 /// f(wavelength in micrometres) over an array of wavelengths.
 template <class F>
 py::object over_wavelengths(const ModelObject& model, const Wavelength& nm, F f) {
-  const Broadcast broadcast({wavelength_operand(model, nm)});
-  return map(broadcast, [&](std::size_t i) { return f(micrometres(broadcast.number(0, i))); });
+  return over_directions(model, Side::incident, nm, py::float_(0.0), py::float_(0.0), {},
+                         [&](double wavelength, const Direction&, const Stokes&) { return f(wavelength); });
 }
 
 void bind_directional_hemispherical(py::module_& m) {
   m.def(
       "directional_hemispherical_reflectance",
-      [](const ModelObject& o, const Wavelength& nm, const Doubles& theta, const Doubles& phi,
-         const std::optional<Doubles>& stokes) {
-        return over_directions(o, nm, "theta_i_deg", theta, phi, stokes,
+      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+         const std::optional<Given>& stokes) {
+        return over_directions(o, Side::incident, nm, theta, phi, stokes,
                                [&](double wavelength, const Direction& incident, const Stokes& light) {
                                  return stokes ? directional_hemispherical_reflectance(o.model(), wavelength, incident,
                                                                                        light)
@@ -61,12 +109,13 @@ void bind_directional_hemispherical(py::module_& m) {
       "(..., 4) in the sp frame. All arguments broadcast.");
   m.def(
       "directional_hemispherical_uncertainty",
-      [](const ModelObject& o, const Wavelength& nm, const Doubles& theta, const Doubles& phi,
-         const std::optional<Doubles>& stokes) {
-        return over_directions(o, nm, "theta_i_deg", theta, phi, stokes,
+      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+         const std::optional<Given>& stokes) {
+        Uncertainties u = uncertainties_of(o);
+        return over_directions(o, Side::incident, nm, theta, phi, stokes,
                                [&](double wavelength, const Direction& incident, const Stokes& light) {
-                                 const PreparedUncertainty u = prepare_uncertainty(o.model(), wavelength);
-                                 return directional_hemispherical_uncertainty(o.model(), u, incident, light);
+                                 return directional_hemispherical_uncertainty(o.model(), u.at(wavelength), incident,
+                                                                              light);
                                });
       },
       py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg") = 0.0, py::arg("phi_i_deg") = 0.0,
@@ -76,10 +125,10 @@ void bind_directional_hemispherical(py::module_& m) {
 void bind_hemispherical_directional(py::module_& m) {
   m.def(
       "hemispherical_directional_reflectance",
-      [](const ModelObject& o, const Wavelength& nm, const Doubles& theta, const Doubles& phi,
-         const std::optional<Doubles>& analyzer) {
+      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+         const std::optional<Given>& analyzer) {
         return over_directions(
-            o, nm, "theta_r_deg", theta, phi, analyzer,
+            o, Side::reflected, nm, theta, phi, analyzer,
             [&](double wavelength, const Direction& reflected, const Stokes& passed) {
               return analyzer ? hemispherical_directional_reflectance(o.model(), wavelength, reflected, passed)
                               : hemispherical_directional_reflectance(o.model(), wavelength, reflected);
@@ -92,12 +141,13 @@ void bind_hemispherical_directional(py::module_& m) {
       "an analyzer that passes the light `analyzer` (..., 4), in the sp frame.");
   m.def(
       "hemispherical_directional_uncertainty",
-      [](const ModelObject& o, const Wavelength& nm, const Doubles& theta, const Doubles& phi,
-         const std::optional<Doubles>& analyzer) {
-        return over_directions(o, nm, "theta_r_deg", theta, phi, analyzer,
+      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+         const std::optional<Given>& analyzer) {
+        Uncertainties u = uncertainties_of(o);
+        return over_directions(o, Side::reflected, nm, theta, phi, analyzer,
                                [&](double wavelength, const Direction& reflected, const Stokes& passed) {
-                                 const PreparedUncertainty u = prepare_uncertainty(o.model(), wavelength);
-                                 return hemispherical_directional_uncertainty(o.model(), u, reflected, passed);
+                                 return hemispherical_directional_uncertainty(o.model(), u.at(wavelength), reflected,
+                                                                              passed);
                                });
       },
       py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_r_deg") = 0.0, py::arg("phi_r_deg") = 0.0,
@@ -121,53 +171,11 @@ void bind_bihemispherical(py::module_& m) {
       py::arg("model"), py::arg("wavelength_nm") = py::none(), "Its standard uncertainty, of the fit alone.");
   m.def(
       "reflectance_factor",
-      [](const Doubles& f11) {
+      [](const Given& f11) {
         const Broadcast broadcast({{"f11", f11}});
         return map(broadcast, [&](std::size_t i) { return reflectance_factor(broadcast.number(0, i)); });
       },
       py::arg("f11"), "pi f11: 1 for the perfect diffuser.");
-}
-
-void bind_aperture(py::module_& m) {
-  const auto direction = [](double theta, double phi) { return direction_from_degrees(theta, phi); };
-  py::class_<Aperture>(m, "Aperture",
-                       "Directions from which a sample is illuminated or into which light is collected. Angles in "
-                       "degrees.\nRaises ValueError for a shape that reaches below the horizon.")
-      .def_static(
-          "direction", [=](double theta, double phi) { return Aperture::direction(direction(theta, phi)); },
-          py::arg("theta_deg"), py::arg("phi_deg") = 0.0)
-      .def_static(
-          "cone",
-          [=](double theta, double phi, double half) { return Aperture::cone(direction(theta, phi), radians(half)); },
-          py::arg("theta_deg"), py::arg("phi_deg"), py::arg("half_angle_deg"))
-      .def_static(
-          "annulus",
-          [=](double theta, double phi, double inner, double outer) {
-            return Aperture::annulus(direction(theta, phi), radians(inner), radians(outer));
-          },
-          py::arg("theta_deg"), py::arg("phi_deg"), py::arg("inner_deg"), py::arg("outer_deg"))
-      .def_static(
-          "ellipse",
-          [=](double theta, double phi, double half_theta, double half_phi, double turn) {
-            return Aperture::ellipse(direction(theta, phi), radians(half_theta), radians(half_phi), radians(turn));
-          },
-          py::arg("theta_deg"), py::arg("phi_deg"), py::arg("half_theta_deg"), py::arg("half_phi_deg"),
-          py::arg("turn_deg") = 0.0)
-      .def_static(
-          "rectangle",
-          [=](double theta, double phi, double half_theta, double half_phi, double turn) {
-            return Aperture::rectangle(direction(theta, phi), radians(half_theta), radians(half_phi), radians(turn));
-          },
-          py::arg("theta_deg"), py::arg("phi_deg"), py::arg("half_theta_deg"), py::arg("half_phi_deg"),
-          py::arg("turn_deg") = 0.0)
-      .def_static(
-          "ring", [](double least, double most) { return Aperture::ring(radians(least), radians(most)); },
-          py::arg("theta_min_deg"), py::arg("theta_max_deg"), "At all azimuths")
-      .def_static(
-          "cap", [](double most) { return Aperture::cap(radians(most)); }, py::arg("theta_max_deg"))
-      .def_static("hemisphere", &Aperture::hemisphere)
-      .def("without", &Aperture::without, py::arg("port"), "With one more port: a cone that is taken out")
-      .def_property_readonly("projected_solid_angle", &Aperture::projected_solid_angle, "In sr");
 }
 
 py::tuple averaged(const ModelObject& o, std::optional<double> nm, const Aperture& source, const Aperture& receiver,
@@ -178,9 +186,21 @@ py::tuple averaged(const ModelObject& o, std::optional<double> nm, const Apertur
     options.tolerance = tolerance;
     return average(prepare(o.model(), wavelength), source, receiver, options);
   });
+  Range range(o);
+  range.count(wavelength, {{source.largest_theta(), 0}, {receiver.largest_theta(), 0}});
+  range.warn(1);
   py::array_t<double> mueller({4, 4});
   Layout<Mueller>::store(result.mueller, mueller.mutable_data());
   return py::make_tuple(mueller, result.error, result.converged);
+}
+
+/// Geometries of a curve. Warns of those outside the fitted range.
+std::vector<Geometry> curve_geometries(const ModelObject& o, double wavelength, const py::sequence& angles) {
+  std::vector<Geometry> geometries = geometries_from(angles);
+  Range range(o);
+  for (const Geometry& g : geometries) range.count(wavelength, g);
+  range.warn(geometries.size());
+  return geometries;
 }
 
 py::object polarized(const PolarizedCurve& curve) {
@@ -197,15 +217,18 @@ void bind_curves(py::module_& m) {
   m.def(
       "polarized_curve",
       [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
-        return polarized(polarized_curve(o.model(), o.wavelength(nm), geometries_from(angles), rotation(as_printed)));
+        const double wavelength = o.wavelength(nm);
+        const std::vector<Geometry> geometries = curve_geometries(o, wavelength, angles);
+        return polarized(polarized_curve(o.model(), wavelength, geometries, rotation(as_printed)));
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
       "PolarizedBrdf(ss, sp, ps, pp) in sr^-1 at each geometry, as in the paper's Fig. 6.");
   m.def(
       "polarized_uncertainty",
       [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
-        return polarized(
-            polarized_uncertainty(o.model(), o.wavelength(nm), geometries_from(angles), rotation(as_printed)));
+        const double wavelength = o.wavelength(nm);
+        const std::vector<Geometry> geometries = curve_geometries(o, wavelength, angles);
+        return polarized(polarized_uncertainty(o.model(), wavelength, geometries, rotation(as_printed)));
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
       "Its standard uncertainty, of the fit alone.");
@@ -217,7 +240,6 @@ void bind_radiometry(py::module_& m) {
   bind_directional_hemispherical(m);
   bind_hemispherical_directional(m);
   bind_bihemispherical(m);
-  bind_aperture(m);
   bind_curves(m);
   m.def(
       "average", averaged, py::arg("model"), py::arg("wavelength_nm"), py::arg("source"), py::arg("receiver"),

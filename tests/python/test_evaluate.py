@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Evaluation over arrays: laws of broadcasting, and the same bits as the program."""
 
+import concurrent.futures
 import csv
 import io
+import json
 import warnings
 
 import numpy as np
@@ -42,17 +44,43 @@ def test_wavelengths_may_vary_fastest(ptfe):
 def test_strides_and_types_do_not_matter(ptfe):
     theta = np.arange(0, 80, 5)
     expected = ptfe.evaluate(532, 45, 0, theta.astype(float), 180)
+    unaligned = np.frombuffer(b"x" + theta.astype(float).tobytes(), dtype=float, offset=1)
+    structured = np.zeros(len(theta), dtype=[("name", "S3"), ("theta", float)])
+    structured["theta"] = theta
+    read_only = theta.astype(float)
+    read_only.setflags(write=False)
     for same in (
         theta,
         theta.astype(np.float32),
+        theta.astype(np.uint8),
         theta.astype(">f8"),
         np.repeat(theta, 3)[::3],
-        theta[::-1][::-1],
+        np.ascontiguousarray(theta[::-1])[::-1],
+        unaligned,
+        structured["theta"],
+        read_only,
+        np.ma.masked_array(theta, mask=False),
         list(theta),
+        range(0, 80, 5),
     ):
         np.testing.assert_array_equal(ptfe.evaluate(532, 45, 0, same, 180), expected)
     grid = np.arange(12.0).reshape(3, 4)
     np.testing.assert_array_equal(ptfe.evaluate(532, 45, 0, grid.T, 180), ptfe.evaluate(532, 45, 0, grid.T.copy(), 180))
+    np.testing.assert_array_equal(ptfe.evaluate(532, True, 0, 30, 180), ptfe.evaluate(532, 1, 0, 30, 180))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [None, 30 + 0j, "30", b"30", np.timedelta64(30), np.array([30, None]), [[1], [2, 3]], np.zeros(2, dtype="f8,f8")],
+)
+def test_what_is_no_real_number_is_refused_by_name(ptfe, wrong):
+    with pytest.raises(TypeError, match="^theta_r_deg: [^\n]*$"):
+        ptfe.evaluate(532, 45, 0, wrong, 180)
+
+
+def test_masked_numbers_are_refused_not_used(ptfe):
+    with pytest.raises(ValueError, match="theta_r_deg: a part of it is masked"):
+        ptfe.evaluate(532, 45, 0, np.ma.masked_array([30.0, 40.0], mask=[False, True]), 180)
 
 
 def test_arguments_are_left_as_they_were(ptfe):
@@ -83,8 +111,10 @@ def test_invalid_angles_are_named_with_their_place(ptfe):
     angles[1, 2] = 95
     with pytest.raises(ValueError, match=r"95,0.*\[-90, 90\].*\[1, 2\]"):
         ptfe.evaluate(532, angles, 0, 30, 180)
-    with pytest.raises(ValueError, match="nan"):
-        ptfe.evaluate(532, 30, 0, 30, np.nan)
+    with pytest.raises(ValueError, match=r"phi_r_deg is not finite, at \[0\]"):
+        ptfe.evaluate(532, 30, 0, 30, [np.nan, 0])
+    with pytest.raises(ValueError, match=r"wavelength_nm = -1.*at \[1\]"):
+        ptfe.evaluate([532, -1], 30, 0, 30, 0)
 
 
 def test_other_invalid_arguments_are_refused(ptfe):
@@ -95,10 +125,9 @@ def test_other_invalid_arguments_are_refused(ptfe):
         ptfe.evaluate(None, 45, 0, 30, 180)
     with pytest.raises(ValueError, match="frame 'stokes' is not one of xy, sp, scattering_plane"):
         ptfe.evaluate(532, 45, 0, 30, 180, frame="stokes")
-    with pytest.raises(ValueError, match="threads = -1"):
-        ptfe.evaluate(532, 45, 0, 30, 180, threads=-1)
-    with pytest.raises(TypeError):
-        ptfe.evaluate(532, "steep", 0, 30, 180)
+    for threads in (-1, 5000):
+        with pytest.raises(ValueError, match=f"threads = {threads}"):
+            ptfe.evaluate(532, 45, 0, 30, 180, threads=threads)
     with pytest.raises(TypeError):
         ptfe.evaluate(532, 45, 0, 30)
 
@@ -112,13 +141,32 @@ def test_a_model_of_one_wavelength_needs_none():
 
 def test_every_number_of_threads_gives_the_same_bits(ptfe):
     geometry = mmbrdf.random_geometries(20000, seed=3)
-    one = ptfe.evaluate(532, *geometry, threads=1)
-    for threads in (0, 2, 3, 7):
-        np.testing.assert_array_equal(ptfe.evaluate(532, *geometry, threads=threads), one)
+    for wavelengths in (532, np.linspace(351, 1064, 20000)):
+        one = ptfe.evaluate(wavelengths, *geometry, threads=1)
+        for threads in (None, 0, 2, 3, 7):
+            np.testing.assert_array_equal(ptfe.evaluate(wavelengths, *geometry, threads=threads), one)
+
+
+def test_an_error_in_any_thread_is_the_first_in_the_array(ptfe):
+    theta = np.full(20000, 30.0)
+    theta[[7000, 19999]] = 95
+    for threads in (1, 2, 5):
+        with pytest.raises(ValueError, match=r"at \[7000\]"):
+            ptfe.evaluate(532, theta, 0, 30, 180, threads=threads)
+
+
+def test_several_threads_of_python_may_evaluate_at_once(ptfe):
+    geometry = mmbrdf.random_geometries(5000, seed=3)
+    expected = ptfe.evaluate(532, *geometry)
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        for f in pool.map(lambda _: mmbrdf.material("ptfe").evaluate(532, *geometry), range(8)):
+            np.testing.assert_array_equal(f, expected)
 
 
 def test_extrapolation_is_said_and_found(ptfe):
-    with pytest.warns(mmbrdf.ExtrapolationWarning, match=r"ptfe: 2 of 3 geometries .*\(theta_i\)"):
+    with pytest.warns(
+        mmbrdf.ExtrapolationWarning, match=r"ptfe: 2 of 3 questions outside .*\(theta_i\), which is theta_i <= 75"
+    ):
         ptfe.evaluate(532, [30, 80, 85], 0, 30, 180)
     with pytest.warns(mmbrdf.ExtrapolationWarning, match="wavelength"):
         ptfe.evaluate([532, 1500], 30, 0, 30, 180)
@@ -130,11 +178,27 @@ def test_extrapolation_is_said_and_found(ptfe):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ptfe.evaluate(532, 75, 0, 81, 180)
-        with pytest.raises(mmbrdf.ExtrapolationWarning):
-            ptfe.evaluate(532, 80, 0, 30, 180)
+        for question in (
+            lambda: ptfe.evaluate(532, 80, 0, 30, 180),
+            lambda: ptfe.evaluate_uncertainty(532, 80, 0, 30, 180),
+            lambda: ptfe.evaluate_draws(2, 1, 532, 80, 0, 30, 180),
+            lambda: mmbrdf.directional_hemispherical_reflectance(ptfe, 2000),
+            lambda: mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 80),
+            lambda: mmbrdf.bihemispherical_reflectance(ptfe, 2000),
+            lambda: mmbrdf.polarized_curve(ptfe, 532, mmbrdf.in_plane(45, [85])),
+            lambda: mmbrdf.average(ptfe, 532, mmbrdf.Aperture.direction(80), mmbrdf.Aperture.direction(0)),
+        ):
+            with pytest.raises(mmbrdf.ExtrapolationWarning):
+                question()
 
 
-def test_the_program_gives_the_same_bits(ptfe, program, tmp_path):
+@pytest.mark.parametrize(("name", "as_printed"), [("ptfe", False), ("published", False), ("published", True)])
+def test_the_program_gives_the_same_bits(name, as_printed, program, tmp_path):
+    model = mmbrdf.material("ptfe")
+    if name == "published":
+        model = mmbrdf.in_published_form(model)
+        name = tmp_path / "published.json"
+        model.save(name)
     random = np.random.default_rng(5)
     rows = np.column_stack(
         [random.uniform(351, 1064, 200), random.uniform(-75, 75, 200), random.uniform(-180, 360, 200),
@@ -143,12 +207,14 @@ def test_the_program_gives_the_same_bits(ptfe, program, tmp_path):
     text = ",".join(ARGUMENTS) + "\n" + "\n".join(",".join(map(repr, map(float, row))) for row in rows)
     (tmp_path / "where.csv").write_text(text)
     for frame in ("xy", "sp", "scattering_plane"):
-        printed = program("evaluate", "ptfe", "--geometries", "where.csv", "--frame", frame)
+        printed = program(
+            "evaluate", name, "--geometries", "where.csv", "--frame", frame, *(["--as-printed"] if as_printed else [])
+        )
         there = [
             [float(row[f"f{i}{j}"]) for i in range(1, 5) for j in range(1, 5)]
             for row in csv.DictReader(io.StringIO(printed))
         ]
-        here = ptfe.evaluate(*rows.T, frame=frame)
+        here = model.evaluate(*rows.T, frame=frame, as_printed=as_printed)
         np.testing.assert_array_equal(here.reshape(-1, 16), there)
 
 
@@ -169,6 +235,20 @@ def test_uncertainties_are_the_roots_of_the_covariance(ptfe):
         np.testing.assert_allclose(u.reshape(9, 16) ** 2, np.diagonal(v, axis1=1, axis2=2), rtol=1e-14)
         np.testing.assert_allclose(v, np.swapaxes(v, 1, 2), rtol=1e-14, atol=1e-30)
         assert (u[:, 0, 0] > 1e-4).all()
+
+
+def test_the_program_gives_the_same_uncertainties(ptfe, program):
+    terms = {"scale": 0.003, "theta_i_deg": 0.02, "theta_r_deg": 0.03, "azimuth_deg": 0.05, "calibration": 0.001}
+    arguments = [
+        part
+        for name, value in terms.items()
+        for part in ("--term", f"{name.removesuffix('_deg')}={value}" + ("deg" if name.endswith("_deg") else ""))
+    ]
+    printed = json.loads(
+        program("analyze", "ptfe", "-w", 532, "-i", "45,0", "-r", "30,180", "--format", "json", *arguments)
+    )
+    u = ptfe.evaluate_uncertainty(532, 45, 0, 30, 180, terms=terms)
+    np.testing.assert_allclose(u, printed["u_mueller"], rtol=1e-12, atol=1e-18)
 
 
 def test_terms_of_type_b_add_to_the_uncertainty(ptfe):

@@ -87,6 +87,20 @@ def test_invalid_samples_are_refused(ptfe):
         mmbrdf.Dataset(532, 45, 0, 30, 180, np.nan * f)
     with pytest.raises(ValueError, match="wavelength_nm"):
         mmbrdf.Dataset(-1, 45, 0, 30, 180, f)
+    with pytest.raises(ValueError, match="mueller: a part of it is masked"):
+        mmbrdf.Dataset(532, 45, 0, 30, 180, np.ma.masked_array(f, mask=np.eye(4)))
+
+
+def test_what_cannot_be_written_or_read_back_is_refused(samples, tmp_path):
+    with pytest.raises(ValueError, match="without samples"):
+        samples[:0].save(tmp_path / "empty.csv")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        samples.save(tmp_path / "nowhere" / "data.csv")
+    with pytest.raises(IsADirectoryError):
+        samples.save(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ValueError, match="pickled"):
+        pickle.loads(pickle.dumps(samples[:1]).replace(b"mmbrdf.Dataset 1", b"mmbrdf.Dataset 9"))
 
 
 def test_the_program_fits_the_same_model(samples, program, tmp_path):
@@ -94,6 +108,7 @@ def test_the_program_fits_the_same_model(samples, program, tmp_path):
     for options, arguments in (
         ({}, ()),
         ({"basis": "germer2017"}, ("--basis", "germer2017")),
+        ({"weights": "estimated"}, ("--weights", "estimated")),
         ({"orders": (5, 3), "weights": "speckle", "covariance": "sandwich"},
          ("--orders", "5,3", "--weights", "speckle", "--covariance", "sandwich")),
     ):  # fmt: skip
@@ -106,6 +121,8 @@ def test_the_program_fits_the_same_model(samples, program, tmp_path):
         for a, b in zip(there.blocks, here.blocks, strict=True):
             np.testing.assert_allclose(a.covariance, b.covariance, rtol=0, atol=1e-12)
             assert (a.rank, a.modes) == (b.rank, b.modes)
+        for entry in ("rows", "weights", "noise", "covariance"):
+            assert there.provenance.get(entry) == here.provenance.get(entry)
 
 
 def test_a_fit_says_how_well_it_fits(samples):
@@ -129,7 +146,8 @@ def test_data_that_do_not_determine_a_model_are_refused(samples):
         mmbrdf.fit(samples[:20])
     assert mmbrdf.fit(samples[:20], minimum_norm=True).model.blocks[0].rank < 40
     for wrong in ({"basis": "fourier"}, {"weights": "heavy"}, {"orders": (-1, 4)}, {"covariance": "small"}, {"powers": 3},
-                  {"mapping": "flat"}, {"weights": "data"}):  # fmt: skip
+                  {"mapping": "flat"},
+        {"as_printed": True}, {"weights": "data"}):  # fmt: skip
         with pytest.raises(ValueError):
             mmbrdf.fit(samples, **wrong)
 

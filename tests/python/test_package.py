@@ -3,9 +3,11 @@
 
 import ast
 import inspect
+import os
+import subprocess
+import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import mmbrdf
@@ -51,8 +53,46 @@ def test_everything_says_what_it_is(name):
     assert len(text.strip()) > 15, name
 
 
-def test_arrays_of_numbers_only():
-    for wrong in ("532", [["a"]], [None], object()):
-        with pytest.raises((TypeError, ValueError)):
-            mmbrdf.depolarization(wrong)
-    assert mmbrdf.depolarization(np.eye(4, dtype=int)) == 1
+def test_nothing_is_no_object_of_the_library(tmp_path):
+    """None in the place of an object is a TypeError, and not the end of the interpreter."""
+    (tmp_path / "raw.csv").write_text("")
+    for call in (
+        lambda: mmbrdf.reduce(tmp_path / "raw.csv", None, solid_angle=1e-4),
+        lambda: mmbrdf.fit(None),
+        lambda: mmbrdf.residuals(None, None),
+        lambda: mmbrdf.average(None, 532, None, None),
+        lambda: mmbrdf.Model.blocks.fget(None),
+        lambda: mmbrdf.Model.evaluate(None, 532, 0, 0, 0, 0),
+        lambda: mmbrdf.Dataset.normalized.fget(None),
+        lambda: mmbrdf.FitResult.residuals.fget(None),
+        lambda: mmbrdf.Calibration.covariance.fget(None),
+    ):
+        with pytest.raises((TypeError, RuntimeError)):
+            call()
+
+
+SCRIPT = """
+import mmbrdf
+ptfe = mmbrdf.material("ptfe")
+f11 = ptfe.evaluate(532, 45, 0, [0, 30], 180)[..., 0, 0] + 1
+names = ptfe.evaluate(532, 45, 0, [0, 30], 180, as_xarray=True).dims
+u = ptfe.evaluate_uncertainty(theta_i_deg=45, phi_i_deg=0, theta_r_deg=0, phi_r_deg=0)
+data = mmbrdf.simulate(ptfe, 532, mmbrdf.germer2017_grid())
+values = [part.f11 for part in data[:3]]
+model: mmbrdf.Model = mmbrdf.fit(data, weights="speckle", reflectance={532: 0.98}).model
+"""
+
+
+@pytest.mark.parametrize(("more", "good"), [("", True), ("ptfe.evaluate(532)", False), ("ptfe.save(1)", False)])
+def test_scripts_are_checked_by_their_types(more, good, tmp_path):
+    pytest.importorskip("mypy")
+    (tmp_path / "script.py").write_text(SCRIPT + more + "\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "script.py"],
+        cwd=tmp_path,
+        env={**os.environ, "MYPYPATH": str(Path(mmbrdf.__file__).parents[1])},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode == 0) == good, done.stdout
