@@ -105,7 +105,8 @@ FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> refe
   result.measured = normalized(measured);
   if (reference.kind == ReferenceKind::empty) result.gain = unknowns.gains[i];
   if (reference.kind == ReferenceKind::wafer) {
-    result.element = unknowns.elements[i];
+    result.element = calibration::element_of(result.expected);
+    result.element.tau = unknowns.elements[i].tau;
     // Of (A1): λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
     const Mueller& m = result.measured;
     const double first = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), second = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
@@ -206,7 +207,6 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   result.polarizer_offset = unknowns.offset - std::numbers::pi * std::floor(unknowns.offset / std::numbers::pi);
   result.extinction = unknowns.leak_real * unknowns.leak_real + unknowns.leak_imaginary * unknowns.leak_imaginary;
   result.polarizer_phase = std::atan2(unknowns.leak_imaginary, unknowns.leak_real);
-  result.film_thickness = unknowns.film_thickness;
   result.singular_ratio = unknowns.singular_ratio;
   result.identifiability = unknowns.identifiability;
   result.generator_condition = condition_number(result.polarimeter.generator);
@@ -214,8 +214,9 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   for (const auto& [arm, condition] :
        {std::pair("generator", result.generator_condition), {"analyzer", result.analyzer_condition}})
     if (!(condition <= worst_condition))
-      throw std::invalid_argument(std::string("the condition number of the ") + arm + " is " + shortest(condition) +
-                                  ", more than " + shortest(worst_condition) +
+      throw std::invalid_argument(std::string("the condition number of the ") + arm + " is " +
+                                  shortest(std::round(10 * condition) / 10) + ", more than " +
+                                  shortest(worst_condition) +
                                   ": its states are nearly dependent, or the references do not determine them");
   const Reduction reduction(result.polarimeter);
   for (std::size_t i = 0; i < references.size(); ++i)
@@ -223,6 +224,7 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   const auto readings = static_cast<double>(references.size() * result.polarimeter.readings());
   const double correction = freedom > 0 ? std::sqrt(readings / static_cast<double>(freedom)) : 0;
   result.figure_of_merit = figure_of_merit(result.references, correction);
+  calibration::require_signs(result, references, options);
   return result;
 }
 

@@ -22,7 +22,6 @@ struct Unknowns {
   double leak_imaginary = 0;  ///< √extinction sin phase
   std::vector<double> gains;  ///< of each reference that is empty or a polarizer (there tau); 1 for a wafer
   std::vector<DiattenuatorRetarder> elements;  ///< of each reference that is a wafer; unused for the others
-  double film_thickness = 0;
   double singular_ratio = 0;
   double identifiability = 0;
 };
@@ -45,6 +44,25 @@ Mueller leaky_polarizer(double azimuth, double leak_real, double leak_imaginary)
 
 /// The eigenvalue method. Throws std::invalid_argument for what it cannot solve.
 Unknowns solve_linear(std::span<const Reference> references, const CalibrationOptions& options);
+
+/// A wafer as readings show it, with or without the signs of cos 2ψ and of Δ.
+struct SeenWafer {
+  std::size_t reference = 0;  ///< its place
+  DiattenuatorRetarder element;
+  bool has_side = false, has_sign = false;
+};
+
+/// Gives wafers that have none the signs that are stated with them, and else those of the film at the thickness that
+/// fits them best. Throws std::invalid_argument for a film that fits no wafers with these signs, or only without them.
+void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> references,
+                const CalibrationOptions& options);
+
+/// Throws std::invalid_argument unless what the references were found to be has the signs that are stated, and those of
+/// the film and of no other instrument. Sets the thickness and misfit of the film.
+void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options);
+
+/// psi and delta of a matrix that is, nearly, one of a diattenuator-retarder; tau is its element 11.
+DiattenuatorRetarder element_of(const Mueller& m);
 
 struct Refinement {
   std::vector<double> covariance;  ///< of W and A

@@ -94,66 +94,19 @@ DiattenuatorRetarder unsigned_wafer(const Spectrum& s) {
   return {(s.larger + s.smaller) / 2, std::atan(std::sqrt(smaller / s.larger)), std::abs(std::arg(s.pair))};
 }
 
-double square(double x) { return x * x; }
-
-/// How far a film of this thickness is from what the eigenvalues of the wafers say, signs apart.
-double film_misfit(const Film& film, double wavelength, std::span<const double> angles,
-                   std::span<const DiattenuatorRetarder> wafers) {
-  double sum = 0;
-  for (std::size_t k = 0; k < wafers.size(); ++k) {
-    const DiattenuatorRetarder model = reflection(film, wavelength, angles[k]);
-    sum += square(wafers[k].psi - std::min(model.psi, std::numbers::pi / 2 - model.psi)) +
-           square(wafers[k].delta - std::abs(model.delta));
-  }
-  return sum;
-}
-
-/// The signs as stated, else those of the film.
-DiattenuatorRetarder with_signs(DiattenuatorRetarder wafer, const Reference& reference, const Film* film,
-                                double wavelength) {
-  int s_exceeds_p = reference.s_exceeds_p, sign = reference.delta_sign;
-  if (film) {
-    const DiattenuatorRetarder model = reflection(*film, wavelength, reference.angle);
-    if (s_exceeds_p == 0) s_exceeds_p = model.psi < std::numbers::pi / 4 ? 1 : -1;
-    if (sign == 0) sign = model.delta > 0 ? 1 : -1;
-  }
-  if (s_exceeds_p < 0) wafer.psi = std::numbers::pi / 2 - wafer.psi;
-  if (sign < 0) wafer.delta = -wafer.delta;
-  return wafer;
-}
-
 void find_wafers(Unknowns& unknowns, std::span<const Reference> references, std::span<const Matrix4d> c,
                  const CalibrationOptions& options) {
-  std::vector<double> angles;
-  std::vector<DiattenuatorRetarder> wafers;
+  std::vector<SeenWafer> wafers;
   for (std::size_t i = 0; i < references.size(); ++i) {
     if (references[i].kind != ReferenceKind::wafer) continue;
     const Spectrum s = spectrum(c[i]);
     if (!(s.larger > 0) || !std::isfinite(s.larger))
       throw std::invalid_argument("reference " + std::to_string(i + 1) + ": a wafer that reflects nothing");
-    angles.push_back(references[i].angle);
-    wafers.push_back(unsigned_wafer(s));
+    unknowns.elements[i] = unsigned_wafer(s);
+    wafers.push_back({i, unknowns.elements[i], false, false});
   }
-  std::optional<Film> film = options.film;
-  if (film) {
-    const auto misfit = [&](double thickness) {
-      Film one = *film;
-      one.thickness = thickness;
-      return film_misfit(one, options.wavelength, angles, wafers);
-    };
-    const double start = film->thickness;
-    if (start > 0) film->thickness = scanned_minimum(misfit, 0.8 * start, 1.2 * start, 400, 1e-9 * start);
-    unknowns.film_thickness = film->thickness;
-    const double off = std::sqrt(misfit(film->thickness) / (2 * static_cast<double>(wafers.size())));
-    if (!(off < film_tolerance))
-      throw std::invalid_argument("the film is not that of the wafers: at its best thickness, " +
-                                  shortest(film->thickness) + " um, psi and delta are off by " +
-                                  shortest(degrees(off)) + " degrees rms");
-  }
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < references.size(); ++i)
-    if (references[i].kind == ReferenceKind::wafer)
-      unknowns.elements[i] = with_signs(wafers[next++], references[i], film ? &*film : nullptr, options.wavelength);
+  give_signs(wafers, references, options);
+  for (const SeenWafer& wafer : wafers) unknowns.elements[wafer.reference] = wafer.element;
 }
 
 /// Rows of M W − W C = 0 for vec(W), column by column, divided by M11.

@@ -79,7 +79,11 @@ DiattenuatorRetarder reflection(const Film& film, double wavelength, double thet
   const Complex i(0, 1), round_trip = std::exp(4 * std::numbers::pi * i * layer.normal * film.thickness / wavelength);
   const Complex rs = with_layer(fresnel_s(air, layer), fresnel_s(layer, below), round_trip);
   const Complex rp = with_layer(fresnel_p(air, layer), fresnel_p(layer, below), round_trip);
-  return {(std::norm(rs) + std::norm(rp)) / 2, std::atan2(std::abs(rp), std::abs(rs)), std::arg(rp * std::conj(rs))};
+  const DiattenuatorRetarder result{(std::norm(rs) + std::norm(rp)) / 2, std::atan2(std::abs(rp), std::abs(rs)),
+                                    std::arg(rp * std::conj(rs))};
+  if (!std::isfinite(result.tau) || !std::isfinite(result.delta))
+    throw std::invalid_argument("film: indices or a thickness so large that no finite reflection is left");
+  return result;
 }
 
 }  // namespace mmbrdf

@@ -79,11 +79,27 @@ void read_polarizer(const Field& field, Calibration& calibration) {
 }
 
 Calibration read_calibration(const Field& root) {
-  require_format(
-      root, format_name, conventions(), units(),
-      {"format", "schema_version", "conventions", "units", "wavelength_nm", "generator", "analyzer", "covariance",
-       "generator_condition", "analyzer_condition", "polarizer", "film_thickness_um", "scale_uncertainty",
-       "figure_of_merit", "singular_ratio", "identifiability", "chi_squared", "degrees_of_freedom", "provenance"});
+  require_format(root, format_name, conventions(), units(),
+                 {"format",
+                  "schema_version",
+                  "conventions",
+                  "units",
+                  "wavelength_nm",
+                  "generator",
+                  "analyzer",
+                  "covariance",
+                  "generator_condition",
+                  "analyzer_condition",
+                  "polarizer",
+                  "film_thickness_um",
+                  "film_misfit_deg",
+                  "scale_uncertainty",
+                  "figure_of_merit",
+                  "singular_ratio",
+                  "identifiability",
+                  "chi_squared",
+                  "degrees_of_freedom",
+                  "provenance"});
   Calibration c;
   c.wavelength = read_positive(root["wavelength_nm"]) / 1000;
   c.polarimeter.generator = read_states(root["generator"]);
@@ -94,6 +110,7 @@ Calibration read_calibration(const Field& root) {
   c.analyzer_condition = read_positive(root["analyzer_condition"]);
   read_polarizer(root["polarizer"], c);
   if (root.has("film_thickness_um")) c.film_thickness = read_positive(root["film_thickness_um"]);
+  if (root.has("film_misfit_deg")) c.film_misfit = radians(read_amount(root["film_misfit_deg"]));
   if (root.has("scale_uncertainty")) c.scale_uncertainty = read_amount(root["scale_uncertainty"]);
   c.figure_of_merit = read_figure_of_merit(root["figure_of_merit"]);
   c.singular_ratio = read_amount(root["singular_ratio"]);
@@ -139,6 +156,7 @@ ordered_json calibration_json(const Calibration& c) {
                          {"extinction", c.extinction},
                          {"phase_deg", in_degrees(c.polarizer_phase)}}}};
   if (c.film_thickness > 0) root["film_thickness_um"] = c.film_thickness;
+  if (c.film_misfit > 0) root["film_misfit_deg"] = in_degrees(c.film_misfit);
   if (c.scale_uncertainty > 0) root["scale_uncertainty"] = c.scale_uncertainty;
   root["figure_of_merit"] = figure_json(c.figure_of_merit);
   root["singular_ratio"] = c.singular_ratio;

@@ -175,6 +175,7 @@ TEST(Film, RefusesWhatCannotBe) {
   EXPECT_EQ(refusal({0, 1, 4}, 0.532, 0.5), "film: refractive index of 0");
   EXPECT_EQ(refusal({1.5, 1, {4, -0.5}}, 0.532, 0.5), "film: absorption index of -0.5");
   EXPECT_THROW(reflection({1.5, 1, {nan_value, 0}}, 0.532, 0.5), std::invalid_argument);
+  EXPECT_THROW(reflection({1e300, 1, {4, 0}}, 0.532, 0.5), std::invalid_argument);
 }
 
 }  // namespace mmbrdf

@@ -31,6 +31,7 @@ Calibration any_calibration() {
   c.extinction = 1e-5 / 3;
   c.polarizer_phase = 0.1;
   c.film_thickness = 1.0 / 3;
+  c.film_misfit = 0.01 / 3;
   c.scale_uncertainty = 0.01 / 7;
   c.figure_of_merit = {1e-3 / 3, 2e-3, 3e-3, 4e-3, 5e-3, {}};
   c.figure_of_merit.elements(1, 2) = 1e-3 / 7;
@@ -230,6 +231,7 @@ TEST(Instrument, IsReadBackFromItsFileToTheSameBits) {
   EXPECT_NEAR(back.polarizer_phase, c.polarizer_phase, 1e-15);
   EXPECT_EQ(back.extinction, c.extinction);
   EXPECT_EQ(back.film_thickness, c.film_thickness);
+  EXPECT_NEAR(back.film_misfit, c.film_misfit, 1e-15);
   EXPECT_EQ(back.scale_uncertainty, c.scale_uncertainty);
   EXPECT_EQ(back.figure_of_merit.total, c.figure_of_merit.total);
   EXPECT_EQ(back.figure_of_merit.wafer, c.figure_of_merit.wafer);

@@ -3,6 +3,7 @@
 
 #include "mmbrdf/calibration.hpp"
 
+#include <cmath>
 #include <memory>
 
 #include "arguments.hpp"
@@ -49,6 +50,17 @@ Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, co
   }
 }
 
+/// The range ends soon behind it, and another film may be in it by chance.
+void warn_of_thickness(const Calibration& result, const CalibrationOptions& options, const std::string& name) {
+  const double given = options.film ? options.film->thickness : 0;
+  const double change = given > 0 ? result.film_thickness / given - 1 : 0;
+  if (std::abs(change) > film_range / 2) {
+    warn(name + ": " +
+         format("the film is %.4f um thick, %+.0f %% from the given %g um: is it the right one?", result.film_thickness,
+                100 * change, given));
+  }
+}
+
 void calibrate_instrument(Options options, const CommandLine& line) {
   require_kept(options.references, options.output, "references");
   options.calibration.refine = !options.linear;
@@ -58,6 +70,7 @@ void calibrate_instrument(Options options, const CommandLine& line) {
              [&](std::istream& in, const std::string& path) { file = read_references(in, path, options.saturation); });
   Calibration result = calibrated(file, options.calibration, name);
   judge(result, name);
+  warn_of_thickness(result, options.calibration, name);
   print_instrument(result);
   result.provenance["data"] = name;
   result.provenance["references"] = std::to_string(file.references.size());
@@ -79,7 +92,11 @@ constexpr const char* calibrate_footer =
     "sense\n"
     "of the dial and from the wafer: from its film, or from the columns s_exceeds_p and delta_sign (1 or -1). The "
     "film\n"
-    "is N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE; SiO2 on Si at 532 nm is 1.4607,1.0,4.15,0.044.\n"
+    "is N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE; SiO2 on Si at 532 nm is 1.4607,1.0,4.15,0.044. Its thickness is "
+    "fitted\n"
+    "within 20 %. With that, one angle of incidence fits several films with other signs, and is refused: measure "
+    "three\n"
+    "or more, or state the signs.\n"
     "\n"
     "Condition numbers above 100 and figures of merit above 0.5 are refused, those above 10 and 0.05 get a warning.\n"
     "\n"

@@ -64,7 +64,8 @@ void print_quality(const Calibration& c) {
   print_line("polarizer", format("offset %.4f degrees, extinction %.2e, phase %.3f degrees",
                                  degrees(c.polarizer_offset), c.extinction, degrees(c.polarizer_phase)));
   if (c.film_thickness > 0) {
-    print_line("film thickness", format("%.5f um", c.film_thickness));
+    print_line("film thickness",
+               format("%.5f um, psi and delta off by %.3f degrees", c.film_thickness, degrees(c.film_misfit)));
   }
 }
 

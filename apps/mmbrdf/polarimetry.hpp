@@ -13,8 +13,9 @@ namespace mmbrdf::program {
 /// worst_condition it is refused.
 inline constexpr double doubtful_condition = 10;
 
-/// Figures of merit above which references and instrument hardly belong together, or not at all.
-inline constexpr double doubtful_merit = 0.05, worst_merit = 0.5;
+/// Figure of merit above which references and instrument do not belong together; above doubtful_merit there is a
+/// warning.
+inline constexpr double worst_merit = 0.5;
 
 /// N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE
 Film film_from(const std::string& text);

@@ -45,7 +45,7 @@ struct CalibrationOptions {
   double wavelength = 0;  ///< micrometres
   int dial_sense = 1;     ///< +1: the azimuth of the polarizer grows with its dial, from e1 towards e2; −1: it falls
   double extinction = 0;  ///< of the polarizer, for the linear solution
-  std::optional<Film> film;          ///< the wafer; its thickness is fitted, from ±20 % around this one
+  std::optional<Film> film;          ///< the wafer; its thickness is fitted, within film_range of this one
   bool refine = true;                ///< maximum likelihood behind the linear solution
   bool fit_polarizer_phase = false;  ///< besides its extinction, in the refinement
   ReadingNoise noise{.dark = 0, .shot = 0, .relative = 1e-3};  ///< weights of the refinement: proportions count
@@ -84,6 +84,7 @@ struct Calibration {
   double extinction = 0;         ///< of the polarizer
   double polarizer_phase = 0;
   double film_thickness = 0;  ///< micrometres; 0 without a film
+  double film_misfit = 0;     ///< of the film to ψ and Δ of the wafers, radians, root mean square; 0 without a film
   std::vector<FittedReference> references;
   FigureOfMerit figure_of_merit;
   double singular_ratio = 0;   ///< s16/s15 of the stacked equations: misfit of the linear solution
@@ -94,11 +95,22 @@ struct Calibration {
   std::map<std::string, std::string> provenance;  ///< as in Model
 };
 
-/// Root mean square of what a film's ψ and |Δ| may be off those of the wafers, radians.
-inline constexpr double film_tolerance = 0.1;
+/// How far the thickness of a film may be from the given one, relative.
+inline constexpr double film_range = 0.2;
+
+/// Root mean square of what a film's ψ and Δ may be off those of the wafers, radians. A film of another order of
+/// interference than 18 wafers have is off by more.
+inline constexpr double film_tolerance = 0.05;
+
+/// The film tells the signs if no other signs fit it, at any thickness, unless with a misfit of this many times its
+/// own. A misfit counts as at least least_film_misfit: angles and indices are not known better.
+inline constexpr double film_distinction = 3, least_film_misfit = 0.01;
 
 /// Above this condition number of the generator or analyzer the noise of the readings is all that is left of a matrix.
 inline constexpr double worst_condition = 100;
+
+/// Above this figure of merit references and instrument hardly belong together.
+inline constexpr double doubtful_merit = 0.05;
 
 /// Below this identifiability there is more than one solution for what can be measured.
 inline constexpr double least_identifiability = 1e-4;
@@ -107,8 +119,9 @@ inline constexpr double least_identifiability = 1e-4;
 /// is not finite; and, saying what is missing, for references that cannot determine the instrument: no empty one, no
 /// polarizer, no wafer, one dial angle only, an identifiability below least_identifiability, fewer than four
 /// independent states, or a wafer whose signs nothing tells; for a film that is more than film_tolerance from the
-/// wafers' eigenvalues; for a condition number above worst_condition; and for readings and noise so far apart that no
-/// finite numbers are left.
+/// wafers, or whose thickness comes out at an end of film_range; for wafers whose signs the film leaves open
+/// (film_distinction); for stated signs that contradict each other, the readings or the film; for a condition number
+/// above worst_condition; and for readings and noise so far apart that no finite numbers are left.
 Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options);
 
 /// The eight instruments that explain the same readings: the signs of the

@@ -40,7 +40,8 @@ struct Film {
 
 /// Its specular reflection at a wavelength (micrometres) and angle of incidence, in the axes (s, p, k) of each beam: Δ
 /// = π at normal incidence. Fresnel's coefficients of one layer. Throws std::invalid_argument for an angle that is not
-/// in [0, π/2), indices with n ≤ 0 or k < 0, a negative thickness, or a wavelength that is not positive.
+/// in [0, π/2), indices with n ≤ 0 or k < 0, a negative thickness, a wavelength that is not positive, or numbers so
+/// large that no finite reflection is left.
 DiattenuatorRetarder reflection(const Film& film, double wavelength, double theta_i);
 
 }  // namespace mmbrdf
