@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <stdexcept>
 
@@ -13,6 +14,9 @@
 namespace mmbrdf {
 namespace {
 
+/// Draws of one seed for different purposes have nothing in common.
+enum Stream : std::uint32_t { imperfections, references_of, readings_of };
+
 void require_valid(const GoniometerOptions& o) {
   const Imperfections& i = o.imperfections;
   const std::array<double, 14> not_negative{
@@ -21,6 +25,10 @@ void require_valid(const GoniometerOptions& o) {
   for (const double value : not_negative)
     if (!(value >= 0 && std::isfinite(value)))
       throw std::invalid_argument("goniometer: " + shortest(value) + " where a number that is not negative is needed");
+  for (const double relative : {o.noise.relative, o.speckle, o.gain_change})
+    if (relative > most_noise)
+      throw std::invalid_argument("goniometer: relative noise of " + shortest(relative) + ", at most " +
+                                  shortest(most_noise));
   if (!std::isfinite(o.retardance) || !std::isfinite(o.polarizer_offset) || !std::isfinite(o.drift))
     throw std::invalid_argument("goniometer: an option is not finite");
   if (!(o.solid_angle > 0)) throw std::invalid_argument("goniometer: a solid angle of 0 sr");
@@ -64,27 +72,29 @@ Polarimeter made(const GoniometerOptions& o, std::mt19937_64& engine) {
 Goniometer::Goniometer(const GoniometerOptions& options, unsigned long seed) : options_(options) {
   require_valid(options_);
   if (options_.azimuths.empty()) options_.azimuths = optimal_angles(options_.retardance, 4);
-  std::mt19937_64 engine(seed);
+  std::mt19937_64 engine = stream(seed, imperfections);
   polarimeter_ = made(options_, engine);
 }
 
 void Goniometer::disturb(std::vector<double>& readings, double speckle, double gain, std::mt19937_64& engine) const {
   const auto count = static_cast<double>(readings.size());
   double place = 0.5 - count / 2;  // in time, from the middle of the measurement
+  const ReadingNoise additive{options_.noise.dark, options_.noise.shot, 0};
   for (double& reading : readings) {
-    reading *= gain * (1 + options_.drift * place / count) * (1 + speckle * normal(engine));
-    reading += std::sqrt(variance(options_.noise, reading)) * normal(engine);
+    reading *= gain * (1 + options_.drift * place / count) * factor(speckle, engine);
+    const double sigma = std::sqrt(variance(additive, reading));
+    reading = reading * factor(options_.noise.relative, engine) + sigma * normal(engine);
     ++place;
   }
 }
 
 std::vector<Reference> Goniometer::references(double wavelength, int count, unsigned long seed) const {
   if (count < 1) throw std::invalid_argument("goniometer: " + std::to_string(count) + " references of each kind");
-  std::mt19937_64 engine(~seed);
+  std::mt19937_64 engine = stream(seed, references_of);
   std::vector<Reference> result;
   const auto measure = [&](ReferenceKind kind, double angle, const Mueller& m) {
     Reference reference{kind, angle, mmbrdf::readings(polarimeter_, m)};
-    disturb(reference.readings, 0, 1 + options_.gain_change * normal(engine), engine);
+    disturb(reference.readings, 0, factor(options_.gain_change, engine), engine);
     result.push_back(std::move(reference));
   };
   for (int k = 0; k < count; ++k) measure(ReferenceKind::empty, 0, identity());
@@ -101,7 +111,7 @@ std::vector<Reference> Goniometer::references(double wavelength, int count, unsi
 }
 
 std::vector<double> Goniometer::readings(const Mueller& m, unsigned long seed) const {
-  std::mt19937_64 engine(seed);
+  std::mt19937_64 engine = stream(seed, readings_of);
   std::vector<double> result = mmbrdf::readings(polarimeter_, m);
   disturb(result, 0, 1, engine);
   return result;
@@ -109,7 +119,7 @@ std::vector<double> Goniometer::readings(const Mueller& m, unsigned long seed) c
 
 std::vector<std::vector<double>> Goniometer::readings(const PreparedModel& model, std::span<const Geometry> geometries,
                                                       unsigned long seed) const {
-  std::mt19937_64 engine(seed);
+  std::mt19937_64 engine = stream(seed, readings_of);
   std::vector<std::vector<double>> result;
   for (const Geometry& geometry : geometries) {
     const double cosine = std::cos(geometry.reflected.theta);

@@ -45,6 +45,56 @@ TEST(Goniometer, IsAnotherForAnotherSeedAndStillWellConditioned) {
   for (const Polarimeter& p : {a, b}) EXPECT_LT(condition_number(p.generator), 2.5);
 }
 
+// The first draws of the imperfections, of references and of readings once were the same numbers.
+TEST(Goniometer, DrawsImperfectionsReferencesAndReadingsApart) {
+  GoniometerOptions options = silent();
+  options.imperfections = {radians(3), 0, 0, 0, 0, 0};
+  options.noise.relative = 1e-3;
+  constexpr int seeds = 200;
+  std::array<std::vector<double>, 3> draws;
+  for (unsigned long seed = 0; seed < seeds; ++seed) {
+    const Goniometer goniometer(options, seed);
+    const Polarimeter& p = goniometer.polarimeter();
+    const double exact = readings(p, identity())[0];
+    draws[0].push_back(p.generator[0][3]);  // falls with the retardance
+    draws[1].push_back(goniometer.references(0.532, 1, seed)[0].readings[0] / exact);
+    draws[2].push_back(goniometer.readings(identity(), seed)[0] / exact);
+  }
+  const auto covariance = [&](std::size_t a, std::size_t b) {
+    double sum = 0, mean_a = 0, mean_b = 0;
+    for (std::size_t k = 0; k < seeds; ++k) {
+      mean_a += draws[a][k] / seeds;
+      mean_b += draws[b][k] / seeds;
+      sum += draws[a][k] * draws[b][k] / seeds;
+    }
+    return sum - mean_a * mean_b;
+  };
+  for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>(0, 1), {0, 2}, {1, 2}})
+    EXPECT_LT(std::abs(covariance(a, b)), 4 / std::sqrt(1. * seeds) * std::sqrt(covariance(a, a) * covariance(b, b)))
+        << a << b;
+}
+
+// Factors of any size that a law of noise allows: positive, with mean 1 and the deviation that is said.
+TEST(Goniometer, ReadsNothingNegativeHoweverLargeItsRelativeNoise) {
+  GoniometerOptions options = silent();
+  options.noise.relative = 0.3;
+  options.speckle = most_noise;
+  const Goniometer goniometer(options, 6);
+  const PreparedModel model = prepare(material("ptfe-532"), 0.532);
+  const std::vector<Geometry> same(2000, Geometry{{radians(60), 0}, {radians(60), 2}});
+  const auto noisy = goniometer.readings(model, same, 7);
+  const auto exact = Goniometer(silent(), 6).readings(model, std::span(same).first(1), 7)[0];
+  double sum = 0, squares = 0;
+  for (const std::vector<double>& one : noisy)
+    for (std::size_t r = 0; r < 16; ++r) {
+      EXPECT_GT(one[r], 0);
+      sum += one[r] / exact[r] / 32000;
+      squares += std::pow(one[r] / exact[r], 2) / 32000;
+    }
+  EXPECT_NEAR(sum, 1, 4 * std::sqrt(1.18 / 32000));  // of the product, (1 + 1) (1 + 0.09) − 1
+  EXPECT_NEAR(squares, 2 * 1.09, 0.2);               // fourth moments of lognormal factors are 2⁶ and more
+}
+
 TEST(Goniometer, ReadsNothingNegativeWithoutAdditiveNoise) {
   for (unsigned long seed = 0; seed < 40; ++seed)
     for (const Reference& reference : Goniometer({}, seed).references(0.532, 18, seed))
@@ -120,6 +170,14 @@ TEST(Goniometer, ChangesItsGainBetweenReferences) {
 TEST(Goniometer, RefusesWhatItCannotBe) {
   GoniometerOptions options;
   options.noise.dark = -1;
+  EXPECT_THROW(Goniometer(options, 1), std::invalid_argument);
+  for (double GoniometerOptions::*const relative : {&GoniometerOptions::speckle, &GoniometerOptions::gain_change}) {
+    options = {};
+    options.*relative = 1.001;
+    EXPECT_EQ(message_of([&] { Goniometer(options, 1); }), "goniometer: relative noise of 1.001, at most 1");
+  }
+  options = {};
+  options.noise.relative = 1e300;
   EXPECT_THROW(Goniometer(options, 1), std::invalid_argument);
   options = {};
   options.solid_angle = 0;

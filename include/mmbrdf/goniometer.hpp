@@ -22,6 +22,11 @@ struct Imperfections {
   double stray = 0.01;  ///< light of another polarization that the detector sees: components 2 and 3 of its response
 };
 
+/// The largest relative noise, speckle and change of gain.
+inline constexpr double most_noise = 1;
+
+/// Relative noise, speckle and changes of gain are factors with mean 1 and these standard deviations, lognormal: with
+/// none but them no reading is negative.
 struct GoniometerOptions {
   double retardance = radians(131.81);
   std::vector<double> azimuths;  ///< of the plates, radians; empty: optimal_angles(retardance, 4)
@@ -40,7 +45,8 @@ struct GoniometerOptions {
 /// A goniometer that was made once and measures many times.
 class Goniometer {
  public:
-  /// Draws the imperfections. Throws std::invalid_argument for options that are negative or not finite.
+  /// Draws the imperfections. Throws std::invalid_argument for options that are negative or not finite, and for
+  /// relative noise above most_noise.
   Goniometer(const GoniometerOptions& options, unsigned long seed);
 
   const Polarimeter& polarimeter() const { return polarimeter_; }
