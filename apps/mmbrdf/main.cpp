@@ -102,6 +102,8 @@ int run(int argc, char** argv) {
   return 0;
 }
 
+}  // namespace
+
 std::string shell_quoted(const std::string& word) {
   const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,=+@%-";
   if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
@@ -113,8 +115,6 @@ std::string shell_quoted(const std::string& word) {
   }
   return result + "'";
 }
-
-}  // namespace
 
 std::string software() { return "mmbrdf " MMBRDF_VERSION; }
 

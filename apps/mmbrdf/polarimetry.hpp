@@ -42,6 +42,9 @@ struct RawSimulation {
   unsigned long seed = 0;
 };
 
+/// Throws std::invalid_argument if it would overwrite the model.
+void require_kept(const std::string& model, const RawSimulation& options);
+
 /// Writes references.csv and raw.csv, and says what to do with them.
 void simulate_raw(const Model& model, double wavelength, std::span<const Geometry> geometries,
                   const RawSimulation& options);

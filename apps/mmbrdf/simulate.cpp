@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "files.hpp"
+#include "mmbrdf/goniometer.hpp"
 #include "mmbrdf/io.hpp"
 #include "mmbrdf/simulation.hpp"
 #include "polarimetry.hpp"
@@ -66,6 +67,14 @@ double relative_noise_from(const std::string& text) {
   return noise.relative;
 }
 
+/// Of a reading, which is never negative.
+void require_possible(double noise, const std::string& option, const std::string& law) {
+  if (noise > most_noise) {
+    throw CLI::ValidationError(option, law + ":" + shortest(noise) + " is more than a reading can have: at most " +
+                                           law + ":" + shortest(most_noise));
+  }
+}
+
 void simulate_readings(const Options& options) {
   const Model model = open_model(options.model);
   const std::vector<double> wavelengths = wavelengths_of(model, options);
@@ -74,11 +83,19 @@ void simulate_readings(const Options& options) {
   }
   RawSimulation raw{options.raw, RawSimulation{}.reading_noise, options.speckle, options.seed};
   raw.reading_noise = options.reading_noise.value_or(raw.reading_noise);
+  require_possible(raw.speckle, "--noise", "speckle");
+  require_possible(raw.reading_noise, "--reading-noise", "relative");
+  require_kept(options.model, raw);
+  std::vector<Sample> measured;
+  for (const Geometry& geometry : geometries(options.grid, options.seed)) {
+    measured.push_back({wavelengths[0], geometry, 1, identity()});
+  }
   try {
     simulate_raw(model, wavelengths[0], geometries(options.grid, options.seed), raw);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
   }
+  warn_if_outside(model, measured, base_name(options.model));
 }
 
 void simulate_data(const Options& options) {
@@ -103,7 +120,8 @@ constexpr const char* footer =
     "absolute for m_ij. The same seed gives the same file.\n"
     "\n"
     "--raw writes what a goniometer with imperfections, four generator and four analyzer states would read:\n"
-    "DIR/references.csv and DIR/raw.csv, for mmbrdf calibrate and reduce. speckle:C is then that of each reading.\n"
+    "DIR/references.csv and DIR/raw.csv, for mmbrdf calibrate and reduce. speckle:C is then that of each reading, and\n"
+    "both noises are factors of mean 1 that are never negative, of at most 1.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf simulate ptfe --grid germer2017 --noise speckle:0.006 --seed 1 -o data.csv\n"

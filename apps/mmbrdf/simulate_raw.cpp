@@ -3,6 +3,8 @@
 #include <iostream>
 
 #include "arguments.hpp"
+#include "command.hpp"
+#include "files.hpp"
 #include "mmbrdf/description.hpp"
 #include "mmbrdf/goniometer.hpp"
 #include "output.hpp"
@@ -13,6 +15,8 @@ namespace mmbrdf::program {
 namespace {
 
 constexpr int references_of_each_kind = 18;
+constexpr const char* references_file = "references.csv";
+constexpr const char* raw_file = "raw.csv";
 
 GoniometerOptions goniometer_options(const RawSimulation& options) {
   GoniometerOptions result;
@@ -33,6 +37,12 @@ std::vector<RawMeasurement> measurements(const Goniometer& goniometer, const Mod
 
 }  // namespace
 
+void require_kept(const std::string& model, const RawSimulation& options) {
+  for (const char* const file : {references_file, raw_file}) {
+    require_model_kept(model, (std::filesystem::path(options.folder) / file).string());
+  }
+}
+
 void simulate_raw(const Model& model, double wavelength, std::span<const Geometry> geometries,
                   const RawSimulation& options) {
   const Goniometer goniometer(goniometer_options(options), options.seed);
@@ -47,14 +57,15 @@ void simulate_raw(const Model& model, double wavelength, std::span<const Geometr
   if (error) {
     throw std::runtime_error(options.folder + ": cannot be made: " + error.message());
   }
-  write_references((folder / "references.csv").string(), references);
-  write_raw((folder / "raw.csv").string(), states, raw);
+  write_references((folder / references_file).string(), references);
+  write_raw((folder / raw_file).string(), states, raw);
   const Film& film = goniometer.options().film;
   const std::string text = shortest(film.film_index.real()) + "," + shortest(film.thickness) + "," +
                            shortest(film.substrate_index.real()) + "," + shortest(film.substrate_index.imag());
+  const std::string name = options.folder.starts_with('-') ? "./" + options.folder : options.folder;
   std::cout << "references.csv   " << references.references.size() << " references\n"
             << "raw.csv          " << raw.size() << " geometries at " << brief(nanometres(wavelength)) << " nm\n"
-            << "\nNext:\n  cd " << options.folder << "\n  mmbrdf calibrate references.csv --film " << text
+            << "\nNext:\n  cd " << shell_quoted(name) << "\n  mmbrdf calibrate references.csv --film " << text
             << " -o instrument.json\n  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle "
             << shortest(goniometer.options().solid_angle)
             << " -o data.csv\n  mmbrdf fit data.csv --weights data --instrument instrument.json -o model.json\n";
