@@ -2,6 +2,7 @@
 #include "mmbrdf/common_errors.hpp"
 
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -17,8 +18,9 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 void require_fitting(const Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
                      std::span<const Mueller> weights) {
-  if (model.powers != 0 || !model.reflectance.values.empty())
-    throw std::invalid_argument("common errors: the model is of more than one wavelength");
+  if (model.powers != 0) throw std::invalid_argument("common errors: the model has powers of the wavelength");
+  if (!model.reflectance.covariance.empty())
+    throw std::invalid_argument("common errors: the reflectance that f11 is divided by comes from samples of its own");
   if (samples.empty()) throw std::invalid_argument("common errors: no samples");
   for (const Sample& sample : samples)
     if (std::abs(sample.wavelength - samples[0].wavelength) > wavelength_resolution)
@@ -46,20 +48,25 @@ std::vector<Normal> empty_normals(const Model& model, std::size_t errors) {
   return result;
 }
 
-/// F = f11 m, and only block 11 moves f11: the slopes of m are those of F over f11.
-void add_sample(std::vector<Normal>& normals, const Model& model, const MuellerGradient& gradient, double f11,
-                std::span<const Mueller> changes, const Mueller* weights) {
+/// F = f11 m, and only block 11 moves f11: the slopes of m are those of F over f11. f11 is fitted over the reflectance:
+/// `units` are what slopes of F and changes of a sample are divided by, for element 11 and for the others.
+struct Units {
+  double slope, change;
+};
+void add_sample(std::vector<Normal>& normals, const Model& model, const MuellerGradient& gradient,
+                const std::array<Units, 2>& units, std::span<const Mueller> changes, const Mueller* weights) {
   const Eigen::Map<const RowMajor> slopes(gradient.values.data(), 16, static_cast<Index>(gradient.values.size() / 16));
   Index first = 0;
   for (std::size_t b = 0; b < normals.size(); ++b) {
     auto& [matrix, vectors] = normals[b];
     for (const auto& [row, column] : model.blocks[b].block.elements) {
       const int e = 4 * row + column;
-      const Eigen::VectorXd x = slopes.row(e).segment(first, matrix.rows()).transpose() / (e == 0 ? 1 : f11);
+      const auto& [slope, change] = units[e == 0 ? 0 : 1];
+      const Eigen::VectorXd x = slopes.row(e).segment(first, matrix.rows()).transpose() / slope;
       const double weight = weights ? (*weights)(row, column) : 1;
       matrix.selfadjointView<Eigen::Lower>().rankUpdate(x, weight);
       for (std::size_t k = 0; k < changes.size(); ++k)
-        vectors.col(static_cast<Index>(k)) += weight * changes[k](row, column) * x;
+        vectors.col(static_cast<Index>(k)) += weight * changes[k](row, column) / change * x;
     }
     first += matrix.rows();
   }
@@ -88,6 +95,7 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
   require_fitting(model, samples, errors, weights);
   const PreparedModel values = prepare(model, samples[0].wavelength);
   const PreparedUncertainty slopes = prepare_uncertainty(model, samples[0].wavelength);
+  const double reflectance = model.reflectance.at(samples[0].wavelength);
   std::vector<Normal> normals = empty_normals(model, errors.size());
   std::vector<Mueller> changes(errors.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -95,8 +103,8 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
     const double turn = model.family == Family::germer2017 ? -samples[s].geometry.incident.phi : 0;
     for (std::size_t k = 0; k < errors.size(); ++k) changes[k] = turned(errors[k][s], turn);
     const Geometry geometry = turn == 0 ? samples[s].geometry : at_zero_azimuth(samples[s]).geometry;
-    add_sample(normals, model, slopes.gradient(geometry), values.evaluate(geometry)(0, 0), changes,
-               weights.empty() ? nullptr : &weights[s]);
+    const std::array<Units, 2> units{{{reflectance, reflectance}, {values.evaluate(geometry)(0, 0), 1}}};
+    add_sample(normals, model, slopes.gradient(geometry), units, changes, weights.empty() ? nullptr : &weights[s]);
   }
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Index size = normals[b].matrix.rows();

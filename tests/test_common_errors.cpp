@@ -62,9 +62,13 @@ TEST(CommonErrors, OfAnInstrumentHaveTheCovarianceOfItsReduction) {
   }
 }
 
+// With f11 as it is, and divided by a reflectance that is given.
 TEST(CommonErrors, MoveTheModelAsAFitToTheChangedSamplesMoves) {
-  for (const Family family : {Family::isotropic, Family::germer2017}) {
+  for (const auto& [family, reflectance] :
+       {std::pair(Family::isotropic, 1.), {Family::germer2017, 1.}, {Family::isotropic, 0.6}}) {
     const Basis basis{family, {5, 3}};
+    FitOptions options;
+    if (reflectance != 1) options.reflectance = ReflectanceTable{{0.4, 0.8}, {0.9 * reflectance, 2 * reflectance}};
     const std::vector<Sample> samples = simulated();
     std::vector<Mueller> weights(samples.size());
     SampleChanges changes(samples.size());
@@ -81,7 +85,7 @@ TEST(CommonErrors, MoveTheModelAsAFitToTheChangedSamplesMoves) {
     const auto fitted = [&](std::span<const Sample> data) {
       FitAccumulator accumulator(basis);
       accumulator.add(data, weights);
-      return accumulator.solve().model;
+      return accumulator.solve(options).model;
     };
     const Model before = fitted(samples), after = fitted(moved);
     Model with = before;
@@ -109,6 +113,11 @@ TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
   Model model = material("ptfe");
   const std::vector<Sample> samples = simulated();
   EXPECT_THROW(add_common_errors(model, samples, {}), std::invalid_argument);
+  EXPECT_EQ(message_of([&] { add_common_errors(model, samples, {}); }),
+            "common errors: the model has powers of the wavelength");
+  model.powers = 0;
+  EXPECT_EQ(message_of([&] { add_common_errors(model, samples, {}); }),
+            "common errors: the reflectance that f11 is divided by comes from samples of its own");
   model = material("ptfe-532");
   EXPECT_THROW(add_common_errors(model, samples, std::array{SampleChanges(3)}), std::invalid_argument);
   EXPECT_THROW(add_common_errors(model, {}, {}), std::invalid_argument);

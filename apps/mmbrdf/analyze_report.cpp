@@ -43,9 +43,13 @@ std::string uncertainty_words(const AnalysisReport& r) {
     return r.analyzer.unknown_uncertainty().empty() ? "not known: at theta_r = 90 a term theta_r has no limit"
                                                     : "not known: " + r.analyzer.unknown_uncertainty();
   }
-  std::string text = "standard (k = 1), of the fit";
-  text += options.terms.empty() ? " alone: --term adds the rest of a budget" : " and of the terms below";
-  return text + (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
+  const bool has_instrument = r.analyzer.model().provenance.contains("instrument");
+  const std::string alone = has_instrument ? "of the fit and its instrument" : "of the fit alone";
+  const std::string among =
+      has_instrument ? "of the fit, its instrument and the terms below" : "of the fit and of the terms below";
+  const std::string text = options.terms.empty() ? alone + ": --term adds the rest of a budget" : among;
+  return "standard (k = 1), " + text +
+         (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
 }
 
 /// As many decimals as two digits of the uncertainty have: the last one of 0.0123 is the second after its first.

@@ -58,6 +58,7 @@ class Analyzer {
   const std::string& unknown_uncertainty() const { return unknown_uncertainty_; }
 
   const AnalysisOptions& options() const { return options_; }
+  const Model& model() const { return model_; }
 
   /// ",f11,…,f44,validity,u_f11,…,u_f44,depolarization,u_depolarization,…,estimable"
   std::string columns() const;

@@ -16,6 +16,7 @@
 #include "mmbrdf/common_errors.hpp"
 #include "mmbrdf/readings.hpp"
 #include "output.hpp"
+#include "polarimetry.hpp"
 
 namespace mmbrdf::program {
 
@@ -94,10 +95,25 @@ bool streams(const Options& options) {
          options.instrument.empty();
 }
 
+/// There must be a covariance to add to.
+void require_covariance(const FitResult& result) {
+  for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
+    const FittedBlock& fitted = result.model.blocks[b];
+    if (fitted.covariance.empty()) {
+      throw std::invalid_argument(
+          "block " + fitted.block.name +
+          " has no covariance to which --instrument could add: " + counted(result.solutions[b].rows, "row") + " for " +
+          counted(static_cast<long>(fitted.coefficients.size()), "coefficient") +
+          " leave no degrees of freedom; take lower --orders, or more samples");
+    }
+  }
+}
+
 /// Adds what the instrument is uncertain by, which is the same error in all its samples.
 void add_instrument(FitResult& result, std::span<const Sample> samples, const Options& options) {
   const Calibration instrument = load_instrument(options.instrument);
   const std::string name = base_name(options.instrument);
+  judge(instrument, name);
   if (instrument.covariance.empty()) {
     throw std::runtime_error(name + ": a linear calibration, without a covariance");
   }
@@ -108,6 +124,7 @@ void add_instrument(FitResult& result, std::span<const Sample> samples, const Op
                                " nm; choose with --wavelength");
     }
   }
+  require_covariance(result);
   const Reduction reduction(instrument.polarimeter, instrument.covariance);
   add_common_errors(result.model, samples, instrument_errors(reduction, samples),
                     fit_weights(samples, options.basis, result, options.weights));

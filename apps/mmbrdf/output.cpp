@@ -65,8 +65,9 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string plain_message(const std::exception& error) {
   const std::string text = error.what();
-  for (const std::string name : {"fit", "simulate", "compare", "subsets", "evaluate", "normalized",
-                                 "degree_of_polarization", "budget", "to_coefficients_csv", "to_json", "reduced"}) {
+  for (const std::string name :
+       {"fit", "simulate", "compare", "subsets", "evaluate", "normalized", "degree_of_polarization", "budget",
+        "to_coefficients_csv", "to_json", "reduced", "common errors", "goniometer"}) {
     if (text.starts_with(name + ": ")) {
       return text.substr(name.size() + 2);
     }

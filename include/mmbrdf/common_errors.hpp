@@ -22,9 +22,10 @@ std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::sp
 
 /// Adds to the covariance of a fitted model what common errors do to its coefficients: with X and W the rows and
 /// weights of the fit, da = (XᵀWX)⁺ XᵀW dy and Σ da daᵀ. Weights are those of the fit, as FitAccumulator::add takes
-/// them; empty means 1. What such an error correlates between blocks is not kept. Throws std::invalid_argument for a
-/// model with powers of the wavelength or a reflectance table (an instrument is calibrated for one wavelength), one
-/// whose covariance is not known, samples of another wavelength than the first, or sizes that do not agree.
+/// them; empty means 1. What such an error correlates between blocks is not kept. A reflectance table that was given is
+/// exact. Throws std::invalid_argument for a model with powers of the wavelength or a reflectance of its own samples
+/// (an instrument is calibrated for one wavelength), one whose covariance is not known, samples of another wavelength
+/// than the first, or sizes that do not agree.
 void add_common_errors(Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
                        std::span<const Mueller> weights = {});
 
