@@ -192,7 +192,7 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   Unknowns unknowns = calibration::solve_linear(references, options);
   Calibration result;
   result.wavelength = options.wavelength;
-  result.degrees_of_freedom = freedom;
+  result.degrees_of_freedom = std::max(freedom, 0L);
   if (options.refine) {
     calibration::Refinement refinement = calibration::refine(unknowns, references, options);
     result.covariance = std::move(refinement.covariance);

@@ -48,6 +48,13 @@ double read_positive(const Field& field) {
   return field.number();
 }
 
+/// Nanometres: up to a metre, so that no unit overflows.
+double read_wavelength(const Field& field) {
+  const double value = read_positive(field);
+  if (value > 1e9) field.refuse(field.shown() + " is not a wavelength in nm");
+  return value / 1000;
+}
+
 double read_amount(const Field& field) {
   if (field.number() < 0) field.refuse(field.shown() + " is negative");
   return field.number();
@@ -66,6 +73,8 @@ FigureOfMerit read_figure_of_merit(const Field& field) {
   for (std::size_t row = 0; row < 4; ++row) {
     const std::vector<double> values = rows[row].numbers();
     require_count(rows[row], values.size(), 4, "a row");
+    for (const double value : values)
+      if (value < 0) rows[row].refuse(shortest(value) + " is negative");
     std::copy(values.begin(), values.end(), &figure.elements.elements[4 * row]);
   }
   return figure;
@@ -75,7 +84,22 @@ void read_polarizer(const Field& field, Calibration& calibration) {
   field.require_no_other_than({"offset_deg", "extinction", "phase_deg"});
   calibration.polarizer_offset = radians(field["offset_deg"].number());
   calibration.extinction = read_amount(field["extinction"]);
+  if (calibration.extinction > 1) field["extinction"].refuse(field["extinction"].shown() + " is more than 1");
   calibration.polarizer_phase = radians(field["phase_deg"].number());
+}
+
+/// The states are what counts: a condition number that is not theirs is a mistake of the file.
+void require_condition(const Field& field, const std::vector<Stokes>& states) {
+  const double own = condition_number(states);
+  if (!(std::abs(read_positive(field) / own - 1) < 1e-6))
+    field.refuse(field.shown() + ", but the states of the file have " + shortest(own));
+}
+
+void read_freedom(const Field& field, Calibration& calibration) {
+  calibration.degrees_of_freedom = field.integer();
+  if (calibration.degrees_of_freedom < 0) field.refuse(field.shown() + " is negative");
+  if (calibration.degrees_of_freedom == 0 && !calibration.covariance.empty())
+    field.refuse("0, and there is a covariance");
 }
 
 Calibration read_calibration(const Field& root) {
@@ -101,13 +125,16 @@ Calibration read_calibration(const Field& root) {
                   "degrees_of_freedom",
                   "provenance"});
   Calibration c;
-  c.wavelength = read_positive(root["wavelength_nm"]) / 1000;
+  c.wavelength = read_wavelength(root["wavelength_nm"]);
   c.polarimeter.generator = read_states(root["generator"]);
   c.polarimeter.analyzer = read_states(root["analyzer"]);
   const std::size_t size = 4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size());
   if (root.has("covariance")) c.covariance = read_covariance(root["covariance"], size);
-  c.generator_condition = read_positive(root["generator_condition"]);
-  c.analyzer_condition = read_positive(root["analyzer_condition"]);
+  checked(root, [&] { return Reduction(c.polarimeter, c.covariance); });
+  require_condition(root["generator_condition"], c.polarimeter.generator);
+  require_condition(root["analyzer_condition"], c.polarimeter.analyzer);
+  c.generator_condition = root["generator_condition"].number();
+  c.analyzer_condition = root["analyzer_condition"].number();
   read_polarizer(root["polarizer"], c);
   if (root.has("film_thickness_um")) c.film_thickness = read_positive(root["film_thickness_um"]);
   if (root.has("film_misfit_deg")) c.film_misfit = radians(read_amount(root["film_misfit_deg"]));
@@ -116,9 +143,8 @@ Calibration read_calibration(const Field& root) {
   c.singular_ratio = read_amount(root["singular_ratio"]);
   c.identifiability = read_amount(root["identifiability"]);
   c.chi_squared = read_amount(root["chi_squared"]);
-  c.degrees_of_freedom = root["degrees_of_freedom"].integer();
+  read_freedom(root["degrees_of_freedom"], c);
   c.provenance = root["provenance"].texts();
-  checked(root, [&] { return Reduction(c.polarimeter, c.covariance); });
   return c;
 }
 
@@ -188,11 +214,18 @@ std::string to_json(const Calibration& calibration) {
   Reduction(calibration.polarimeter, calibration.covariance);  // throws for what could not be used
   const ordered_json root = calibration_json(calibration);
   require_finite(root, "a number");
+  std::string text;
   try {
-    return json_text(root);
+    text = json_text(root);
   } catch (const nlohmann::json::exception& e) {  // text that is not UTF-8
     throw std::invalid_argument("to_json: provenance of the instrument: " + std::string(e.what()));
   }
+  try {
+    calibration_from_json(text, "instrument");
+  } catch (const std::runtime_error& e) {
+    throw std::invalid_argument("to_json: " + std::string(e.what()));
+  }
+  return text;
 }
 
 Calibration load_instrument(const std::string& path) {

@@ -289,7 +289,7 @@ MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller&
 
 Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, double solid_angle) {
   require_valid(geometry, "sample");
-  if (!(solid_angle > 0) || !std::isfinite(solid_angle))
+  if (!(solid_angle > 0 && solid_angle <= 2 * std::numbers::pi))
     throw std::invalid_argument("sample: a solid angle of " + shortest(solid_angle) + " sr");
   if (!(m(0, 0) > 0)) throw std::invalid_argument("sample: M11 is " + shortest(m(0, 0)));
   const double cosine = std::cos(geometry.reflected.theta);

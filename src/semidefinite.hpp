@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -16,7 +17,7 @@ namespace mmbrdf {
 /// says.
 inline void require_semidefinite(const Eigen::VectorXd& eigenvalues, const std::string& block) {
   const double lowest = eigenvalues(0), highest = std::max(eigenvalues(eigenvalues.size() - 1), 0.0);
-  if (lowest < -covariance_tolerance * highest)
+  if (!std::isfinite(highest) || !(lowest >= -covariance_tolerance * highest))
     throw std::invalid_argument("the covariance of block " + block +
                                 " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
                                 shortest(highest));

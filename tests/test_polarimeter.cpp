@@ -304,6 +304,8 @@ TEST(Reduction, RefusesACovarianceThatIsNone) {
   EXPECT_EQ(refusal(covariance), "instrument: the covariance is not symmetric and finite");
   covariance[1] = covariance[32] = 2e-6;  // a correlation of 2
   EXPECT_NE(refusal(covariance), "nothing was thrown");
+  covariance.assign(covariance.size(), 1e308);  // eigenvalues overflow
+  EXPECT_NE(refusal(covariance), "nothing was thrown");
 }
 
 TEST(Reduction, RefusesReadingsAndVariancesThatAreNone) {
@@ -371,6 +373,7 @@ TEST(Sample, OfAPerfectDiffuserIsOneByPi) {
 TEST(Sample, IsNotMadeOfWhatIsNone) {
   const Geometry g{{0.3, 0}, {0.5, 2}};
   EXPECT_EQ(message_of([&] { sample(example, 0.5, g, 0); }), "sample: a solid angle of 0 sr");
+  EXPECT_EQ(message_of([&] { sample(example, 0.5, g, 6.3); }), "sample: a solid angle of 6.3 sr");
   EXPECT_THROW(sample(example, 0.5, g, nan_value), std::invalid_argument);
   EXPECT_EQ(message_of([&] { sample(Mueller{}, 0.5, g, 1e-4); }), "sample: M11 is 0");
   EXPECT_EQ(message_of([&] { sample(example, 0.5, {{0.3, 0}, {pi / 2, 2}}, 1e-4); }), "sample: theta_r is 90 degrees");

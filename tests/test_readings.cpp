@@ -252,10 +252,36 @@ TEST(Instrument, ThatCannotBeIsRefusedWithItsField) {
   };
   EXPECT_TRUE(says(complains("mmbrdf instrument", "mmbrdf model"), {"i.json: format: 'mmbrdf model'"}));
   EXPECT_TRUE(says(complains("532.0", "-1"), {"i.json: wavelength_nm: -1 is not positive"}));
+  EXPECT_TRUE(says(complains("532.0", "1e308"), {"i.json: wavelength_nm: ", "is not a wavelength in nm"}));
+  const std::string condition = "\"generator_condition\": ";
+  EXPECT_TRUE(
+      says(complains(condition, condition + "1"), {"i.json: generator_condition: 1", "the states of the file"}));
+  EXPECT_TRUE(says(complains("\"degrees_of_freedom\": 800", "\"degrees_of_freedom\": -1"),
+                   {"i.json: degrees_of_freedom: -1 is negative"}));
+  EXPECT_TRUE(says(complains("\"degrees_of_freedom\": 800", "\"degrees_of_freedom\": 0"),
+                   {"i.json: degrees_of_freedom: 0, and there is a covariance"}));
   EXPECT_TRUE(says(complains("\"scattering_plane\"", "\"xy\""), {"i.json: conventions.frame: 'xy'"}));
   EXPECT_TRUE(says(complains("\"singular_ratio\"", "\"singular\""), {"i.json: singular: unknown field"}));
   EXPECT_TRUE(says(complains("\"generator\": [", "\"generator\": [[1, 0, 0],"), {"i.json: generator[0]: 3 numbers"}));
   EXPECT_TRUE(says(complains("\"covariance\": [", "\"covariance\": [1, "), {"i.json: covariance: 821 numbers"}));
+}
+
+TEST(Instrument, ThatCouldNotBeReadBackIsNotWritten) {
+  const auto refusal = [](const std::function<void(Calibration&)>& spoil) {
+    Calibration c = any_calibration();
+    spoil(c);
+    return message_of([&] { to_json(c); });
+  };
+  EXPECT_EQ(refusal([](Calibration& c) { c.extinction = 2; }),
+            "to_json: instrument: polarizer.extinction: 2.0 is more than 1");
+  EXPECT_EQ(refusal([](Calibration& c) { c.figure_of_merit.elements(2, 1) = -1; }),
+            "to_json: instrument: figure_of_merit.elements[2]: -1 is negative");
+  EXPECT_EQ(refusal([](Calibration& c) { c.degrees_of_freedom = -1; }),
+            "to_json: instrument: degrees_of_freedom: -1 is negative");
+  EXPECT_EQ(refusal([](Calibration& c) { c.wavelength = 1e300; }),
+            "to_json: instrument: wavelength_nm: 1e+303 is not a wavelength in nm");
+  EXPECT_NE(refusal([](Calibration& c) { c.generator_condition *= 1.001; }), "nothing was thrown");
+  EXPECT_NE(refusal([](Calibration& c) { c.covariance.assign(c.covariance.size(), 1e308); }), "nothing was thrown");
 }
 
 TEST(Instrument, WithWhatIsNotFiniteIsNotWritten) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "arguments.hpp"
@@ -29,6 +30,14 @@ struct Options {
   ReadingNoise noise{.dark = 0, .shot = 0, .relative = 1e-3};
   bool strict = false;
 };
+
+double solid_angle_from(const std::string& text) {
+  const double value = positive_number(text);
+  if (value > 2 * std::numbers::pi) {
+    throw std::invalid_argument("\"" + text + "\": expected at most 2 pi sr");
+  }
+  return value;
+}
 
 std::vector<Sample> reduced_file(const Calibration& instrument, const Options& options) {
   const Polarimeter& p = instrument.polarimeter;
@@ -102,7 +111,7 @@ Run reduce_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_file(app, "RAW.csv", o->raw, " ", "Readings of a sample; - is standard input")->required();
   add_file(app, "--instrument", o->instrument, "INSTRUMENT.json", "Written by mmbrdf calibrate (required)")->required();
-  add_option(app, "--solid-angle", o->solid_angle, positive_number, "SR", "Of the receiver, in sr (required)")
+  add_option(app, "--solid-angle", o->solid_angle, solid_angle_from, "SR", "Of the receiver, in sr (required)")
       ->required();
   add_reading_options(app, o->saturation, o->noise);
   app.add_flag("--strict", o->strict, "Refuse matrices that cannot be physical");

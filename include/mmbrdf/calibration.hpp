@@ -90,8 +90,8 @@ struct Calibration {
   double singular_ratio = 0;   ///< s16/s15 of the stacked equations: misfit of the linear solution
   double identifiability = 0;  ///< s15/s1: how far the references are from leaving a second solution
   double generator_condition = 0, analyzer_condition = 0;
-  double chi_squared = 0;  ///< of the refinement, in units of the given noise
-  long degrees_of_freedom = 0;
+  double chi_squared = 0;                         ///< of the refinement, in units of the given noise; 0 without it
+  long degrees_of_freedom = 0;                    ///< readings less unknowns, 0 if there are more of these
   std::map<std::string, std::string> provenance;  ///< as in Model
 };
 

@@ -85,8 +85,8 @@ class Reduction {
 MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m);
 
 /// The sample whose Mueller matrix, relative to the collinear beam and in Frame::scattering_plane, is m:
-/// f = m / (solid_angle · cos θr). Throws std::invalid_argument unless solid_angle (sr) and M11 are positive, θr below
-/// 90 degrees and the geometry valid.
+/// f = m / (solid_angle · cos θr). Throws std::invalid_argument unless solid_angle (sr) is positive and at most 2π, M11
+/// positive, θr below 90 degrees and the geometry valid.
 Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, double solid_angle);
 
 }  // namespace mmbrdf
