@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
 
 #include "cases.hpp"
 #include "mmbrdf/fit.hpp"
@@ -123,54 +128,98 @@ TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
   EXPECT_THROW(add_common_errors(model, {}, {}), std::invalid_argument);
 }
 
-// Raw readings of a simulated instrument with imperfections, noise and speckle, calibrated from its own references,
-// reduced and fitted, for 100 instruments. Ten geometries of one fit are far from independent: with 400 instruments all
-// shares lie in 94.0 … 96.1 %, and with 100 a share scatters by 1.2 % and the errors over their uncertainties by 4 %.
-TEST(CommonErrors, LeaveTheTruthInsideTheIntervalsOfTheWholeChainWithItsScatter) {
-  constexpr unsigned long seeds = 100;
-  const Model true_model = material("ptfe-532");
-  const PreparedModel truth = prepare(true_model, wavelength);
-  const std::vector<Geometry> measured = random_geometries(400, 5), asked = random_geometries(10, 6, radians(65));
+namespace {
+
+/// How many instruments the statistics are of: MMBRDF_INSTRUMENTS, or 100.
+unsigned long instruments() {
+  const char* const given = std::getenv("MMBRDF_INSTRUMENTS");
+  return given ? std::stoul(given) : 100;
+}
+
+/// What lies inside the 95 % intervals of one quantity, and the mean square of its errors over their uncertainties.
+struct Coverage {
+  double inside = 0, inside_squares = 0, errors = 0;
+  unsigned long count = 0;
+
+  /// Ten geometries of one instrument share its errors: they count as one.
+  void add(std::span<const double> normalized_errors) {
+    double share = 0;
+    for (const double e : normalized_errors) {
+      share += (std::abs(e) < 1.96 ? 1. : 0.) / static_cast<double>(normalized_errors.size());
+      errors += e * e / static_cast<double>(normalized_errors.size());
+    }
+    inside += share;
+    inside_squares += share * share;
+    ++count;
+  }
+  double share() const { return inside / static_cast<double>(count); }
+  double scatter() const {
+    const auto n = static_cast<double>(count);
+    return std::sqrt((inside_squares / n - share() * share()) / (n - 1));
+  }
+  double rms() const { return std::sqrt(errors / static_cast<double>(count)); }
+};
+
+/// f11, the normalised elements, and the directional-hemispherical reflectance.
+using Coverages = std::array<Coverage, 17>;
+
+/// The whole chain, from the references and readings of one instrument to the errors of the model over their
+/// uncertainties.
+void add_instrument(Coverages& coverages, const Model& truth, std::span<const Geometry> measured,
+                    std::span<const Geometry> asked, unsigned long seed) {
   GoniometerOptions made;
   made.speckle = 0.01;
-  std::array<double, 16> inside{}, squares{};
-  double dhr_inside = 0, dhr_squares = 0;
-  for (unsigned long seed = 1; seed <= seeds; ++seed) {
-    const Goniometer goniometer(made, seed);
-    const Calibration calibration = calibrated(goniometer, seed);
-    const Reduction reduction(calibration.polarimeter, calibration.covariance);
-    std::vector<Sample> samples;
-    const auto readings = goniometer.readings(truth, measured, seed);
-    for (std::size_t g = 0; g < measured.size(); ++g)
-      samples.push_back(sample(reduction.mueller(readings[g]), wavelength, measured[g], made.solid_angle));
-    Model model = fit(samples, {}, {}, Weights::speckle).model;
-    add_common_errors(model, samples, instrument_errors(reduction, samples), speckle_weights(samples, model));
-    const PreparedModel found = prepare(model, wavelength);
-    const PreparedUncertainty uncertainty = prepare_uncertainty(model, wavelength);
-    for (const Geometry& g : asked) {
-      const Mueller expected = truth.evaluate(g), value = found.evaluate(g);
-      const Mueller u = standard_uncertainty(uncertainty.normalized(g));
-      for (std::size_t e = 0; e < 16; ++e) {
-        const double error =
-            e == 0 ? value(0, 0) - expected(0, 0) : normalized(value).elements[e] - normalized(expected).elements[e];
-        inside[e] += std::abs(error) < 1.96 * u.elements[e] ? 0.1 / static_cast<double>(seeds) : 0;
-        squares[e] += std::pow(error / u.elements[e], 2) * 0.1 / static_cast<double>(seeds);
-      }
-      const double error = directional_hemispherical_reflectance(model, wavelength, g.incident) -
-                           directional_hemispherical_reflectance(true_model, wavelength, g.incident);
-      const double u_dhr = uncertainty.directional_hemispherical_reflectance(g.incident);
-      dhr_inside += std::abs(error) < 1.96 * u_dhr ? 0.1 / static_cast<double>(seeds) : 0;
-      dhr_squares += std::pow(error / u_dhr, 2) * 0.1 / static_cast<double>(seeds);
-    }
+  const Goniometer goniometer(made, seed);
+  const Calibration calibration = calibrated(goniometer, seed);
+  const Reduction reduction(calibration.polarimeter, calibration.covariance);
+  const PreparedModel exact = prepare(truth, wavelength);
+  std::vector<Sample> samples;
+  const auto readings = goniometer.readings(exact, measured, seed);
+  for (std::size_t g = 0; g < measured.size(); ++g)
+    samples.push_back(sample(reduction.mueller(readings[g]), wavelength, measured[g], made.solid_angle));
+  Model model = fit(samples, {}, {}, Weights::speckle).model;
+  add_common_errors(model, samples, instrument_errors(reduction, samples), speckle_weights(samples, model));
+  const PreparedModel found = prepare(model, wavelength);
+  const PreparedUncertainty uncertainty = prepare_uncertainty(model, wavelength);
+  std::array<std::vector<double>, 17> errors;
+  for (const Geometry& g : asked) {
+    const Mueller expected = exact.evaluate(g), value = found.evaluate(g);
+    const Mueller u = standard_uncertainty(uncertainty.normalized(g));
+    errors[0].push_back((value(0, 0) - expected(0, 0)) / u(0, 0));
+    for (std::size_t e = 1; e < 16; ++e)
+      errors[e].push_back((normalized(value).elements[e] - normalized(expected).elements[e]) / u.elements[e]);
+    errors[16].push_back((directional_hemispherical_reflectance(model, wavelength, g.incident) -
+                          directional_hemispherical_reflectance(truth, wavelength, g.incident)) /
+                         uncertainty.directional_hemispherical_reflectance(g.incident));
   }
-  double pooled = dhr_inside / 17;
-  for (std::size_t e = 0; e < 16; ++e) {
-    RecordProperty("inside_" + std::to_string(e), std::to_string(inside[e]));
-    pooled += inside[e] / 17;
-    EXPECT_NEAR(inside[e], 0.95, 0.036) << e;
-    EXPECT_NEAR(std::sqrt(squares[e]), 1, 0.16) << e;
+  for (std::size_t q = 0; q < 17; ++q) coverages[q].add(errors[q]);
+}
+
+}  // namespace
+
+// Raw readings of a simulated instrument with imperfections, noise and speckle, calibrated from its own references,
+// reduced and fitted. Ten geometries of one fit are far from independent: with 100 instruments the share of one
+// quantity scatters by up to 2.2 %, √(0.95 · 0.05 / 100), and only the mean of all 17 is held to 93 … 97 %; with 400
+// each one is.
+TEST(CommonErrors, LeaveTheTruthInsideTheIntervalsOfTheWholeChainWithItsScatter) {
+  const unsigned long count = instruments();
+  const Model truth = material("ptfe-532");
+  const std::vector<Geometry> measured = random_geometries(400, 5), asked = random_geometries(10, 6, radians(65));
+  Coverages coverages;
+  for (unsigned long seed = 1; seed <= count; ++seed) add_instrument(coverages, truth, measured, asked, seed);
+  const double wider = std::max(1., std::sqrt(400. / static_cast<double>(count)));
+  double pooled = 0;
+  for (std::size_t q = 0; q < 17; ++q) {
+    const Coverage& c = coverages[q];
+    const std::string name = q == 16 ? "dhr" : std::to_string(q / 4 + 1) + std::to_string(q % 4 + 1);
+    std::ostringstream text;
+    text << std::setprecision(3) << 100 * c.share() << " +- " << 100 * c.scatter() << " %, rms " << c.rms();
+    RecordProperty("inside_" + name, text.str());
+    std::cout << name << (q == 16 ? " " : "  ") << text.str() << '\n';
+    pooled += c.share() / 17;
+    EXPECT_NEAR(c.share(), 0.95, 0.02 * wider) << name;
+    EXPECT_NEAR(c.rms(), 1, 0.08 * wider) << name;
   }
-  EXPECT_NEAR(dhr_inside, 0.95, 0.036);
-  EXPECT_NEAR(std::sqrt(dhr_squares), 1, 0.16);
-  EXPECT_NEAR(pooled, 0.95, 0.02);
+  RecordProperty("inside_all", std::to_string(pooled));
+  EXPECT_NEAR(pooled, 0.95, 0.01 * wider);
 }
