@@ -28,7 +28,7 @@ std::string text_of(const Direction& axis) { return in_degrees_text(axis.theta) 
 void require_size(double size, const std::string& what) {
   if (size >= smallest_width) return;
   throw std::invalid_argument(what + ": " + in_degrees_text(size) + " degrees, must be at least " +
-                              in_degrees_text(smallest_width));
+                              rounded(degrees(smallest_width), 3));
 }
 
 void require_inside_horizon(bool inside, const std::string& shape, const Direction& axis, const std::string& sizes) {

@@ -13,12 +13,12 @@ namespace {
 using Complex = std::complex<double>;
 
 void require_valid(const Film& film, double wavelength, double theta_i) {
-  const auto require = [](bool good, const char* what, double value) {
-    if (!good) throw std::invalid_argument(std::string("film: ") + what + " " + shortest(value));
+  const auto require = [](bool good, const char* what, double value, const char* unit = "") {
+    if (!good) throw std::invalid_argument(std::string("film: ") + what + " " + shortest(value) + unit);
   };
-  require(wavelength > 0 && std::isfinite(wavelength), "wavelength (nm) of", in_nanometres(wavelength));
-  require(theta_i >= 0 && theta_i < std::numbers::pi / 2, "angle of incidence (degrees, from 0 to below 90) of",
-          in_degrees(theta_i));
+  require(wavelength > 0 && std::isfinite(wavelength), "wavelength of", in_nanometres(wavelength), " nm");
+  require(theta_i >= 0 && theta_i < std::numbers::pi / 2, "angle of incidence of", in_degrees(theta_i),
+          " degrees, must be from 0 to below 90");
   require(film.thickness >= 0 && std::isfinite(film.thickness), "thickness of", film.thickness);
   for (const Complex n : {film.film_index, film.substrate_index}) {
     require(n.real() > 0 && std::isfinite(n.real()), "refractive index of", n.real());

@@ -173,12 +173,12 @@ TEST(Apertures, MayTouchTheHorizonAndNotGoBelow) {
 
 TEST(Apertures, RefuseSizesThatMakeNoSense) {
   EXPECT_EQ(message_of([] { Aperture::cone(at(8, 0), radians(-1)); }),
-            "half-angle of a cone: -1 degrees, must be at least 1e-09 radians");
+            "half-angle of a cone: -1 degrees, must be at least 5.73e-08");
   EXPECT_THROW(Aperture::cone(at(8, 0), 0), std::invalid_argument);
   EXPECT_THROW(Aperture::cone(at(8, 0), std::nan("")), std::invalid_argument);
   EXPECT_THROW(Aperture::cone(at(95, 0), 0.1), std::invalid_argument);
   EXPECT_EQ(message_of([] { Aperture::annulus(at(8, 0), radians(4), radians(2)); }),
-            "outer less inner half-angle of an annulus: -2 degrees, must be at least 1e-09 radians");
+            "outer less inner half-angle of an annulus: -2 degrees, must be at least 5.73e-08");
   EXPECT_THROW(Aperture::annulus(at(8, 0), -0.1, 0.1), std::invalid_argument);
   EXPECT_THROW(Aperture::ellipse(at(0, 0), radians(90), 0.1), std::invalid_argument);
   EXPECT_THROW(Aperture::ellipse(at(0, 0), 0.1, 0), std::invalid_argument);

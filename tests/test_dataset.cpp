@@ -49,8 +49,8 @@ TEST(Wavelengths, ThatAreNoneAreRefusedWithTheNumberOfTheSample) {
   const auto refusal = [](double wavelength) {
     return message_of([&] { wavelengths(std::vector<Sample>{sample_at(0.5), sample_at(wavelength)}); });
   };
-  EXPECT_EQ(refusal(0), "sample 2: wavelength = 0 micrometres, must be positive");
-  EXPECT_EQ(refusal(nan_value), "sample 2: wavelength = nan micrometres, must be positive");
+  EXPECT_EQ(refusal(0), "sample 2: wavelength = 0 nm, must be positive");
+  EXPECT_EQ(refusal(nan_value), "sample 2: wavelength = nan nm, must be positive");
 }
 
 TEST(Samples, AtSomeWavelengthsKeepTheirOrder) {
@@ -71,9 +71,9 @@ TEST(Samples, AtAWavelengthThatIsNotThereAreRefusedWithThoseThereAre) {
   EXPECT_EQ(message_of([&] {
               at_wavelengths(samples, std::vector<double>{0.351, 0.532});
             }),
-            "wavelength = 0.532 micrometres: no sample; there are samples at 0.351, 0.633");
+            "wavelength = 532 nm: no sample; there are samples at 351, 633 nm");
   EXPECT_EQ(message_of([] { at_wavelengths({}, std::vector<double>{0.532}); }),
-            "wavelength = 0.532 micrometres: there are no samples");
+            "wavelength = 532 nm: there are no samples");
 }
 
 TEST(Samples, ThatAreValidPass) {
@@ -86,8 +86,7 @@ TEST(Samples, ThatAreInvalidAreRefusedWithTheirNumber) {
     spoil(samples[2]);
     return message_of([&] { require_valid(samples); });
   };
-  EXPECT_EQ(refusal([](Sample& s) { s.wavelength = -0.5; }),
-            "sample 3: wavelength = -0.5 micrometres, must be positive");
+  EXPECT_EQ(refusal([](Sample& s) { s.wavelength = -0.5; }), "sample 3: wavelength = -500 nm, must be positive");
   EXPECT_EQ(refusal([](Sample& s) { s.geometry.reflected.theta = radians(91); }),
             "sample 3: theta_r = 91 degrees, must be in 0…90");
   EXPECT_EQ(refusal([](Sample& s) { s.f11 = nan_value; }), "sample 3: f11 = nan, must be finite");

@@ -167,8 +167,8 @@ TEST(Film, RefusesWhatCannotBe) {
   const auto refusal = [](Film film, double wavelength, double theta_i) {
     return message_of([=] { reflection(film, wavelength, theta_i); });
   };
-  EXPECT_EQ(refusal(wafer, 0, 0.5), "film: wavelength of 0");
-  EXPECT_EQ(refusal(wafer, 0.532, -0.1), "film: angle of incidence of -0.1");
+  EXPECT_EQ(refusal(wafer, 0, 0.5), "film: wavelength of 0 nm");
+  EXPECT_EQ(refusal(wafer, 0.532, radians(-5)), "film: angle of incidence of -5 degrees, must be from 0 to below 90");
   EXPECT_THROW(reflection(wafer, 0.532, pi / 2), std::invalid_argument);
   EXPECT_THROW(reflection(wafer, 0.532, nan_value), std::invalid_argument);
   EXPECT_EQ(refusal({1.5, -1, 4}, 0.532, 0.5), "film: thickness of -1");

@@ -231,6 +231,9 @@ void bind_calibration(py::module_& m) {
       .def_property_readonly(
           "figure_of_merit", [](const Calibration& c) { return c.figure_of_merit.total; },
           "Rms of measured - expected matrices of the references, each divided by element 11")
+      .def_property_readonly(
+          "film_misfit_deg", [](const Calibration& c) { return degrees(c.film_misfit); },
+          "Rms of the wafers' psi and delta from those of the film; 0: no film was given")
       .def_readonly("generator_condition", &Calibration::generator_condition)
       .def_readonly("analyzer_condition", &Calibration::analyzer_condition)
       .def_readonly("singular_ratio", &Calibration::singular_ratio, "s16/s15: misfit of the linear solution")
