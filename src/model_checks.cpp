@@ -38,12 +38,14 @@ std::vector<double> ReflectanceTable::weights(double wavelength) const {
   return result;
 }
 
-double ReflectanceTable::at(double wavelength) const {
+double ReflectanceTable::at(double wavelength) const {  // weights(), without allocating
   if (values.empty()) return 1;
-  double sum = 0;
-  const std::vector<double> weight = weights(wavelength);
-  for (std::size_t i = 0; i < values.size(); ++i) sum += weight[i] * values[i];
-  return sum;
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  if (above == wavelengths.begin()) return values.front();
+  if (above == wavelengths.end()) return values.back();
+  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
+  const double weight = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  return (1 - weight) * values[i - 1] + weight * values[i];
 }
 
 void require_valid(const ReflectanceTable& table) {

@@ -43,7 +43,8 @@ TEST(Budget, IsTheSumOfItsTermsAndKeepsThem) {
   const Mueller f = ptfe.prepared.evaluate(oblique, Frame::sp);
   EXPECT_NEAR(std::pow(relative(b.total, f), 2) - std::pow(relative(b.terms[0].covariance, f), 2), 0.005 * 0.005,
               1e-12);
-  EXPECT_NEAR(standard_uncertainty(depolarization_gradient(f), b.terms[1].covariance), 0, 1e-15);
+  // It is the square root of what rounding leaves of a variance of (0.003 f)².
+  EXPECT_NEAR(standard_uncertainty(depolarization_gradient(f), b.terms[1].covariance), 0, 1e-10);
 }
 
 // GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.2).

@@ -118,8 +118,9 @@ class PreparedModel {
   /// Throws std::invalid_argument for other vectors.
   Mueller evaluate(const Vector3& incident, const Vector3& reflected, Frame frame = Frame::xy) const;
 
-  /// One matrix for each geometry. Throws std::invalid_argument if the sizes differ, before anything is written, or for
-  /// the first invalid geometry.
+  /// One matrix for each geometry, the same to the last bit as one by one. Throws std::invalid_argument if the sizes
+  /// differ or for the first invalid geometry, before anything is written. With several threads, for unit vectors, in
+  /// single precision: batch.hpp.
   void evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
 
   /// The unpolarized BRDF alone, sr⁻¹.
@@ -146,17 +147,18 @@ class PreparedModel {
  private:
   friend PreparedModel prepare(const Model&, double, Rotation);
   friend class PreparedIncidence;
-  struct Pattern;  // products of Zernike functions, the same for all wavelengths
+  friend struct Evaluation;
+  struct Pattern;  // what is the same for all wavelengths
   PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength);
-  Mueller sum(const DiscPoint& incident, const DiscPoint& reflected, std::size_t elements) const;
-
+  void set(std::vector<double> coefficients);
   std::shared_ptr<const Pattern> pattern_;
-  std::vector<double> weights_;  // of each product at this wavelength
+  std::vector<double> of_modes_;  // coefficients at this wavelength
+  std::vector<double> of_form_;   // the same as the kernel takes them
   double reflectance_ = 1;
   double wavelength_ = 0;
 };
 
-/// A model at one wavelength and one incident direction: what is left is one dot product for each element.
+/// A model at one wavelength and one incident direction: what is left are functions of the reflected direction.
 class PreparedIncidence {
  public:
   /// As PreparedModel::evaluate, for the incident direction this was made for. Agrees with it to evaluation_error ×
@@ -167,10 +169,11 @@ class PreparedIncidence {
 
  private:
   friend class PreparedModel;
+  friend struct Evaluation;
   PreparedIncidence(const PreparedModel& model, const Direction& incident);
 
   std::shared_ptr<const PreparedModel::Pattern> pattern_;
-  std::array<std::vector<double>, 16> weights_;  // for each element, of each K(reflected)
+  std::vector<double> of_form_;  // coefficients as the kernel takes them
   double reflectance_;
   Direction incident_;
 };

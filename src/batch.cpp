@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/batch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "kernels.hpp"
+#include "numbers.hpp"
+#include "parts.hpp"
+
+namespace mmbrdf {
+namespace {
+
+// ---- what is asked --------------------------------------------------------------------------------------------------
+
+void require_size(std::size_t asked, const char* what, std::size_t room) {
+  if (asked != room)
+    throw std::invalid_argument("evaluate: " + std::to_string(asked) + " " + what + ", room for " +
+                                std::to_string(room));
+}
+
+bool is_valid(const Direction& d) {
+  return d.theta >= 0 && d.theta <= radians(90) && std::abs(d.phi) <= std::numeric_limits<double>::max();
+}
+
+void require_valid(std::span<const Geometry> geometries, int threads) {
+  const std::size_t bad = first_found(geometries.size(), threads, [&](std::size_t first, std::size_t count) {
+    std::size_t q = first;
+    while (q < first + count && is_valid(geometries[q].incident) && is_valid(geometries[q].reflected)) ++q;
+    return q;
+  });
+  if (bad < geometries.size()) require_valid(geometries[bad], "evaluate");  // throws
+}
+
+void require_valid(std::span<const Direction> directions, int threads) {
+  const std::size_t bad = first_found(directions.size(), threads, [&](std::size_t first, std::size_t count) {
+    std::size_t q = first;
+    while (q < first + count && is_valid(directions[q])) ++q;
+    return q;
+  });
+  if (bad < directions.size()) require_valid(Geometry{{}, directions[bad]}, "evaluate");
+}
+
+template <class T>
+void require_valid(const UnitVectors<T>& vectors, const char* side, int threads) {
+  const std::size_t count = vectors.x.size();
+  if (vectors.y.size() != count || vectors.z.size() != count)
+    throw std::invalid_argument("evaluate: " + std::string(side) + " vectors with " + std::to_string(count) + " x, " +
+                                std::to_string(vectors.y.size()) + " y and " + std::to_string(vectors.z.size()) + " z");
+  const std::size_t bad = first_found(count, threads, [&](std::size_t first, std::size_t part) {
+    const T* const columns[3] = {vectors.x.data() + first, vectors.y.data() + first, vectors.z.data() + first};
+    if constexpr (std::is_same_v<T, double>)
+      return first + best_kernel().first_invalid(columns, part);
+    else
+      return first + best_kernel().first_invalid_single(columns, part);
+  });
+  if (bad < count)
+    throw std::invalid_argument("evaluate: " + std::string(side) + " vector " + std::to_string(bad + 1) + ": (" +
+                                shortest(vectors.x[bad]) + ", " + shortest(vectors.y[bad]) + ", " +
+                                shortest(vectors.z[bad]) + ") is not a unit vector with z >= 0");
+}
+
+template <class T>
+Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {
+  return {vectors.x[q], vectors.y[q], vectors.z[q]};
+}
+
+// ---- coefficients ---------------------------------------------------------------------------------------------------
+
+/// A model with its coefficients in the precision asked for.
+template <class T>
+class Question {
+ public:
+  explicit Question(const KernelModel<double>& folded) { convert(folded, {}); }
+
+  /// At the wavelengths of the options, if there are any.
+  Question(const PreparedModel& prepared, std::size_t count, const BatchOptions& options)
+      : wavelengths(options.wavelengths) {
+    KernelModel<double> asked = Evaluation::model(prepared);
+    if (wavelengths.empty()) {
+      convert(asked, {});
+      return;
+    }
+    if (count != wavelengths.size())
+      throw std::invalid_argument("evaluate: " + std::to_string(count) + " geometries, " +
+                                  std::to_string(wavelengths.size()) + " wavelengths");
+    for (const double wavelength : wavelengths) require_wavelength(wavelength);
+    const PreparedPattern& pattern = Evaluation::pattern(prepared);
+    std::vector<double> all;
+    for (std::size_t first = 0; first < pattern.by_powers.size(); first += pattern.modes()) {
+      const auto power = pattern.arrangement.coefficients(std::span(pattern.by_powers).subspan(first, pattern.modes()));
+      all.insert(all.end(), power.begin(), power.end());
+    }
+    reflectance = &pattern.reflectance;
+    asked.powers = static_cast<int>(pattern.by_powers.size() / pattern.modes()) - 1;
+    asked.coefficients = all.data();
+    convert(asked, std::move(all));
+  }
+  /// The same at the wavelength of point q alone.
+  Question(const Question& all, std::size_t q)
+      : model(all.model),
+        wavelengths(all.reflectance ? all.wavelengths.subspan(q, 1) : all.wavelengths),
+        reflectance(all.reflectance) {}
+  Question(const Question&) = delete;
+  Question& operator=(const Question&) = delete;
+
+  KernelModel<T> model{};
+  std::span<const double> wavelengths;
+  const ReflectanceTable* reflectance = nullptr;
+
+ private:
+  void convert(const KernelModel<double>& from, std::vector<double>&& own) {
+    model = {from.form,
+             from.projected,
+             from.turned,
+             {static_cast<T>(from.turned_by[0]), static_cast<T>(from.turned_by[1])},
+             from.list,
+             nullptr,
+             from.powers,
+             from.count,
+             static_cast<T>(from.scale)};
+    if constexpr (std::is_same_v<T, double>) {
+      own_ = std::move(own);
+      model.coefficients = own_.empty() ? from.coefficients : own_.data();
+    } else {
+      const auto count = static_cast<std::size_t>((from.powers + 1) * from.count);
+      for (std::size_t i = 0; i < count; ++i) own_.push_back(static_cast<T>(from.coefficients[i]));
+      if (!std::all_of(own_.begin(), own_.end(), [](T a) { return std::isfinite(a); }) || !std::isfinite(model.scale))
+        throw std::invalid_argument("evaluate: a coefficient is too large for single precision");
+      model.coefficients = own_.data();
+    }
+  }
+  std::vector<T> own_;
+};
+
+// ---- evaluation -----------------------------------------------------------------------------------------------------
+
+template <class T>
+void run_kernel(const KernelModel<T>& model, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+                std::size_t count) {
+  if constexpr (std::is_same_v<T, double>)
+    best_kernel().evaluate(model, points, out, count);
+  else
+    best_kernel().evaluate_single(model, points, out, count);
+}
+
+template <class T>
+KernelPoints<T> from(KernelPoints<T> points, std::size_t first) {
+  for (const T*& column : points.column)
+    if (column) column += static_cast<std::ptrdiff_t>(first) * points.stride;
+  return points;
+}
+template <class T>
+KernelMatrices<T> from(KernelMatrices<T> out, std::size_t first) {
+  for (T*& element : out.element) element += static_cast<std::ptrdiff_t>(first) * out.stride;
+  return out;
+}
+
+template <class T>
+KernelMatrices<T> rows(T* values) {
+  KernelMatrices<T> out{{}, 16};
+  for (std::size_t e = 0; e < 16; ++e) out.element[e] = values + e;
+  return out;
+}
+
+/// With wavelengths of their own, or in another frame than xy: some points at a time. geometry(q) is asked for other
+/// frames only.
+template <class T, class GeometryOf>
+void run_in_blocks(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+                   std::size_t first, std::size_t count, Frame frame, GeometryOf geometry) {
+  constexpr std::size_t size = 64;
+  T wavelengths[size], scales[size], values[16 * size];
+  for (std::size_t begin = first; begin < first + count; begin += size) {
+    const std::size_t here = std::min(size, first + count - begin);
+    KernelPoints<T> block = from(points, begin);
+    if (question.reflectance) {
+      for (std::size_t q = 0; q < here; ++q) {
+        wavelengths[q] = static_cast<T>(question.wavelengths[begin + q]);
+        scales[q] = static_cast<T>(question.reflectance->at(question.wavelengths[begin + q]));
+      }
+      block.wavelength = wavelengths;
+      block.scale = scales;
+    }
+    if (frame == Frame::xy) {
+      run_kernel(question.model, block, from(out, begin), here);
+      continue;
+    }
+    run_kernel(question.model, block, rows(values), here);
+    for (std::size_t q = 0; q < here; ++q) {
+      Mueller m;
+      std::copy_n(values + 16 * q, 16, m.elements.begin());
+      m = change_frame(m, geometry(begin + q), Frame::xy, frame);
+      for (std::size_t e = 0; e < 16; ++e)
+        out.element[e][static_cast<std::ptrdiff_t>(begin + q) * out.stride] = static_cast<T>(m.elements[e]);
+    }
+  }
+}
+
+template <class T, class GeometryOf, class Finish>
+void run(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out, std::size_t count,
+         const BatchOptions& options, GeometryOf geometry, Finish finish) {
+  in_parts(count, options.threads, [&](std::size_t first, std::size_t part) {
+    if (options.frame == Frame::xy && !question.reflectance)
+      run_kernel(question.model, from(points, first), from(out, first), part);
+    else
+      run_in_blocks(question, points, out, first, part, options.frame, geometry);
+    finish(first, part);
+  });
+}
+
+// ---- angles ---------------------------------------------------------------------------------------------------------
+
+/// The azimuth within a turn where there are too many for the kernel.
+double reduced(double phi) { return std::abs(phi) <= max_azimuth ? phi : std::atan2(std::sin(phi), std::cos(phi)); }
+Direction reduced(const Direction& d) { return {d.theta, reduced(d.phi)}; }
+Geometry reduced(const Geometry& g) { return {reduced(g.incident), reduced(g.reflected)}; }
+
+KernelPoints<double> points_of(const Direction& first) {
+  return {true, {&first.theta, &first.phi}, sizeof(Direction) / sizeof(double), nullptr, nullptr};
+}
+KernelPoints<double> points_of(const Geometry& first) {
+  return {true,
+          {&first.incident.theta, &first.incident.phi, &first.reflected.theta, &first.reflected.phi},
+          sizeof(Geometry) / sizeof(double),
+          nullptr,
+          nullptr};
+}
+
+/// Angles are Direction or Geometry. Those with large azimuths are done again, one by one.
+template <class Angles, class GeometryOf>
+void run_angles(const Question<double>& question, std::span<const Angles> angles, std::span<Mueller> out,
+                const BatchOptions& options, GeometryOf geometry) {
+  if (angles.empty()) return;
+  const KernelMatrices<double> matrices = rows(out[0].elements.data());
+  run(question, points_of(angles[0]), matrices, out.size(), options, geometry,
+      [&](std::size_t first, std::size_t count) {
+        for (std::size_t q = first; q < first + count; ++q) {
+          const Angles near = reduced(angles[q]);
+          if (near == angles[q]) continue;
+          run_in_blocks(Question<double>(question, q), points_of(near), from(matrices, q), 0, 1, options.frame,
+                        [&](std::size_t) { return geometry(q); });
+        }
+      });
+}
+
+// ---- vectors --------------------------------------------------------------------------------------------------------
+
+template <class T>
+KernelMatrices<T> columns(const MuellerColumns<T>& out, std::size_t count) {
+  KernelMatrices<T> result{{}, 1};
+  for (std::size_t e = 0; e < 16; ++e) {
+    require_size(count, "geometries", out.elements[e].size());
+    result.element[e] = out.elements[e].data();
+  }
+  return result;
+}
+
+template <class T>
+void run_vectors(const PreparedModel& model, const VectorGeometries<T>& geometries, const KernelMatrices<T>& out,
+                 const BatchOptions& options) {
+  const UnitVectors<T>&i = geometries.incident, &r = geometries.reflected;
+  const std::size_t count = i.x.size();
+  require_valid(i, "incident", options.threads);
+  require_valid(r, "reflected", options.threads);
+  if (r.x.size() != count)
+    throw std::invalid_argument("evaluate: " + std::to_string(count) + " incident and " + std::to_string(r.x.size()) +
+                                " reflected vectors");
+  const Question<T> question(model, count, options);
+  const KernelPoints<T> points{
+      false, {i.x.data(), i.y.data(), i.z.data(), r.x.data(), r.y.data(), r.z.data()}, 1, nullptr, nullptr};
+  run(
+      question, points, out, count, options,
+      [&](std::size_t q) {
+        return Geometry{direction(vector(i, q)), direction(vector(r, q))};
+      },
+      [](std::size_t, std::size_t) {});
+}
+
+template <class T>
+void run_vectors(const PreparedIncidence& model, const UnitVectors<T>& reflected, const KernelMatrices<T>& out,
+                 const BatchOptions& options) {
+  if (!options.wavelengths.empty()) throw std::invalid_argument("evaluate: wavelengths for one incident direction");
+  require_valid(reflected, "reflected", options.threads);
+  const Question<T> question(Evaluation::model(model));
+  const KernelPoints<T> points{
+      false, {reflected.x.data(), reflected.y.data(), reflected.z.data()}, 1, nullptr, nullptr};
+  run(
+      question, points, out, reflected.x.size(), options,
+      [&](std::size_t q) {
+        return Geometry{model.incident(), direction(vector(reflected, q))};
+      },
+      [](std::size_t, std::size_t) {});
+}
+
+double* first_number(std::span<Mueller> out) { return out.empty() ? nullptr : out[0].elements.data(); }
+
+}  // namespace
+
+void evaluate(const PreparedModel& model, std::span<const Geometry> geometries, std::span<Mueller> out,
+              const BatchOptions& options) {
+  require_size(geometries.size(), "geometries", out.size());
+  require_valid(geometries, options.threads);
+  run_angles(Question<double>(model, out.size(), options), geometries, out, options,
+             [&](std::size_t q) { return geometries[q]; });
+}
+
+void evaluate(const PreparedModel& model, const VectorGeometries<double>& geometries, std::span<Mueller> out,
+              const BatchOptions& options) {
+  require_size(geometries.incident.x.size(), "geometries", out.size());
+  run_vectors(model, geometries, rows(first_number(out)), options);
+}
+
+void evaluate(const PreparedModel& model, const VectorGeometries<double>& geometries, std::span<double> out,
+              const BatchOptions& options) {
+  require_size(16 * geometries.incident.x.size(), "elements", out.size());
+  run_vectors(model, geometries, rows(out.data()), options);
+}
+
+void evaluate(const PreparedModel& model, const VectorGeometries<float>& geometries, std::span<float> out,
+              const BatchOptions& options) {
+  require_size(16 * geometries.incident.x.size(), "elements", out.size());
+  run_vectors(model, geometries, rows(out.data()), options);
+}
+
+void evaluate(const PreparedModel& model, const VectorGeometries<double>& geometries, const MuellerColumns<double>& out,
+              const BatchOptions& options) {
+  run_vectors(model, geometries, columns(out, geometries.incident.x.size()), options);
+}
+
+void evaluate(const PreparedModel& model, const VectorGeometries<float>& geometries, const MuellerColumns<float>& out,
+              const BatchOptions& options) {
+  run_vectors(model, geometries, columns(out, geometries.incident.x.size()), options);
+}
+
+void evaluate(const PreparedIncidence& model, std::span<const Direction> reflected, std::span<Mueller> out,
+              const BatchOptions& options) {
+  require_size(reflected.size(), "directions", out.size());
+  if (!options.wavelengths.empty()) throw std::invalid_argument("evaluate: wavelengths for one incident direction");
+  require_valid(reflected, options.threads);
+  run_angles(Question<double>(Evaluation::model(model)), reflected, out, options, [&](std::size_t q) {
+    return Geometry{model.incident(), reflected[q]};
+  });
+}
+
+void evaluate(const PreparedIncidence& model, const UnitVectors<double>& reflected, std::span<Mueller> out,
+              const BatchOptions& options) {
+  require_size(reflected.x.size(), "directions", out.size());
+  run_vectors(model, reflected, rows(first_number(out)), options);
+}
+
+void evaluate(const PreparedIncidence& model, const UnitVectors<double>& reflected, const MuellerColumns<double>& out,
+              const BatchOptions& options) {
+  run_vectors(model, reflected, columns(out, reflected.x.size()), options);
+}
+
+void evaluate(const PreparedIncidence& model, const UnitVectors<float>& reflected, std::span<float> out,
+              const BatchOptions& options) {
+  require_size(16 * reflected.x.size(), "elements", out.size());
+  run_vectors(model, reflected, rows(out.data()), options);
+}
+
+void evaluate(const PreparedIncidence& model, const UnitVectors<float>& reflected, const MuellerColumns<float>& out,
+              const BatchOptions& options) {
+  run_vectors(model, reflected, columns(out, reflected.x.size()), options);
+}
+
+}  // namespace mmbrdf

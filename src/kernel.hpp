@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The evaluation kernel: what model.cpp asks of it. Its sources (kernel.cpp and kernel_*.hpp) are compiled once for
+/// each instruction set; kernels.cpp lists them and chooses. This header is what both sides see: plain data, nothing
+/// inline.
+#pragma once
+
+#include <stddef.h>
+
+namespace mmbrdf {
+
+/// How the coefficients of a model are arranged.
+enum class Form {
+  isotropic,   ///< the isotropic family up to orders 7, 4: kernel_isotropic.hpp
+  germer2017,  ///< the published index sets up to orders 7, 4: kernel_germer2017.hpp
+  pairs,       ///< any list of products: kernel_pairs.hpp
+  // One incident direction, kernel_incidence.hpp:
+  plane,      ///< isotropic samples up to orders 7, 4
+  functions,  ///< any: coefficient 16 j + e is that of function j in element e
+};
+
+/// Where the functions of the isotropic family begin among its coefficients.
+struct IsotropicLayout {
+  static constexpr int f11 = 0, m44 = 40, m14 = 54, g = 64, h = 88, u = 112, v_re = 120, v_im = 134, count = 142;
+};
+
+/// Of element ij, i < j: pairs of even (S), then of odd (D) symmetry, by |k|, |l| = 11, 22, 33, 44, 13, 24, 02 or 04.
+struct Germer2017Layout {
+  static constexpr int f11 = 0, m12 = 40, m34 = 70, m14 = 100, m13 = 136, m24 = 184, m23 = 232, m22 = 274, m33 = 295,
+                       m44 = 316, count = 330;
+};
+
+/// Elements even in phi_r have nine coefficients, odd ones six, f11 twenty.
+struct PlaneLayout {
+  static constexpr int f11 = 0, m12 = 20, m21 = 29, m34 = 38, m43 = 47, m44 = 56, u_re = 65, v_re = 74, m13 = 83,
+                       m31 = 89, m14 = 95, m41 = 101, m24 = 107, m42 = 113, u_im = 119, v_im = 125, count = 131;
+};
+
+/// S, D = K_a(i) K_b(r) ± K_b(i) K_a(r), without the norms of K; positions are those of zernike_index.
+struct KernelPair {
+  int a, b;
+};
+
+/// Pairs begin … end feed the same sums: `sums` over S, then `differences` over D, at most 4 of each. Their
+/// coefficients follow each other, pair by pair. The sum over S of element ij, i ≤ j, is number 4i + j, that over D
+/// number 4j + i.
+struct PairRun {
+  int begin, end, coefficients;
+  int sums, differences;
+  int target[8];
+};
+
+inline constexpr int max_table = 861;  // zernike_count(max_order)
+
+struct PairList {
+  int order;  ///< of the table of K
+  const KernelPair* pairs;
+  const PairRun* runs;
+  int count;  ///< of runs
+};
+
+/// A model at one wavelength, or at all.
+template <class T>
+struct KernelModel {
+  Form form;
+  bool projected;         ///< disc mapping
+  bool turned;            ///< evaluate at phi_i = 0 and turn the result
+  T turned_by[2];         ///< cos phi_i and sin phi_i, of the forms for one incident direction
+  PairList list;          ///< of Form::pairs
+  const T* coefficients;  ///< power after power
+  int powers;             ///< highest power of the wavelength; 0 if it is folded in
+  int count;              ///< of coefficients for each power
+  T scale;                ///< of f11
+};
+
+/// Number q of column j is column[j][q × stride].
+template <class T>
+struct KernelPoints {
+  bool angles;  ///< theta_i, phi_i, theta_r, phi_r with |phi| ≤ max_azimuth; else x, y, z of both unit vectors. The
+                ///< forms for one incident direction have no columns for it.
+  const T* column[6];
+  ptrdiff_t stride;
+  const T* wavelength;  ///< of each point; null if it is folded in
+  const T* scale;       ///< the same for the factor of f11
+};
+
+/// Element e of point q goes to element[e][q × stride]. The stride is 1, for one array for each element, or 16, for one
+/// matrix after the other.
+template <class T>
+struct KernelMatrices {
+  T* element[16];
+  ptrdiff_t stride;
+};
+
+/// Azimuths beyond it lose digits: the products of their quarter turns with the first part of π/2 are not exact.
+inline constexpr double max_azimuth = 1e6;
+
+/// The same functions for one instruction set. What they compute for a point does not depend on its neighbours.
+struct Kernel {
+  const char* name;
+  bool (*runs_here)();
+  void (*evaluate)(const KernelModel<double>&, const KernelPoints<double>&, const KernelMatrices<double>&,
+                   size_t count);
+  void (*evaluate_single)(const KernelModel<float>&, const KernelPoints<float>&, const KernelMatrices<float>&,
+                          size_t count);
+  /// Of vectors x, y, z: the first that has not length 1 to 1e-6 or not z ≥ 0; count if all have.
+  size_t (*first_invalid)(const double* const vectors[3], size_t count);
+  size_t (*first_invalid_single)(const float* const vectors[3], size_t count);
+};
+
+}  // namespace mmbrdf

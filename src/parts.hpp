@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A range of work in parts, one on each thread.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace mmbrdf {
+
+/// Starting a thread takes as long as some thousand matrices: fewer are not worth one.
+inline constexpr std::size_t smallest_part = 4096;
+
+/// Calls part(first, count) for consecutive parts of a range, the first of them on this thread. part must not throw.
+/// threads 0: as many as there are cores. Throws std::invalid_argument for negative numbers of threads.
+template <class Part>
+void in_parts(std::size_t count, int threads, Part part) {
+  if (threads < 0)
+    throw std::invalid_argument("evaluate: threads = " + std::to_string(threads) + ", must be 0 or more");
+  const unsigned wanted = threads == 0 ? std::thread::hardware_concurrency() : static_cast<unsigned>(threads);
+  const std::size_t parts = std::clamp<std::size_t>(count / smallest_part, 1, std::max(1u, wanted));
+  const std::size_t each = (count / parts + 63) / 64 * 64;  // no two threads write to one cache line
+  std::vector<std::jthread> others;
+  if (parts > 1) others.reserve(parts - 1);
+  for (std::size_t first = each; first < count; first += each)
+    others.emplace_back([=] { part(first, std::min(each, count - first)); });
+  part(std::size_t{0}, std::min(each, count));
+}
+
+/// The first index at which a part finds something: find(first, count) returns it, or first + count.
+template <class Find>
+std::size_t first_found(std::size_t count, int threads, Find find) {
+  std::atomic<std::size_t> found = count;
+  in_parts(count, threads, [&](std::size_t first, std::size_t part) {
+    const std::size_t at = find(first, part);
+    if (at == first + part) return;
+    for (std::size_t before = found; at < before && !found.compare_exchange_weak(before, at);) continue;
+  });
+  return found;
+}
+
+}  // namespace mmbrdf

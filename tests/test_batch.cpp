@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/batch.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "cases.hpp"
+#include "mmbrdf/dataset.hpp"
+#include "random_model.hpp"
+
+using namespace mmbrdf;
+
+namespace {
+
+constexpr std::array every_family{Family::isotropic, Family::germer2017, Family::anisotropic};
+constexpr std::array every_frame{Frame::xy, Frame::sp, Frame::scattering_plane};
+constexpr std::size_t many = 20000;  // enough for several threads
+
+template <class Real>
+struct Columns {
+  std::array<std::vector<Real>, 6> in;
+  explicit Columns(const std::vector<Geometry>& geometries) {
+    for (const Geometry& g : geometries) {
+      const Vector3 i = unit_vector(g.incident), r = unit_vector(g.reflected);
+      for (std::size_t j = 0; j < 3; ++j) {
+        in[j].push_back(static_cast<Real>(i[j]));
+        in[3 + j].push_back(static_cast<Real>(r[j]));
+      }
+    }
+  }
+  UnitVectors<Real> incident() const { return {in[0], in[1], in[2]}; }
+  UnitVectors<Real> reflected() const { return {in[3], in[4], in[5]}; }
+  VectorGeometries<Real> geometries() const { return {incident(), reflected()}; }
+};
+
+template <class Real>
+struct Elements {
+  std::array<std::vector<Real>, 16> values;
+  MuellerColumns<Real> columns;
+  explicit Elements(std::size_t count) {
+    for (std::size_t e = 0; e < 16; ++e) {
+      values[e].resize(count);
+      columns.elements[e] = values[e];
+    }
+  }
+};
+
+double deviation(const Mueller& a, const Mueller& b) {
+  double largest = 0;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const double difference = std::abs(a.elements[e] - b.elements[e]);
+    if (!std::isfinite(difference)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, difference);
+  }
+  return largest / std::abs(b(0, 0));
+}
+
+/// Matrix q of a list of numbers.
+template <class Real>
+Mueller matrix(const std::vector<Real>& rows, std::size_t q) {
+  Mueller m;
+  for (std::size_t e = 0; e < 16; ++e) m.elements[e] = static_cast<double>(rows[16 * q + e]);
+  return m;
+}
+
+Model any_model(int powers = 0) {
+  const Family family = *rc::gen::elementOf(every_family);
+  Model model = random_model(family, *rc::gen::element(Orders{7, 4}, Orders{5, 5}, Orders{2, 3}), powers,
+                             *rc::gen::arbitrary<std::uint64_t>(),
+                             *rc::gen::element(DiscMapping::lambert, DiscMapping::projected));
+  model.reflectance = {{0.4, 0.7}, {0.9, 0.5}};
+  return model;
+}
+
+}  // namespace
+
+TEST(Batch, DoesNotDependOnTheNumberOfThreads) {
+  const PreparedModel model = prepare(random_model(Family::germer2017, {7, 4}, 0, 1), 0.5);
+  const std::vector<Geometry> geometries = random_geometries(many, 1);
+  const Columns<double> vectors(geometries);
+  for (const Frame frame : every_frame) {
+    std::vector<Mueller> from_angles(many), from_vectors(many);
+    evaluate(model, geometries, from_angles, {.frame = frame});
+    evaluate(model, vectors.geometries(), from_vectors, {.frame = frame});
+    for (const int threads : {0, 2, 3, 7}) {
+      std::vector<Mueller> out(many);
+      evaluate(model, geometries, out, {.frame = frame, .threads = threads});
+      EXPECT_EQ(out, from_angles) << threads;
+      evaluate(model, vectors.geometries(), out, {.frame = frame, .threads = threads});
+      EXPECT_EQ(out, from_vectors) << threads;
+    }
+  }
+}
+
+// Whatever is evaluated beside it, and in whatever layout.
+RC_GTEST_PROP(Batch, HasTheBitsOfOneAtATime, ()) {
+  const PreparedModel model = prepare(any_model(), 0.5);
+  const int count = *rc::gen::inRange(1, 40);
+  const std::vector<Geometry> geometries = random_geometries(count, *rc::gen::arbitrary<unsigned long>());
+  const Columns<double> vectors(geometries);
+  std::vector<Mueller> from_angles(geometries.size()), rows(geometries.size());
+  std::vector<double> numbers(16 * geometries.size());
+  Elements<double> columns(geometries.size());
+  evaluate(model, geometries, from_angles);
+  evaluate(model, vectors.geometries(), rows);
+  evaluate(model, vectors.geometries(), numbers);
+  evaluate(model, vectors.geometries(), columns.columns);
+  for (std::size_t q = 0; q < geometries.size(); ++q) {
+    RC_ASSERT(from_angles[q] == model.evaluate(geometries[q]));
+    RC_ASSERT(deviation(rows[q], from_angles[q]) <= evaluation_error);
+    for (std::size_t e = 0; e < 16; ++e) {
+      RC_ASSERT(rows[q].elements[e] == numbers[16 * q + e]);
+      RC_ASSERT(rows[q].elements[e] == columns.values[e][q]);
+    }
+  }
+}
+
+RC_GTEST_PROP(Batch, InSinglePrecisionKeepsItsPromise, ()) {
+  const PreparedModel model = prepare(any_model(), 0.5);
+  const std::vector<Geometry> geometries = random_geometries(20, *rc::gen::arbitrary<unsigned long>(), radians(89));
+  const Columns<float> vectors(geometries);
+  const Frame frame = *rc::gen::element(Frame::xy, Frame::sp);
+  std::vector<float> rows(16 * geometries.size());
+  Elements<float> columns(geometries.size());
+  evaluate(model, vectors.geometries(), rows, {.frame = frame});
+  evaluate(model, vectors.geometries(), columns.columns, {.frame = frame});
+  for (std::size_t q = 0; q < geometries.size(); ++q) {
+    if (geometries[q].incident.theta < 0.05 || geometries[q].reflected.theta < 0.05) continue;  // azimuths lose digits
+    RC_ASSERT(deviation(matrix(rows, q), model.evaluate(geometries[q], frame)) <= single_precision_error);
+    for (std::size_t e = 0; e < 16; ++e) RC_ASSERT(rows[16 * q + e] == columns.values[e][q]);
+  }
+}
+
+RC_GTEST_PROP(Batch, AtTheWavelengthOfEachGeometryIsAsIfPreparedThere, ()) {
+  const PreparedModel model = prepare(any_model(*rc::gen::inRange(0, 4)), 0.5);
+  const std::vector<Geometry> geometries = random_geometries(20, *rc::gen::arbitrary<unsigned long>());
+  std::vector<double> wavelengths;
+  for (std::size_t q = 0; q < geometries.size(); ++q) wavelengths.push_back(between(0.3, 1.2));
+  const Columns<float> vectors(geometries);
+  for (const Frame frame : every_frame) {
+    std::vector<Mueller> out(geometries.size());
+    evaluate(model, geometries, out, {.frame = frame, .wavelengths = wavelengths});
+    for (std::size_t q = 0; q < geometries.size(); ++q)
+      RC_ASSERT(deviation(out[q], model.at(wavelengths[q]).evaluate(geometries[q], frame)) <= evaluation_error);
+  }
+  std::vector<float> rows(16 * geometries.size());
+  evaluate(model, vectors.geometries(), rows, {.wavelengths = wavelengths});
+  for (std::size_t q = 0; q < geometries.size(); ++q) {
+    if (geometries[q].incident.theta < 0.05) continue;
+    RC_ASSERT(deviation(matrix(rows, q), model.at(wavelengths[q]).evaluate(geometries[q])) <= single_precision_error);
+  }
+}
+
+RC_GTEST_PROP(Batch, ForOneIncidentDirectionAgrees, ()) {
+  const PreparedModel model = prepare(any_model(), 0.5, *rc::gen::element(Rotation::covariant, Rotation::as_printed));
+  const Direction incident{between(0.05, 1.5), between(-6, 6)};
+  const PreparedIncidence prepared = model.at(incident);
+  std::vector<Geometry> geometries = random_geometries(20, *rc::gen::arbitrary<unsigned long>());
+  std::vector<Direction> reflected;
+  for (Geometry& g : geometries) {
+    g.incident = incident;
+    reflected.push_back(g.reflected);
+  }
+  const Columns<double> vectors(geometries);
+  const Columns<float> short_vectors(geometries);
+  std::vector<Mueller> from_angles(20), from_vectors(20);
+  std::vector<float> rows(16 * 20);
+  evaluate(prepared, reflected, from_angles);
+  evaluate(prepared, vectors.reflected(), from_vectors);
+  evaluate(prepared, short_vectors.reflected(), rows);
+  for (std::size_t q = 0; q < geometries.size(); ++q) {
+    const Mueller expected = model.evaluate(geometries[q]);
+    RC_ASSERT(deviation(from_angles[q], expected) <= evaluation_error);
+    RC_ASSERT(deviation(from_vectors[q], expected) <= evaluation_error);
+    RC_ASSERT(deviation(matrix(rows, q), expected) <= single_precision_error);
+  }
+}
+
+TEST(Batch, RefusesWhatIsInvalidBeforeItWrites) {
+  const PreparedModel model = prepare(random_model(Family::isotropic, {7, 4}, 0, 1), 0.5);
+  const std::vector<Geometry> geometries = random_geometries(many, 1);
+  std::vector<Geometry> with_bad = geometries;
+  with_bad[17000].reflected.theta = radians(95);
+  with_bad[18000].reflected.theta = radians(96);
+  Columns<double> vectors(geometries);
+  vectors.in[0][12345] = 3;
+  vectors.in[1][12345] = vectors.in[2][12345] = 0;
+  const std::vector<Mueller> untouched(many, identity());
+  std::vector<Mueller> out = untouched;
+  for (const int threads : {1, 2}) {
+    const BatchOptions options{.threads = threads};
+    EXPECT_EQ(message_of([&] { evaluate(model, with_bad, out, options); }),
+              "evaluate: theta_r = 95 degrees, must be in 0…90");
+    EXPECT_EQ(message_of([&] { evaluate(model, vectors.geometries(), out, options); }),
+              "evaluate: incident vector 12346: (3, 0, 0) is not a unit vector with z >= 0");
+  }
+  EXPECT_EQ(out, untouched);
+}
+
+TEST(Batch, RefusesVectorsThatAreNoDirections) {
+  const PreparedModel model = prepare(random_model(Family::isotropic, {7, 4}, 0, 1), 0.5);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const Vector3 bad_vectors[] = {{0, 0, -1}, {0, 0, 0}, {0, 0, 1.00001}, {0, 0.6, -0.8}, {nan, 0, 1}, {infinity, 0, 0}};
+  std::vector<Mueller> out(20);
+  for (const Vector3& bad : bad_vectors)
+    for (const std::size_t place : {0u, 7u, 19u}) {
+      Columns<double> vectors(random_geometries(20, 1));
+      for (std::size_t j = 0; j < 3; ++j) vectors.in[3 + j][place] = bad[j];
+      EXPECT_THROW(evaluate(model, vectors.geometries(), out), std::invalid_argument) << bad[0] << bad[1] << bad[2];
+    }
+}
+
+TEST(Batch, RefusesSizesThatDoNotAgree) {
+  const PreparedModel model = prepare(random_model(Family::isotropic, {7, 4}, 0, 1), 0.5);
+  const std::vector<Geometry> geometries = random_geometries(3, 1);
+  const Columns<double> vectors(geometries);
+  std::vector<Mueller> two(2), three(3);
+  const std::vector<double> wavelengths(2, 0.5), negative(3, -0.5);
+  EXPECT_EQ(message_of([&] { evaluate(model, geometries, two); }), "evaluate: 3 geometries, room for 2");
+  EXPECT_EQ(message_of([&] { evaluate(model, vectors.geometries(), two); }), "evaluate: 3 geometries, room for 2");
+  EXPECT_EQ(message_of([&] { evaluate(model, geometries, three, {.wavelengths = wavelengths}); }),
+            "evaluate: 3 geometries, 2 wavelengths");
+  EXPECT_EQ(message_of([&] { evaluate(model, geometries, three, {.wavelengths = negative}); }),
+            "wavelength -500 nm is not positive");
+  EXPECT_EQ(message_of([&] { evaluate(model, geometries, three, {.threads = -1}); }),
+            "evaluate: threads = -1, must be 0 or more");
+  const VectorGeometries<double> uneven{vectors.incident(),
+                                        {vectors.in[3], std::span(vectors.in[4]).first(2), vectors.in[5]}};
+  EXPECT_EQ(message_of([&] { evaluate(model, uneven, three); }), "evaluate: reflected vectors with 3 x, 2 y and 3 z");
+}
+
+TEST(Batch, OfNothingIsNothing) {
+  const PreparedModel model = prepare(random_model(Family::isotropic, {7, 4}, 0, 1), 0.5);
+  evaluate(model, std::span<const Geometry>{}, std::span<Mueller>{});
+  evaluate(model, VectorGeometries<float>{}, std::span<float>{}, {.frame = Frame::sp, .threads = 2});
+  evaluate(model.at(Direction{}), std::span<const Direction>{}, std::span<Mueller>{});
+}
+
+// Single precision ends at 3e38.
+TEST(Batch, RefusesCoefficientsThatAreTooLargeForSinglePrecision) {
+  const PreparedModel model = prepare(diffuser({1e60}), 0.5);
+  const Columns<float> vectors(random_geometries(1, 1));
+  std::vector<float> out(16);
+  EXPECT_THROW(evaluate(model, vectors.geometries(), out), std::invalid_argument);
+}
