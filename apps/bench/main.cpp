@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How long it takes to evaluate a model, beside what the machine can do and what the textbook costs. Each line has
+//   ns_per_evaluation   for one Mueller matrix
+//   slots               the same in units of the time in which this core does eight fused multiply-adds of doubles,
+//                       measured around each benchmark: independent of the clock
+#include "bench.hpp"
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  mmbrdf::bench::register_limits();
+  mmbrdf::bench::register_textbook();
+  mmbrdf::bench::register_evaluation();
+  mmbrdf::bench::register_batches();
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}
