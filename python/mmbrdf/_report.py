@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import base64
+import errno
 import html
 import io
 import json
@@ -17,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from . import Dataset, Model, __version__, load, material, materials, plot, report_json
+from ._mmbrdf import _write_text
 
 _STYLE = """
 :root { color-scheme: light; --line: #d5d9de; --soft: #f4f6f8; --warn: #fff4d6; --text: #1d2430; --dim: #5b6573; }
@@ -170,14 +172,10 @@ def page(
 
 
 def write(path: str | os.PathLike[str], text: str) -> None:
-    """All of it or nothing: a temporary file in the same folder, renamed."""
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}")
-    try:
-        temporary.write_text(text, encoding="utf-8")
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
+    """All of it or nothing: links are followed, modes kept, devices written directly."""
+    if not Path(path).parent.exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(path))
+    _write_text(path, text)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

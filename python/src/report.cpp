@@ -3,8 +3,13 @@
 #include "mmbrdf/report.hpp"
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <ostream>
 
 #include "dataset.hpp"
+#include "mmbrdf/io.hpp"
 
 namespace mmbrdf::python {
 
@@ -24,6 +29,12 @@ void bind_report(py::module_& m) {
       "What is known about a model, and about samples beside it, as the JSON text that `mmbrdf report --format json`\n"
       "prints: title, warnings, model, fit, realizability, reflectances and, with samples, residuals, symmetries,\n"
       "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
+  m.def(
+      "_write_text",
+      [](const std::filesystem::path& path, const std::string& text) {
+        without_gil([&] { write_file(path.string(), [&](std::ostream& out) { out << text; }); });
+      },
+      py::arg("path"), py::arg("text"), "All of it or nothing, through links and into devices: write_file().");
 }
 
 }  // namespace mmbrdf::python
