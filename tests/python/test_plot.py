@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is in the pictures of mmbrdf.plot: the numbers that artists hold, limits, labels, and what is left out."""
+import io
+import json
 import subprocess
 import sys
 import warnings
@@ -13,7 +15,7 @@ from matplotlib.patches import Circle
 
 import mmbrdf
 import mmbrdf.plot
-from mmbrdf.plot import curves, disc
+from mmbrdf.plot import curves, disc, labels
 
 SAMPLES = 21
 
@@ -365,6 +367,48 @@ def test_the_spectrum_shows_every_coefficient_of_a_power_with_its_uncertainty(pt
 def test_a_power_that_the_model_lacks_is_refused(ptfe):
     with pytest.raises(ValueError, match="power = 2"):
         mmbrdf.plot.coefficient_spectrum(ptfe, power=2)
+
+
+# Names that others chose
+
+
+def named(model, name):
+    """The same model under another name."""
+    return mmbrdf.Model.from_json(json.dumps(json.loads(model.to_json()) | {"name": name}))
+
+
+def pictures_with_names(model, data):
+    """All pictures that show the name of a model."""
+    plot = mmbrdf.plot
+    yield plot.hemisphere(model, 532, 60, samples=SAMPLES)[0]
+    yield plot.residual_map(model, data, 532, 60)[0]
+    yield plot.in_plane_curves(model, 532)[0]
+    yield plot.subset_study([model], model, 532)[0]
+    yield plot.polar_in_plane(model, 532)[0]
+    yield plot.coefficient_spectrum(model)[0]
+
+
+@pytest.mark.parametrize("name", [r"$\frac$", "cost $5 or $6 _{", r"a\$b", "_hidden", "纸样"])
+def test_a_name_is_shown_letter_by_letter(ptfe, data, name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for figure in pictures_with_names(named(ptfe, name), data):
+            rendered(figure)
+            figure.savefig(io.BytesIO(), bbox_inches="tight")
+            assert name.replace("$", r"\$") in written(figure)
+
+
+def test_a_dollar_is_one_dollar():
+    figure = Figure()
+    shown = figure.text(0.5, 0.5, labels.plain("a$b$c"))
+    literal = figure.text(0.5, 0.5, "a$b$c", parse_math=False)
+    rendered(figure)
+    assert shown.get_window_extent().width == literal.get_window_extent().width
+
+
+def test_a_name_that_begins_with_a_low_line_is_in_the_legend(ptfe):
+    figure, axes = mmbrdf.plot.polar_in_plane(named(ptfe, "_hidden"), 532)
+    assert [text.get_text().strip() for text in axes.get_legend().get_texts()][0] == "_hidden, 532 nm"
 
 
 # Without a display

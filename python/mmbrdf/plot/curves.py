@@ -6,16 +6,16 @@ import warnings
 from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 import mmbrdf
 
-from . import disc
+from . import disc, labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
 
     from mmbrdf import Model
@@ -68,7 +68,7 @@ def in_plane_curves(
             half = coverage * getattr(uncertainty, name)
             axes.fill_between(angles, curve - half, curve + half, color=color, alpha=0.2, linewidth=0)
     if legend:
-        axes.set_title(rf"{model.name}, {wavelength_nm:g} nm, $\theta_\mathrm{{i}}$ = {theta_i_deg:g}°")
+        axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, theta_i_deg))
         axes.legend(handles=component_handles(), frameon=False, ncol=2)
     return axes.figure, axes
 
@@ -94,7 +94,7 @@ def subset_study(
         in_plane_curves(part, wavelength_nm, theta_i_deg, axes=axes, linewidth=0.7, **options)
     if legend:
         thick_and_thin = [
-            Line2D([], [], color="0.4", linewidth=2.4, label=reference.name),
+            Line2D([], [], color="0.4", linewidth=2.4, label=labels.plain(reference.name)),
             Line2D([], [], color="0.4", linewidth=0.7, label=f"{len(parts)} disjoint parts"),
         ]
         axes.legend(handles=component_handles() + thick_and_thin, frameon=False, ncol=2)
@@ -122,14 +122,16 @@ def polar_in_plane(
     models = [models] if isinstance(models, mmbrdf.Model) else models
     if axes is None:
         # The half disc fills the upper half of its square; what is below it holds the label and the legend.
-        axes = Figure(figsize=(6.0, 4.3)).add_axes((0.06, -0.12, 0.88, 1.23), projection="polar")
+        axes = labels.Picture(figsize=(6.0, 4.3)).add_axes((0.06, -0.12, 0.88, 1.23), projection="polar")
     theta_r_deg = np.arange(-90.0, 91.0)
     largest = LAMBERTIAN
     for model in models:
         limit = 90.0 if model.theta_r_max_deg is None else model.theta_r_max_deg
         for wavelength in np.atleast_1d(wavelength_nm):
             f11 = disc.evaluate(model, wavelength, mmbrdf.in_plane(theta_i_deg, theta_r_deg))[..., 0, 0]
-            axes.plot(np.radians(theta_r_deg), f11, linewidth=1.4, label=f"{model.name}, {wavelength:g} nm")
+            axes.plot(
+                np.radians(theta_r_deg), f11, linewidth=1.4, label=f"{labels.plain(model.name)}, {wavelength:g} nm"
+            )
             largest = max(largest, f11[np.abs(theta_r_deg) <= limit].max())
     lambertian = np.full(theta_r_deg.shape, LAMBERTIAN)
     axes.plot(np.radians(theta_r_deg), lambertian, ":", color="0.4", linewidth=0.9, label=r"$1/\pi$ sr$^{-1}$")
@@ -156,7 +158,7 @@ def _finish_half_disc(axes: PolarAxes, theta_i_deg: float, largest: float) -> No
 
 def _plane_axes(theta_r_max_deg: float | None, theta_r_deg, values) -> Axes:
     """Axes with labels and units for curves of the shape (4, angles), grey where the model was not fitted."""
-    axes = Figure(figsize=(6.4, 4.4), layout="constrained").add_subplot()
+    axes = labels.Picture(figsize=(6.4, 4.4), layout="constrained").add_subplot()
     axes.set(
         xlim=(-90, 90),
         xticks=range(-90, 91, 30),

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 
 import mmbrdf
 
-from . import disc
+from . import disc, labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from mmbrdf import Dataset, Model
 
@@ -51,7 +51,7 @@ def depolarization_map(
         "viridis",
         Normalize(*limits),
         DEPOLARIZATION_LABEL,
-        _title(wavelength_nm, theta_i_deg),
+        labels.title("", wavelength_nm, theta_i_deg),
         axes,
         colorbar,
         "both",
@@ -84,15 +84,11 @@ def realizability_map(
         cmap,
         Normalize(0, 0.25),
         MARGIN_LABEL,
-        _title(wavelength_nm, theta_i_deg),
+        labels.title("", wavelength_nm, theta_i_deg),
         axes,
         colorbar,
         "min",
     )
-
-
-def _title(wavelength_nm: float, theta_i_deg: float) -> str:
-    return rf"{wavelength_nm:g} nm, $\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
 
 
 def _where_positive(mueller, quantity):
@@ -112,7 +108,7 @@ def _limits_within(image: disc.DiscImage, values, theta_r_max_deg: float | None)
 
 def _draw_map(source, image: disc.DiscImage, cmap, norm, label: str, title: str, axes, colorbar: bool, extend: str):
     if axes is None:
-        axes = Figure(figsize=(4.6, 3.7), layout="constrained").add_subplot()
+        axes = labels.Picture(figsize=(4.6, 3.7), layout="constrained").add_subplot()
     figure = axes.figure
     drawn = disc.draw(axes, image.values, image.extent, cmap, norm, label_axes=True)
     disc.mark_limit(axes, getattr(source, "theta_r_max_deg", None))

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 
 import mmbrdf
 
-from . import disc
+from . import disc, labels
 
 if TYPE_CHECKING:
-    from matplotlib.figure import SubFigure
+    from matplotlib.figure import Figure, SubFigure
     from numpy.typing import NDArray
 
     from mmbrdf import Dataset, Model
@@ -53,8 +52,8 @@ def hemisphere(
     scales = ("gray", Normalize(*f11_limits)), ("RdBu_r", Normalize(-limit, limit))
     figure, axes = _matrix_of_discs(image, scales, figure, decorated)
     if decorated:
-        kind = "measured" if isinstance(source, mmbrdf.Dataset) else source.name
-        title = _title(kind, wavelength_nm, theta_i_deg) if title is None else title
+        kind = "measured" if isinstance(source, mmbrdf.Dataset) else labels.plain(source.name)
+        title = labels.title(kind, wavelength_nm, theta_i_deg) if title is None else title
         _decorate(figure, axes, scales, (F11_LABEL, ELEMENT_LABEL), title)
         for each in axes.flat:
             disc.mark_limit(each, getattr(source, "theta_r_max_deg", None))
@@ -85,20 +84,20 @@ def residual_map(
     scales = ("PuOr_r", Normalize(-f11_limit, f11_limit)), ("RdBu_r", Normalize(-limit, limit))
     figure, axes = _matrix_of_discs(image, scales, figure, decorated)
     if decorated:
-        labels = r"residual of $f_{\mathrm{r},11}$ / sr$^{-1}$", "residual of $m_{ij}$"
-        title = _title(f"measured $-$ {model.name}", wavelength_nm, theta_i_deg) if title is None else title
-        _decorate(figure, axes, scales, labels, title)
+        names = r"residual of $f_{\mathrm{r},11}$ / sr$^{-1}$", "residual of $m_{ij}$"
+        title = (
+            labels.title(f"measured $-$ {labels.plain(model.name)}", wavelength_nm, theta_i_deg)
+            if title is None
+            else title
+        )
+        _decorate(figure, axes, scales, names, title)
     return figure, axes
-
-
-def _title(what: str, wavelength_nm: float, theta_i_deg: float) -> str:
-    return rf"{what}, {wavelength_nm:g} nm, $\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
 
 
 def _matrix_of_discs(image: disc.DiscImage, scales, figure, decorated: bool):
     """4 x 4 discs of values (rows, columns, 4, 4); the first of the two scales, (map, norm), is that of element 11."""
     if figure is None:
-        figure = Figure(figsize=(6.6, 6.0) if decorated else (4, 4))
+        figure = labels.Picture(figsize=(6.6, 6.0) if decorated else (4, 4))
     space = (
         dict(left=0.085, right=0.83, bottom=0.085, top=0.93)
         if decorated
@@ -111,7 +110,7 @@ def _matrix_of_discs(image: disc.DiscImage, scales, figure, decorated: bool):
     return figure, axes
 
 
-def _decorate(figure, axes, scales, labels, title: str) -> None:
+def _decorate(figure, axes, scales, names, title: str) -> None:
     """Names of the elements, the two colour scales, the coordinates and a title."""
     for row, column in np.ndindex(4, 4):
         axes[row, column].text(-1, 0.98, f"{row + 1}{column + 1}", fontsize=8, ha="left", va="top")
@@ -124,7 +123,7 @@ def _decorate(figure, axes, scales, labels, title: str) -> None:
     figure.text(left.x0 - 0.05, middle[1], disc.Y_LABEL, ha="right", va="center", rotation=90, fontsize=9)
     figure.text(middle[0], left.y1 + 0.02, title, ha="center", va="bottom", fontsize=11)
     heights = (middle[1] + 0.03, left.y1 - middle[1] - 0.03), (lowest.y0, middle[1] - lowest.y0 - 0.03)
-    for (cmap, norm), label, (bottom, height) in zip(scales, labels, heights):
+    for (cmap, norm), label, (bottom, height) in zip(scales, names, heights):
         place = figure.add_axes((right.x1 + 0.03, bottom, 0.022, height))
         bar = figure.colorbar(ScalarMappable(norm, cmap), cax=place, extend="both")
         bar.set_label(label, fontsize=9)

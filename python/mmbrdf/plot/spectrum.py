@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+
+from . import labels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from mmbrdf import Model
 
@@ -27,7 +29,7 @@ def coefficient_spectrum(
     if not 0 <= power <= model.powers:
         raise ValueError(f"power = {power}, the model has powers 0 to {model.powers}")
     if axes is None:
-        axes = Figure(figsize=(8.2, 4.2), layout="constrained").add_subplot()
+        axes = labels.Picture(figsize=(8.2, 4.2), layout="constrained").add_subplot()
     first, ticks = 0, []
     for number, block in enumerate(model.blocks):
         values = np.atleast_2d(block.coefficients)[power]
@@ -43,7 +45,10 @@ def coefficient_spectrum(
     axes.set_ylabel("|coefficient|" + _unit(power))
     axes.set_xticks(*zip(*ticks), rotation=20 if len(ticks) < 8 else 60, fontsize=8)
     axes.set_title(
-        f"{model.name}: {model.family}, " + (f"$\\lambda^{power}$" if model.powers else "one wavelength"), loc="left"
+        (f"{labels.plain(model.name)}: " if model.name else "")
+        + f"{model.family}, "
+        + (f"$\\lambda^{power}$" if model.powers else "one wavelength"),
+        loc="left",
     )
     _legend(axes)
     return axes.figure, axes

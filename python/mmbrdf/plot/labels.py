@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Names in pictures: they are text that others chose, and matplotlib must not read them as formulas."""
+from __future__ import annotations
+
+import contextlib
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+from matplotlib.figure import Figure
+
+
+def plain(name: str) -> str:
+    """A name as matplotlib shows it letter by letter, also in a legend, which passes over labels that begin with _."""
+    return (" " if name.startswith("_") else "") + name.replace("$", r"\$")
+
+
+def title(name: str, wavelength_nm: float, theta_i_deg: float) -> str:
+    """What is shown and at which wavelength and angle; ``name`` is as plain() gives it."""
+    angle = rf"$\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
+    return ", ".join(part for part in (name, f"{wavelength_nm:g} nm", angle) if part)
+
+
+@contextlib.contextmanager
+def _whatever_the_font_lacks() -> Iterator[None]:
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
+        yield
+
+
+class Picture(Figure):
+    """A figure that draws a box for each character that its font lacks, as all do, without a warning for each."""
+
+    def draw(self, renderer: Any) -> None:
+        with _whatever_the_font_lacks():
+            super().draw(renderer)
+
+    def get_tightbbox(self, *arguments: Any, **options: Any) -> Any:
+        with _whatever_the_font_lacks():
+            return super().get_tightbbox(*arguments, **options)
