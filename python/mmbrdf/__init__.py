@@ -114,7 +114,8 @@ def _write_report(
     wavelength_nm    at which to report; None: at those it was fitted to
     theta_i_deg      angle of incidence of the pictures of the model
 
-    Needs matplotlib. Raises ValueError for samples that do not go with the model, OSError for a path that cannot be
+    Needs matplotlib. Raises TypeError for what is not a model and samples, ValueError for samples that do not go
+    with the model, OSError for a path that cannot be
     written; then an earlier file is left as it was.
     """
     from . import _report

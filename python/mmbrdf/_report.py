@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from . import Dataset, Model, __version__, load, material, materials, plot, report_json
+from ._arguments import number, require
 from ._mmbrdf import _write_text
 
 _STYLE = """
@@ -147,7 +148,11 @@ def page(
     theta_i_deg: float = 45,
 ) -> str:
     """The report as HTML text: see mmbrdf.report()."""
-    chosen = None if wavelength_nm is None else [float(one) for one in np.atleast_1d(wavelength_nm)]
+    require("model", model, Model)
+    if data is not None:
+        require("data", data, Dataset)
+    theta_i_deg = number("theta_i_deg", theta_i_deg)
+    chosen = None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
     facts = json.loads(report_json(model, name or model.name or "the model", chosen, data, data_name))
     title = html.escape(facts.pop("title"))
     warnings = facts.pop("warnings")

@@ -109,6 +109,26 @@ def test_nothing_is_left_behind_by_an_error(page, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
 
 
+def test_other_things_than_a_model_and_samples_are_refused_in_a_line(page, tmp_path):
+    model, data, _ = page
+    fitted = mmbrdf.fit(data, orders=(1, 1))
+    for arguments, message in (
+        ((fitted, data), "model: expected mmbrdf.Model, not FitResult: its .model is one"),
+        ((data, model), "model: expected mmbrdf.Model, not Dataset"),
+        ((model, fitted), "data: expected mmbrdf.Dataset, not FitResult"),
+        ((model, tmp_path), f"data: expected mmbrdf.Dataset, not {type(tmp_path).__name__}"),
+    ):
+        with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
+            mmbrdf.report(*arguments, tmp_path / "report.html")
+    for option, message in (
+        ({"wavelength_nm": "532 nm"}, "wavelength_nm: expected a number, not '532 nm'"),
+        ({"theta_i_deg": None}, "theta_i_deg: expected a number, not None"),
+    ):
+        with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
+            mmbrdf.report(model, data, tmp_path / "report.html", **option)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_missing_folder_is_named_as_it_was_given(page, tmp_path):
     with pytest.raises(FileNotFoundError) as error:
         mmbrdf.report(page[0], None, tmp_path / "no" / "report.html")

@@ -11,6 +11,7 @@ from matplotlib.ticker import MultipleLocator
 
 import mmbrdf
 
+from .._arguments import number, own_wavelength, require, several_models
 from . import disc, labels
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ LAMBERTIAN = 1 / np.pi
 
 def in_plane_curves(
     model: Model,
-    wavelength_nm: float,
+    wavelength_nm: float | None,
     theta_i_deg: float = 45.0,
     *,
     theta_r_deg: Sequence[float] | None = None,
@@ -52,6 +53,8 @@ def in_plane_curves(
     model has a covariance. Without ``axes`` the ordinate spans the curves within the fitted angles; what lies beyond
     is grey. Returns the figure and its axes; the four lines are drawn in the order of ``COMPONENTS``.
     """
+    require("model", model, mmbrdf.Model)
+    wavelength_nm, theta_i_deg = own_wavelength(model, wavelength_nm), number("theta_i_deg", theta_i_deg)
     angles = np.arange(-90.0, 91.0) if theta_r_deg is None else np.asarray(theta_r_deg, float)
     geometry = mmbrdf.in_plane(theta_i_deg, angles)
     with warnings.catch_warnings():
@@ -76,7 +79,7 @@ def in_plane_curves(
 def subset_study(
     parts: Sequence[Model],
     reference: Model,
-    wavelength_nm: float,
+    wavelength_nm: float | None,
     theta_i_deg: float = 45.0,
     *,
     theta_r_deg: Sequence[float] | None = None,
@@ -88,6 +91,8 @@ def subset_study(
     ``parts`` and ``reference`` are models; wavelength in nm, angles in degrees as for ``in_plane_curves``.
     Returns the figure and its axes; the four lines of the reference come first.
     """
+    parts = several_models("parts", parts)
+    require("reference", reference, mmbrdf.Model)
     options: dict[str, Any] = dict(theta_r_deg=theta_r_deg, bands=False, legend=False)
     figure, axes = in_plane_curves(reference, wavelength_nm, theta_i_deg, axes=axes, linewidth=2.4, **options)
     for part in parts:
@@ -108,7 +113,7 @@ def component_handles(linewidth: float = 1.6) -> list[Line2D]:
 
 def polar_in_plane(
     models: Model | Sequence[Model],
-    wavelength_nm: float | Sequence[float],
+    wavelength_nm: float | Sequence[float] | None,
     theta_i_deg: float = 45.0,
     *,
     axes: PolarAxes | None = None,
@@ -119,7 +124,7 @@ def polar_in_plane(
     the forward side is on the right, an arrow is the incident light and the dotted arc a perfect diffuser, 1/pi sr^-1.
     Returns the figure and its axes.
     """
-    models = [models] if isinstance(models, mmbrdf.Model) else models
+    models, theta_i_deg = several_models("models", models), number("theta_i_deg", theta_i_deg)
     if axes is None:
         # The half disc fills the upper half of its square; what is below it holds the label and the legend.
         axes = labels.Picture(figsize=(6.0, 4.3)).add_axes((0.06, -0.12, 0.88, 1.23), projection="polar")
@@ -127,11 +132,10 @@ def polar_in_plane(
     largest = LAMBERTIAN
     for model in models:
         limit = 90.0 if model.theta_r_max_deg is None else model.theta_r_max_deg
-        for wavelength in np.atleast_1d(wavelength_nm):
+        for wavelength in (own_wavelength(model, each) for each in np.atleast_1d(wavelength_nm)):
             f11 = disc.evaluate(model, wavelength, mmbrdf.in_plane(theta_i_deg, theta_r_deg))[..., 0, 0]
-            axes.plot(
-                np.radians(theta_r_deg), f11, linewidth=1.4, label=f"{labels.plain(model.name)}, {wavelength:g} nm"
-            )
+            label = labels.title(labels.plain(model.name), wavelength)
+            axes.plot(np.radians(theta_r_deg), f11, linewidth=1.4, label=label)
             largest = max(largest, f11[np.abs(theta_r_deg) <= limit].max())
     lambertian = np.full(theta_r_deg.shape, LAMBERTIAN)
     axes.plot(np.radians(theta_r_deg), lambertian, ":", color="0.4", linewidth=0.9, label=r"$1/\pi$ sr$^{-1}$")

@@ -10,6 +10,8 @@ from matplotlib.patches import Circle
 
 import mmbrdf
 
+from .._arguments import number, own_wavelength, require
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap, Normalize
@@ -66,6 +68,12 @@ def normalized(mueller: NDArray[np.float64]) -> NDArray[np.float64]:
         result = mueller / mueller[..., :1, :1]
     result[..., 0, 0] = mueller[..., 0, 0]
     return result
+
+
+def question(source, wavelength_nm, theta_i_deg) -> tuple[float | None, float]:
+    """Wavelength in nm and angle of incidence of a picture, checked; TypeError if ``source`` is no model or data set."""
+    require("source", source, mmbrdf.Model, mmbrdf.Dataset)
+    return own_wavelength(source, wavelength_nm), number("theta_i_deg", theta_i_deg)
 
 
 def matrices(source, wavelength_nm: float, theta_i_deg: float, phi_i_deg: float, frame: str, samples: int) -> DiscImage:

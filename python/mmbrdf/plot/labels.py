@@ -15,10 +15,11 @@ def plain(name: str) -> str:
     return (" " if name.startswith("_") else "") + name.replace("$", r"\$")
 
 
-def title(name: str, wavelength_nm: float, theta_i_deg: float) -> str:
-    """What is shown and at which wavelength and angle; ``name`` is as plain() gives it."""
-    angle = rf"$\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
-    return ", ".join(part for part in (name, f"{wavelength_nm:g} nm", angle) if part)
+def title(name: str, wavelength_nm: float | None, theta_i_deg: float | None = None) -> str:
+    """What is shown, as plain() gives it, at which wavelength and angle of incidence: what of this is known."""
+    wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm"
+    angle = "" if theta_i_deg is None else rf"$\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
+    return ", ".join(part for part in (name, wavelength, angle) if part)
 
 
 @contextlib.contextmanager

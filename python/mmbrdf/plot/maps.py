@@ -25,7 +25,7 @@ UNREALIZABLE = "#d62728"
 
 def depolarization_map(
     source: Model | Dataset,
-    wavelength_nm: float,
+    wavelength_nm: float | None,
     theta_i_deg: float,
     *,
     phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
@@ -41,6 +41,7 @@ def depolarization_map(
     colour scale; without them it spans what the disc has within the fitted range. Where f11 is not positive, as models
     may have it near grazing angles, there is none. Returns the figure and its axes.
     """
+    wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     image = disc.matrices(source, wavelength_nm, theta_i_deg, phi_i_deg, "xy", samples)
     values = _where_positive(image.values, mmbrdf.depolarization)
     if limits is None:
@@ -60,7 +61,7 @@ def depolarization_map(
 
 def realizability_map(
     source: Model | Dataset,
-    wavelength_nm: float,
+    wavelength_nm: float | None,
     theta_i_deg: float,
     *,
     phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
@@ -74,6 +75,7 @@ def realizability_map(
     Directions are red where it or f11 is negative. Wavelength in nm, angles in degrees. Returns the figure and its
     axes.
     """
+    wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     image = disc.matrices(source, wavelength_nm, theta_i_deg, phi_i_deg, "xy", samples)
     values = _where_positive(image.values, mmbrdf.realizability_margin)
     values[image.values[..., 0, 0] <= 0] = -1  # as bad as can be: the light would be less than none

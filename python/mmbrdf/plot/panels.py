@@ -10,6 +10,8 @@ from matplotlib.colors import Normalize
 
 import mmbrdf
 
+from .._arguments import require
+
 from . import disc, labels
 
 if TYPE_CHECKING:
@@ -24,7 +26,7 @@ ELEMENT_LABEL = r"$m_{ij} = f_{\mathrm{r},ij}\,/\,f_{\mathrm{r},11}$"
 
 def hemisphere(
     source: Model | Dataset,
-    wavelength_nm: float,
+    wavelength_nm: float | None,
     theta_i_deg: float,
     *,
     phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
@@ -47,6 +49,7 @@ def hemisphere(
     Returns the figure and its axes, 4 x 4. With ``decorated=False`` there are only the discs, for use in a
     ``figure`` or subfigure with many of them. ValueError if a data set has no such samples.
     """
+    wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     image = disc.matrices(source, wavelength_nm, theta_i_deg, phi_i_deg, frame, samples)
     image = image._replace(values=disc.normalized(image.values))
     scales = ("gray", Normalize(*f11_limits)), ("RdBu_r", Normalize(-limit, limit))
@@ -63,7 +66,7 @@ def hemisphere(
 def residual_map(
     model: Model,
     data: Dataset,
-    wavelength_nm: float,
+    wavelength_nm: float | None,
     theta_i_deg: float,
     *,
     phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
@@ -78,6 +81,9 @@ def residual_map(
     Element 11 in sr^-1 over -``f11_limit`` ... ``f11_limit``, the others divided by f11 over -``limit`` ... ``limit``.
     Returns the figure and its axes, 4 x 4. ValueError if the data set has no such samples.
     """
+    require("model", model, mmbrdf.Model)
+    require("data", data, mmbrdf.Dataset)
+    wavelength_nm, theta_i_deg = disc.question(data, wavelength_nm, theta_i_deg)
     chosen = disc.samples_at(data, wavelength_nm, theta_i_deg, phi_i_deg)
     x, y = disc.direction_cosines(chosen.theta_r_deg, chosen.phi_r_deg)
     image = disc.cells(x, y, mmbrdf.residuals(model, chosen))

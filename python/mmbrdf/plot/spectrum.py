@@ -8,6 +8,9 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.lines import Line2D
 
+import mmbrdf
+
+from .._arguments import require
 from . import labels
 
 if TYPE_CHECKING:
@@ -26,6 +29,7 @@ def coefficient_spectrum(
     standard uncertainty, and points down if the coefficient is negative. Those of block 11 are in sr^-1, the others
     without unit, each times micrometres to the power -``power``. Returns the figure and its axes.
     """
+    require("model", model, mmbrdf.Model)
     if not 0 <= power <= model.powers:
         raise ValueError(f"power = {power}, the model has powers 0 to {model.powers}")
     if axes is None:

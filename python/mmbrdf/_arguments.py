@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arguments of functions in Python are checked where they come in: TypeError for another kind of thing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from ._mmbrdf import Dataset, FitResult, Model
+
+
+def require(name: str, value: Any, *kinds: type) -> None:
+    """Raises TypeError unless the argument called ``name`` is one of these kinds of thing."""
+    if not isinstance(value, kinds):
+        expected = " or ".join(f"mmbrdf.{kind.__name__}" for kind in kinds)
+        hint = ": its .model is one" if isinstance(value, FitResult) and Model in kinds else ""
+        raise TypeError(f"{name}: expected {expected}, not {type(value).__name__}{hint}")
+
+
+def number(name: str, value: Any) -> float:
+    """The argument called ``name`` as a finite number. Raises TypeError for another thing, ValueError for nan and inf."""
+    array = np.asarray(value)
+    if array.ndim > 0 or array.dtype.kind not in "iuf":
+        raise TypeError(f"{name}: expected a number, not {value!r}"[:200])
+    if not np.isfinite(array):
+        raise ValueError(f"{name} = {float(array)}, must be finite")
+    return float(array)
+
+
+def own_wavelength(source: Model | Dataset, wavelength_nm: Any = None) -> float | None:
+    """The wavelength in nm if it is given, else that of a source that has only one.
+
+    None of a model that does not say its own: it needs none, or refuses to be evaluated, with the reason.
+    """
+    if wavelength_nm is not None:
+        return number("wavelength_nm", wavelength_nm)
+    own = source.wavelengths_nm
+    if len(own) != 1 and isinstance(source, Dataset):
+        raise ValueError(f"the samples are at {', '.join(f'{nm:g}' for nm in own) or 'no'} nm: give one wavelength")
+    return own[0] if len(own) == 1 else None
+
+
+def several_models(name: str, value: Any) -> list[Model]:
+    """One model or a sequence of them as a list. Raises TypeError for other things."""
+    models = list(value) if isinstance(value, Iterable) else [value]
+    for model in models:
+        require(name, model, Model)
+    return models
