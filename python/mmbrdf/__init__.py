@@ -111,7 +111,7 @@ def _write_report(
     """Writes one self-contained HTML page: what `mmbrdf report` prints about a model, and samples beside it, with pictures.
 
     name, data_name  what the model and the samples are called
-    wavelength_nm    at which to report; None: at those it was fitted to
+    wavelength_nm    at which to report; None: at those it was fitted to, or else those of the samples
     theta_i_deg      angle of incidence of the pictures of the model
 
     Needs matplotlib. Raises TypeError for what is not a model and samples, ValueError for samples that do not go

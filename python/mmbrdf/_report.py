@@ -81,8 +81,9 @@ def _picture(figure: Any, caption: str, kind: str = "png") -> str:
     return f'<figure><img alt="{text}" src="data:image/{mime};base64,{data}"><figcaption>{text}</figcaption></figure>'
 
 
-def _model_pictures(model: Model, wavelength_nm: float, theta_i_deg: float) -> Iterator[str]:
-    at = f"{wavelength_nm:g} nm, theta_i = {theta_i_deg:g} degrees"
+def _model_pictures(model: Model, wavelength_nm: float | None, theta_i_deg: float) -> Iterator[str]:
+    wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm, "
+    at = f"{wavelength}theta_i = {theta_i_deg:g} degrees"
     yield _picture(
         plot.hemisphere(model, wavelength_nm, theta_i_deg)[0],
         f"The model over the hemisphere of reflected directions, {at}: f11, and the other elements divided by it.",
@@ -126,16 +127,24 @@ def _spectra(model: Model) -> Iterator[str]:
 
 
 def _pictures_behind(
-    field: str, model: Model, data: Dataset | None, wavelengths_nm: Sequence[float], theta_i_deg: float
+    field: str, model: Model, data: Dataset | None, wavelengths_nm: Sequence[float | None], theta_i_deg: float
 ) -> dict[str, Iterator[str]]:
     """What is shown behind a field of the facts: parts by heading."""
     if field == "fit":
-        at = {f"The model at {nm:g} nm": _model_pictures(model, nm, theta_i_deg) for nm in wavelengths_nm}
+        at = {
+            "The model" + ("" if nm is None else f" at {nm:g} nm"): _model_pictures(model, nm, theta_i_deg)
+            for nm in wavelengths_nm
+        }
         return {**at, "Coefficients": _spectra(model)}
     if field == "residuals" and data is not None and _on_a_grid(data):
         maps = (text for nm in data.wavelengths_nm for text in _residual_pictures(model, data, nm))
         return {"Residuals on the hemisphere": maps}
     return {}
+
+
+def _wavelengths(model: Model, data: Dataset | None) -> list[float] | None:
+    """At which to report if nobody says it: the first that are known. None: the library knows, or refuses."""
+    return list(model.wavelengths_nm or (data.wavelengths_nm if data is not None else ()) or model.reflectance) or None
 
 
 def page(
@@ -151,8 +160,13 @@ def page(
     require("model", model, Model)
     if data is not None:
         require("data", data, Dataset)
+        if len(data) == 0:
+            raise ValueError(f"{data_name}: no samples")
     theta_i_deg = number("theta_i_deg", theta_i_deg)
-    chosen = None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
+    if wavelength_nm is None:
+        chosen = _wavelengths(model, data)
+    else:
+        chosen = [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
     facts = json.loads(report_json(model, name or model.name or "the model", chosen, data, data_name))
     title = html.escape(facts.pop("title"))
     warnings = facts.pop("warnings")
@@ -163,10 +177,9 @@ def page(
     if warnings:
         lines = "".join(f"<li>{html.escape(warning)}</li>" for warning in warnings)
         parts.append(f'<ul class="warnings">{lines}</ul>')
-    shown = chosen or list(model.wavelengths_nm) or list(model.reflectance) or [1000.0]
     for field, value in facts.items():
         parts += [f"<h2>{html.escape(field.capitalize().replace('_', ' '))}</h2>", _section(value)]
-        for heading, pictures in _pictures_behind(field, model, data, shown, theta_i_deg).items():
+        for heading, pictures in _pictures_behind(field, model, data, chosen or [None], theta_i_deg).items():
             parts += [f"<h2>{html.escape(heading)}</h2>", *pictures]
     body = "\n".join(parts)
     return (

@@ -129,6 +129,37 @@ def test_other_things_than_a_model_and_samples_are_refused_in_a_line(page, tmp_p
     assert list(tmp_path.iterdir()) == []
 
 
+def headings(path):
+    return Outline(path.read_text()).headings
+
+
+def test_published_coefficients_are_reported_on_at_the_wavelengths_of_the_samples(ptfe, tmp_path):
+    mmbrdf.in_published_form(ptfe).save(tmp_path / "published.csv")
+    model = mmbrdf.load(tmp_path / "published.csv")
+    data = mmbrdf.simulate(ptfe, 633, mmbrdf.germer2017_grid(), speckle=0.01, seed=2)
+    mmbrdf.report(model, data, tmp_path / "report.html")
+    assert "The model at 633 nm" in headings(tmp_path / "report.html")
+    with pytest.raises(ValueError, match="published does not say to which wavelengths it was fitted"):
+        mmbrdf.report(model, None, tmp_path / "report.html")
+
+
+def test_a_model_of_one_unknown_wavelength_is_not_said_to_have_one(tmp_path):
+    mmbrdf.in_published_form(mmbrdf.material("ptfe-532")).save(tmp_path / "published.csv")
+    mmbrdf.report(mmbrdf.load(tmp_path / "published.csv"), None, tmp_path / "report.html")
+    assert "The model" in headings(tmp_path / "report.html")
+    assert not re.search(r"\d nm", re.sub(r'src="data:[^"]*"', "", (tmp_path / "report.html").read_text()))
+
+
+def test_without_samples_the_message_says_where(page, tmp_path):
+    model, data, _ = page
+    with pytest.raises(ValueError, match=r"^empty\.csv: no samples$"):
+        mmbrdf.report(model, data[:0], tmp_path / "report.html", data_name="empty.csv")
+    data[:1].save(tmp_path / "empty.csv")
+    (tmp_path / "empty.csv").write_text((tmp_path / "empty.csv").read_text().splitlines()[0] + "\n")
+    done = run_module("ptfe-532", "empty.csv", "-o", "report.html", folder=tmp_path)
+    assert done.returncode == 1 and "empty.csv" in done.stderr and done.stderr.count("\n") == 1
+
+
 def test_a_missing_folder_is_named_as_it_was_given(page, tmp_path):
     with pytest.raises(FileNotFoundError) as error:
         mmbrdf.report(page[0], None, tmp_path / "no" / "report.html")
