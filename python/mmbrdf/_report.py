@@ -38,6 +38,10 @@ figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
 """
 
 
+_NORMAL_DEG = 0.2
+"""Below this polar angle the azimuth of the source says nothing: both together are within what a map takes for one."""
+
+
 def _cell(value: Any) -> str:
     if value is None:
         return "<td>not known</td>"
@@ -81,37 +85,53 @@ def _picture(figure: Any, caption: str, kind: str = "png") -> str:
     return f'<figure><img alt="{text}" src="data:image/{mime};base64,{data}"><figcaption>{text}</figcaption></figure>'
 
 
-def _model_pictures(model: Model, wavelength_nm: float | None, theta_i_deg: float) -> Iterator[str]:
+def _model_pictures(model: Model, wavelength_nm: float | None, theta_i_deg: float, phi_i_deg: float) -> Iterator[str]:
     wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm, "
-    at = f"{wavelength}theta_i = {theta_i_deg:g} degrees"
+    at = f"{wavelength}theta_i = {theta_i_deg:g}, phi_i = {phi_i_deg:g} degrees"
     yield _picture(
-        plot.hemisphere(model, wavelength_nm, theta_i_deg)[0],
+        plot.hemisphere(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
         f"The model over the hemisphere of reflected directions, {at}: f11, and the other elements divided by it.",
     )
     yield '<div class="pair">'
     bands = ", with bands of k = 2" if model.has_covariance else ""
     yield _picture(
-        plot.in_plane_curves(model, wavelength_nm, theta_i_deg)[0],
+        plot.in_plane_curves(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
         f"Co- and cross-polarized BRDF in the plane of incidence, {at}{bands}.",
         "svg",
     )
     yield _picture(
-        plot.realizability_map(model, wavelength_nm, theta_i_deg)[0],
+        plot.realizability_map(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
         f"Smallest coherency eigenvalue / f11, {at}: a matrix where it is negative cannot exist.",
     )
     yield "</div>"
 
 
-def _residual_pictures(model: Model, data: Dataset, wavelength_nm: float) -> Iterator[str]:
+def _from_azimuth(data: Dataset, phi_i_deg: float) -> Dataset:
+    """Those samples with the source at this azimuth, or so near the normal that it has none."""
+    turn = (data.phi_i_deg - phi_i_deg + 180) % 360 - 180
+    return data[(np.abs(turn) < 0.4) | (data.theta_i_deg < _NORMAL_DEG)]
+
+
+def _azimuth_deg(data: Dataset | None) -> float:
+    """Of the source in all pictures: that of most samples if they are on a grid, else that of all pictures."""
+    usual = plot.disc.SOURCE_AZIMUTH_DEG
+    if data is None or not _on_a_grid(data):
+        return usual
+    azimuths = np.round(data.phi_i_deg[data.theta_i_deg >= _NORMAL_DEG], 1) % 360
+    values, counts = np.unique(azimuths, return_counts=True)
+    return float(values[counts.argmax()]) if len(values) else usual
+
+
+def _residual_pictures(model: Model, data: Dataset, wavelength_nm: float, phi_i_deg: float) -> Iterator[str]:
     """At the smallest, a middle and the largest angle of incidence that the data have."""
-    here = data.at_wavelengths(wavelength_nm)
+    here = _from_azimuth(data.at_wavelengths(wavelength_nm), phi_i_deg)
     angles = np.unique(np.round(here.theta_i_deg, 1))
+    if len(angles) == 0:
+        return
     for theta_i_deg in dict.fromkeys((angles[0], angles[len(angles) // 2], angles[-1])):
-        near = here[np.abs(here.theta_i_deg - theta_i_deg) < 0.5]
-        figure = plot.residual_map(model, near, wavelength_nm, float(theta_i_deg), phi_i_deg=float(near.phi_i_deg[0]))[
-            0
-        ]
-        yield _picture(figure, f"Samples - model at {wavelength_nm:g} nm, theta_i = {theta_i_deg:g} degrees.")
+        figure, _ = plot.residual_map(model, here, wavelength_nm, float(theta_i_deg), phi_i_deg=phi_i_deg)
+        at = f"{wavelength_nm:g} nm, theta_i = {theta_i_deg:g}, phi_i = {phi_i_deg:g} degrees"
+        yield _picture(figure, f"Samples - model at {at}.")
 
 
 def _on_a_grid(data: Dataset) -> bool:
@@ -130,14 +150,15 @@ def _pictures_behind(
     field: str, model: Model, data: Dataset | None, wavelengths_nm: Sequence[float | None], theta_i_deg: float
 ) -> dict[str, Iterator[str]]:
     """What is shown behind a field of the facts: parts by heading."""
+    phi_i_deg = _azimuth_deg(data)
     if field == "fit":
         at = {
-            "The model" + ("" if nm is None else f" at {nm:g} nm"): _model_pictures(model, nm, theta_i_deg)
+            "The model" + ("" if nm is None else f" at {nm:g} nm"): _model_pictures(model, nm, theta_i_deg, phi_i_deg)
             for nm in wavelengths_nm
         }
         return {**at, "Coefficients": _spectra(model)}
     if field == "residuals" and data is not None and _on_a_grid(data):
-        maps = (text for nm in data.wavelengths_nm for text in _residual_pictures(model, data, nm))
+        maps = (text for nm in data.wavelengths_nm for text in _residual_pictures(model, data, nm, phi_i_deg))
         return {"Residuals on the hemisphere": maps}
     return {}
 

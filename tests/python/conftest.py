@@ -22,6 +22,15 @@ def samples(ptfe):
     return mmbrdf.simulate(ptfe, 532, mmbrdf.germer2017_grid(), speckle=0.01, seed=1)
 
 
+@pytest.fixture(scope="session")
+def anisotropic():
+    """A model that depends on the azimuth of the source, in f11 and in what is divided by it."""
+    geometry = mmbrdf.random_geometries(2000, seed=3)
+    turned = np.sin(np.radians(geometry.theta_i_deg)) ** 2 * np.cos(2 * np.radians(geometry.phi_i_deg))
+    mueller = np.diag([0.3, 0.1, 0.1, 0.0]) + 0.1 * turned[:, None, None] * np.diag([1.0, 0.0, 0.0, 0.0])
+    return mmbrdf.fit(mmbrdf.Dataset(532, *geometry, mueller), "anisotropic", (2, 2), name="brushed").model
+
+
 @pytest.fixture
 def program(tmp_path):
     """Runs the program in a folder of its own; returns what it prints."""

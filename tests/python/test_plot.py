@@ -285,6 +285,24 @@ def test_in_plane_curves_are_the_polarized_brdf_with_bands():
     assert figure.axes == [axes]
 
 
+def test_curves_are_in_the_plane_of_the_source_that_the_maps_have(anisotropic):
+    plot = mmbrdf.plot
+    for azimuth in ({}, {"phi_i_deg": 70.0}):
+        phi_i_deg = azimuth.get("phi_i_deg", disc.SOURCE_AZIMUTH_DEG)
+        theta_r_deg = np.array([-30.0, 30.0])
+        where = 532, 60, phi_i_deg, 30, [phi_i_deg, phi_i_deg - 180]
+        mueller = anisotropic.evaluate(*where, frame="sp")
+        expected = (mueller[:, 0, 0] + mueller[:, 0, 1] + mueller[:, 1, 0] + mueller[:, 1, 1]) / 2
+        _, axes = plot.in_plane_curves(anisotropic, 532, 60, theta_r_deg=theta_r_deg, **azimuth)
+        np.testing.assert_allclose(axes.lines[0].get_ydata(), expected, rtol=1e-12)
+        _, axes = plot.subset_study([anisotropic], anisotropic, 532, 60, theta_r_deg=theta_r_deg, **azimuth)
+        np.testing.assert_allclose(axes.lines[4].get_ydata(), expected, rtol=1e-12)
+        _, axes = plot.polar_in_plane(anisotropic, 532, 60, **azimuth)
+        np.testing.assert_allclose(axes.lines[0].get_ydata()[[60, 120]], mueller[:, 0, 0], rtol=1e-12)
+    other = anisotropic.evaluate(532, 60, 0, 30, 0)[0, 0]
+    assert abs(other / mueller[0, 0, 0] - 1) > 0.05, "the sample looks different from there"
+
+
 def test_curves_are_scaled_to_the_fitted_angles_and_grey_beyond():
     model = mmbrdf.material("ptfe-1064")
     _, axes = mmbrdf.plot.in_plane_curves(model, 1064, 75)

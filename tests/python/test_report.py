@@ -10,6 +10,7 @@ import stat
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import mmbrdf
@@ -148,6 +149,39 @@ def test_a_model_of_one_unknown_wavelength_is_not_said_to_have_one(tmp_path):
     mmbrdf.report(mmbrdf.load(tmp_path / "published.csv"), None, tmp_path / "report.html")
     assert "The model" in headings(tmp_path / "report.html")
     assert not re.search(r"\d nm", re.sub(r'src="data:[^"]*"', "", (tmp_path / "report.html").read_text()))
+
+
+def azimuths(path):
+    return re.findall(r"phi_i = (\S+) degrees", "".join(re.findall("<figcaption>.*?</figcaption>", path.read_text())))
+
+
+def test_all_pictures_have_the_azimuth_of_the_samples_and_say_so(anisotropic, tmp_path):
+    grid = mmbrdf.germer2017_grid()
+    data = mmbrdf.simulate(
+        anisotropic, 532, grid._replace(phi_i_deg=np.full(len(grid.theta_i_deg), 30.0)), speckle=0.01
+    )
+    mmbrdf.report(anisotropic, data, tmp_path / "report.html")
+    assert (
+        azimuths(tmp_path / "report.html") == ["30"] * 6
+    )  # hemisphere, curves, realizability, three maps of residuals
+    mmbrdf.report(anisotropic, None, tmp_path / "report.html")
+    assert azimuths(tmp_path / "report.html") == ["180"] * 3
+
+
+def test_the_pictures_are_drawn_at_the_azimuth_that_their_captions_name(anisotropic):
+    pictures = [
+        [part for part in _report._model_pictures(anisotropic, 532, 60, phi_i_deg) if "<img" in part]
+        for phi_i_deg in (30, 180)
+    ]
+    sources = [[re.search('src="(.*?)"', part).group(1) for part in parts] for parts in pictures]
+    assert len(sources[0]) == 3 and all(one != other for one, other in zip(*sources))
+
+
+def test_samples_from_everywhere_have_no_azimuth(ptfe):
+    assert _report._azimuth_deg(mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(500, seed=1))) == 180
+    grid = mmbrdf.germer2017_grid()
+    turned = grid._replace(phi_i_deg=np.where(np.arange(len(grid.theta_i_deg)) % 3 > 0, 359.96, 90.0))
+    assert _report._azimuth_deg(mmbrdf.simulate(ptfe, 532, turned)) == 0
 
 
 def test_without_samples_the_message_says_where(page, tmp_path):

@@ -33,11 +33,19 @@ LAMBERTIAN = 1 / np.pi
 """f11 of a perfect diffuser, sr^-1."""
 
 
+def in_plane(theta_i_deg: float, phi_i_deg: float, theta_r_deg) -> mmbrdf.Geometry:
+    """mmbrdf.in_plane(), turned to an azimuth of the source: isotropic samples look the same from all of them."""
+    theta_i, phi_i, theta_r, phi_r = mmbrdf.in_plane(theta_i_deg, theta_r_deg)
+    turn = phi_i_deg - phi_i
+    return mmbrdf.Geometry(theta_i, phi_i + turn, theta_r, (phi_r + turn) % 360)
+
+
 def in_plane_curves(
     model: Model,
     wavelength_nm: float | None,
     theta_i_deg: float = 45.0,
     *,
+    phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
     theta_r_deg: Sequence[float] | None = None,
     coverage: float = 2.0,
     bands: bool | None = None,
@@ -49,14 +57,14 @@ def in_plane_curves(
     """BRDF between linear polarizations in the plane of incidence, with uncertainty bands (Fig. 6 of Germer 2017).
 
     ``theta_r_deg`` are signed polar angles of detection in degrees, positive on the forward side (-90 ... 90 in steps
-    of 1 degree without it). ``bands`` are ``coverage`` standard uncertainties of the fit to either side, drawn if the
+    of 1 degree without it), in the plane of incidence at ``phi_i_deg``. ``bands`` are ``coverage`` standard uncertainties of the fit to either side, drawn if the
     model has a covariance. Without ``axes`` the ordinate spans the curves within the fitted angles; what lies beyond
     is grey. Returns the figure and its axes; the four lines are drawn in the order of ``COMPONENTS``.
     """
     require("model", model, mmbrdf.Model)
     wavelength_nm, theta_i_deg = own_wavelength(model, wavelength_nm), number("theta_i_deg", theta_i_deg)
     angles = np.arange(-90.0, 91.0) if theta_r_deg is None else np.asarray(theta_r_deg, float)
-    geometry = mmbrdf.in_plane(theta_i_deg, angles)
+    geometry = in_plane(theta_i_deg, phi_i_deg, angles)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mmbrdf.ExtrapolationWarning)
         curves = mmbrdf.polarized_curve(model, wavelength_nm, geometry)
@@ -82,6 +90,7 @@ def subset_study(
     wavelength_nm: float | None,
     theta_i_deg: float = 45.0,
     *,
+    phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
     theta_r_deg: Sequence[float] | None = None,
     axes: Axes | None = None,
     legend: bool = True,
@@ -93,7 +102,7 @@ def subset_study(
     """
     parts = several_models("parts", parts)
     require("reference", reference, mmbrdf.Model)
-    options: dict[str, Any] = dict(theta_r_deg=theta_r_deg, bands=False, legend=False)
+    options: dict[str, Any] = dict(phi_i_deg=phi_i_deg, theta_r_deg=theta_r_deg, bands=False, legend=False)
     figure, axes = in_plane_curves(reference, wavelength_nm, theta_i_deg, axes=axes, linewidth=2.4, **options)
     for part in parts:
         in_plane_curves(part, wavelength_nm, theta_i_deg, axes=axes, linewidth=0.7, **options)
@@ -116,6 +125,7 @@ def polar_in_plane(
     wavelength_nm: float | Sequence[float] | None,
     theta_i_deg: float = 45.0,
     *,
+    phi_i_deg: float = disc.SOURCE_AZIMUTH_DEG,
     axes: PolarAxes | None = None,
 ) -> tuple[Figure, PolarAxes]:
     """f11 in the plane of incidence against the signed polar angle of detection, in polar coordinates.
@@ -133,7 +143,7 @@ def polar_in_plane(
     for model in models:
         limit = 90.0 if model.theta_r_max_deg is None else model.theta_r_max_deg
         for wavelength in (own_wavelength(model, each) for each in np.atleast_1d(wavelength_nm)):
-            f11 = disc.evaluate(model, wavelength, mmbrdf.in_plane(theta_i_deg, theta_r_deg))[..., 0, 0]
+            f11 = disc.evaluate(model, wavelength, in_plane(theta_i_deg, phi_i_deg, theta_r_deg))[..., 0, 0]
             label = labels.title(labels.plain(model.name), wavelength)
             axes.plot(np.radians(theta_r_deg), f11, linewidth=1.4, label=label)
             largest = max(largest, f11[np.abs(theta_r_deg) <= limit].max())
