@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,16 +26,18 @@ _AXES = {"xy": "(y, x)", "sp": "(s, p)", "scattering_plane": "(perpendicular, pa
 
 
 def _dimension_names(shape: tuple[int, ...], arguments: dict[str, np.ndarray]) -> list[str]:
-    """An axis along which one argument alone varies has its name; any other is axis_0, axis_1, …"""
+    """An axis that one argument alone spans has its name; any other is axis_0, axis_1, …"""
     names = []
     for axis, length in enumerate(shape):
-        varying = [
+        behind = len(shape) - axis  # how many dimensions an argument has whose first this is
+        # An axis of length 1 is of those that begin with it: in arguments of more dimensions it may only fill a place.
+        spanning = [
             name
             for name, values in arguments.items()
-            if length > 1 and values.ndim >= len(shape) - axis and values.shape[axis - len(shape)] == length
+            if values.ndim >= behind and values.shape[-behind] == length and (length != 1 or values.ndim == behind)
         ]
-        alone = len(varying) == 1 and arguments[varying[0]].size == length
-        names.append(varying[0] if alone else f"axis_{axis}")
+        alone = len(spanning) == 1 and arguments[spanning[0]].size == length
+        names.append(spanning[0] if alone else f"axis_{axis}")
     return names
 
 
@@ -50,11 +54,20 @@ def _coordinates(shape: tuple[int, ...], names: list[str], arguments: dict[str, 
 
 
 def labelled(
-    values: np.ndarray, quantity: str, model: Model, frame: str, arguments: dict[str, np.ndarray | None]
+    values: np.ndarray,
+    quantity: str,
+    model: Model,
+    frame: str,
+    arguments: Mapping[str, np.ndarray | None],
+    *,
+    as_printed: bool = False,
+    terms: Mapping[str, float] | None = None,
 ) -> xarray.DataArray:
     """An array (..., 4, 4) as Model.evaluate() gives it, with the arguments as coordinates."""
     import xarray
 
+    if arguments.get("wavelength_nm") is None and len(model.wavelengths_nm) == 1:
+        arguments = {**arguments, "wavelength_nm": np.asarray(model.wavelengths_nm[0])}
     given = {name: np.asarray(value, dtype=float) for name, value in arguments.items() if value is not None}
     shape = values.shape[:-2]
     names = _dimension_names(shape, given)
@@ -68,7 +81,10 @@ def labelled(
         "axes": f"{_AXES[frame]} of each beam",
         "convention": "germer2017: S2 = first axis - second axis, S4 = left - right, time factor exp(-i omega t)",
         "directions": "away from the sample; forward scattering is phi_r - phi_i = 180 degrees",
+        "as_printed": int(as_printed),  # netCDF has no truth values
         "model": model.name,
         "software": f"mmbrdf {__version__}",
     }
+    if quantity == "uncertainty":
+        attributes["terms"] = json.dumps({name: float(value) for name, value in (terms or {}).items()})
     return xarray.DataArray(values, coordinates, [*names, "row", "column"], quantity, attributes)
