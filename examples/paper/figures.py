@@ -4,14 +4,15 @@
 
     python3 figures.py DATA_FOLDER OUT_FOLDER
 
-DATA_FOLDER holds PTFE.data.csv and PTFE.data.random.csv (figshare 10.6084/m9.figshare.5417410); without them the
-figures are of simulated data, and say so. OUT_FOLDER gets fig1 ... fig7 as PNG and PDF, made with the published basis,
+DATA_FOLDER holds PTFE.data.csv and PTFE.data.random.csv (figshare 10.6084/m9.figshare.5417410); without
+the first the figures are of simulated data, and say so. OUT_FOLDER gets fig1 ... fig7 as PNG and PDF, made with the published basis,
 isotropic/ with the same and two more figures of the isotropic basis, tables as CSV, and report.md, which puts the
 paper's numbers beside these.
 """
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 import drawing
@@ -38,7 +39,10 @@ def write_figure(figure, path: Path, simulated: bool) -> None:
     figure.savefig(path.with_suffix(".pdf"), dpi=150, metadata={"CreationDate": None})
 
 
-def reproduce(data_folder: Path | None, out_folder: Path, only: list[str]) -> None:
+def reproduce(data_folder: Path, out_folder: Path, only: list[str]) -> None:
+    for folder in (data_folder, out_folder):
+        if folder.exists() and not folder.is_dir():
+            raise NotADirectoryError(f"{folder}: not a folder")
     study = studies.load(data_folder)
     if study.simulated:
         print(f"no PTFE.data.csv in {data_folder}: simulating the measurements")
@@ -62,10 +66,14 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.readme is None and options.out_folder is None:
         parser.error("DATA_FOLDER and OUT_FOLDER, or --readme FILE")
-    if options.readme is not None:
-        write_readme_picture(options.readme)
-    if options.out_folder is not None:
-        reproduce(options.data_folder, options.out_folder, options.only)
+    try:
+        if options.readme is not None:
+            write_readme_picture(options.readme)
+        if options.out_folder is not None:
+            reproduce(options.data_folder, options.out_folder, options.only)
+    except (OSError, ValueError) as error:
+        print(f"{parser.prog}: {error}", file=sys.stderr)
+        return 1
     return 0
 
 

@@ -70,14 +70,11 @@ class Study:
 
 
 def load(folder: Path | None) -> Study:
-    """The published data in a folder, or simulated data where it has none."""
+    """The published data in a folder, or simulated data where it has none. Raises OSError for files that are others."""
     if folder is not None and (folder / "PTFE.data.csv").exists():
-        return Study(
-            mmbrdf.read_samples(folder / "PTFE.data.csv"),
-            mmbrdf.read_samples(folder / "PTFE.data.random.csv"),
-            simulated=False,
-            folder=folder,
-        )
+        grid = _read(folder / "PTFE.data.csv", WAVELENGTHS_NM)
+        random = _read(folder / "PTFE.data.random.csv", (SUBSET_NM,))
+        return Study(grid, random, simulated=False, folder=folder)
     ptfe = mmbrdf.material("ptfe")
     grids = [
         mmbrdf.simulate(ptfe, wavelength, mmbrdf.germer2017_grid(), speckle=SPECKLE[wavelength], seed=seed)
@@ -91,6 +88,15 @@ def load(folder: Path | None) -> Study:
     )
     random = mmbrdf.simulate(ptfe, SUBSET_NM, mmbrdf.random_geometries(1760, seed=10), speckle=0.0093, seed=11)
     return Study(grid, random, simulated=True)
+
+
+def _read(path: Path, wavelengths_nm: tuple[float, ...]):
+    """Samples at these wavelengths."""
+    data = mmbrdf.read_samples(path)
+    if data.wavelengths_nm != wavelengths_nm:
+        expected, found = (", ".join(f"{nm:g}" for nm in each) for each in (wavelengths_nm, data.wavelengths_nm))
+        raise OSError(f"{path}: has samples at {found} nm, expected {expected} nm")
+    return data
 
 
 def fit(data, basis: str, name: str, *, reflectance=None, as_printed: bool = False):

@@ -89,6 +89,34 @@ def test_the_picture_of_the_readme_is_small(tmp_path):
     assert 10_000 < (tmp_path / "hemisphere.png").stat().st_size < 150_000
 
 
+def test_what_cannot_be_done_is_said_in_a_line(simulated, tmp_path, capsys):
+    data, file = tmp_path / "data", tmp_path / "file"
+    garbage, empty, others = (tmp_path / name for name in ("garbage", "empty", "others"))
+    for folder in (data, garbage, empty, others):
+        folder.mkdir()
+    file.write_text("")
+    simulated.grid.save(data / "PTFE.data.csv")
+    (garbage / "PTFE.data.csv").write_bytes(bytes(range(256)))
+    (empty / "PTFE.data.csv").write_text("")
+    simulated.random.save(others / "PTFE.data.csv")
+    out = tmp_path / "out"
+    for arguments, messages in (
+        ((data, out), [str(data / "PTFE.data.random.csv"), "No such file"]),
+        ((garbage, out), [str(garbage / "PTFE.data.csv")]),
+        ((empty, out), [str(empty / "PTFE.data.csv")]),
+        ((others, out), [f"{others / 'PTFE.data.csv'}: has samples at 532 nm, expected 351, 532, 633, 1064 nm"]),
+        ((file, out), [f"{file}: not a folder"]),
+        ((tmp_path / "nothing", file), [f"{file}: not a folder"]),
+        (("--readme", file / "picture.png"), [str(file)]),
+    ):
+        assert figures.main([str(argument) for argument in arguments]) == 1
+        printed = capsys.readouterr()
+        assert printed.err.count("\n") == 1 and printed.out == ""
+        for message in messages:
+            assert message in printed.err
+    assert not out.exists()
+
+
 # What is in the figures
 
 
