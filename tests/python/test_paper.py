@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """examples/paper: the figures and numbers, from simulated data everywhere and from the published where they are."""
 import csv
+import io
+import re
 import sys
 from pathlib import Path
 
@@ -157,16 +159,39 @@ def test_figure_5_has_three_wavelengths_at_two_angles(simulated):
 def test_figure_6_has_the_papers_colours_styles_and_widths(simulated):
     (axes,) = drawing.curves_figure(simulated, PUBLISHED).axes
     assert len(axes.lines) == 32
-    assert [to_rgba(line.get_color()) for line in axes.lines[:4]][0] == (0, 0, 0, 1)
+    colours = [to_rgba(line.get_color())[:3] for line in axes.lines]
+    assert colours == 8 * colours[:4]
+    assert colours[0] == (0, 0, 0)
+    assert [int(np.argmax(colour)) for colour in colours[1:4]] == [0, 1, 2]  # red, green, blue
     for number, (wavelength_nm, style) in enumerate(drawing.LINE_STYLES.items()):
         thin, thick = axes.lines[8 * number : 8 * number + 4], axes.lines[8 * number + 4 : 8 * number + 8]
         assert max(line.get_linewidth() for line in thin) < 0.5 * min(line.get_linewidth() for line in thick)
-        if isinstance(style, str):
-            assert {line.get_linestyle() for line in thin + thick} == {style}
         angles = thick[0].get_xdata()
         at = angles == 30
         curve = mmbrdf.polarized_curve(simulated.model(PUBLISHED, ALL), wavelength_nm, mmbrdf.in_plane(45, 30.0))
         np.testing.assert_allclose([line.get_ydata()[at][0] for line in thick], np.array(curve).ravel(), rtol=1e-13)
+
+
+def test_figure_6_has_a_style_for_each_wavelength(simulated):
+    axes = drawing.curves_figure(simulated, PUBLISHED).axes[0]
+    drawn = io.BytesIO()
+    for number, line in enumerate(axes.lines):
+        line.set_gid(f"curve-{number}")
+    axes.figure.savefig(drawn, format="svg")
+    curves = re.findall(r'<g id="curve-(\d+)">\s*<path [^>]*style="([^"]*)"', drawn.getvalue().decode())
+    assert [int(number) for number, _ in curves] == list(range(32))
+    on_and_off = []
+    for number, style in curves:
+        found = re.search(r"stroke-dasharray: ([\d., ]+)", style)
+        width = axes.lines[int(number)].get_linewidth()
+        on_and_off.append([float(part) / width for part in found.group(1).split(",")] if found else [])
+    solid, dashed, dash_dot_dot, dash_dot = (on_and_off[8 * n : 8 * n + 8] for n in range(4))
+    assert solid == [[]] * 8
+    assert all(len(pattern) == 2 for pattern in dashed)
+    for pattern in dash_dot_dot:
+        dash, *_ = pattern
+        assert len(pattern) == 6 and pattern[2] < dash / 3 and pattern[4] < dash / 3
+    assert all(len(pattern) == 4 and pattern[2] < pattern[0] / 3 for pattern in dash_dot)
 
 
 # Four-fold pattern
@@ -210,11 +235,27 @@ def test_pooled_is_the_rms_over_elements():
     assert report.pair_rms(by_element, "11") == 100
 
 
-def test_subset_numbers_of_known_curves(simulated):
-    reference = simulated.model(ISOTROPIC, 532.0)
-    numbers = studies.subset_numbers([reference] * 3, reference)
-    assert list(numbers) == ["mean_distance", "largest_distance", "deviation"]
-    np.testing.assert_allclose(list(numbers.values()), 0, atol=1e-12)
+def test_subset_numbers_of_known_curves():
+    def depolarizer(slope):
+        """f11 = 0.3 (1 + slope cos(theta_i) cos(theta_r)), whose four curves are half of it."""
+        geometry = mmbrdf.random_geometries(500, seed=1)
+        cosines = np.cos(np.radians(geometry.theta_i_deg)) * np.cos(np.radians(geometry.theta_r_deg))
+        mueller = 0.3 * (1 + slope * cosines)[:, None, None] * np.diag([1.0, 0, 0, 0])
+        return mmbrdf.fit(mmbrdf.Dataset(532, *geometry, mueller), orders=(2, 2)).model
+
+    numbers = studies.subset_numbers([depolarizer(slope) for slope in (0.0, 0.02, 0.07)], depolarizer(0.0))
+    # At theta_i = 45 degrees, in percent: the mean of the parts is 3 cos(theta_r) / sqrt(2) above the reference. Their
+    # slopes are 3, 1 and 4 off their mean: standard deviation sqrt((9 + 1 + 16) / 2). The sum of cosines over -60 ... 60
+    # degrees is sin(60.5) / sin(0.5), the largest is 1.
+    mean_cosine = np.sin(np.radians(60.5)) / np.sin(np.radians(0.5)) / 121
+    assert numbers == pytest.approx(
+        {
+            "mean_distance": 3 / np.sqrt(2) * mean_cosine,
+            "largest_distance": 3 / np.sqrt(2),
+            "deviation": np.sqrt(26 / 2) / np.sqrt(2) * mean_cosine,
+        },
+        rel=1e-9,
+    )
 
 
 def test_refitting_gives_the_published_coefficients(published, published_study):
