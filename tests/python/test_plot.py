@@ -471,13 +471,14 @@ def pictures_with_names(model, data):
 
 
 @pytest.mark.parametrize("name", [r"$\frac$", "cost $5 or $6 _{", r"a\$b", "_hidden", "纸样"])
-def test_a_name_is_shown_letter_by_letter(ptfe, data, name):
+def test_a_name_is_shown_letter_by_letter(ptfe, data, name, caplog):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for figure in pictures_with_names(named(ptfe, name), data):
             rendered(figure)
             figure.savefig(io.BytesIO(), bbox_inches="tight")
             assert name.replace("$", r"\$") in written(figure)
+    assert caplog.records == []
 
 
 def test_a_dollar_is_one_dollar():

@@ -249,6 +249,14 @@ def test_it_runs_as_a_program(tmp_path):
     assert not (tmp_path / "other.html").exists()
 
 
+@pytest.mark.parametrize("name", ["$_{$.csv", "纸样.csv", "<i>&amp;.csv"])
+def test_file_names_are_text_whatever_is_in_them(name, tmp_path):
+    mmbrdf.in_published_form(mmbrdf.material("ptfe-532")).save(tmp_path / name)
+    done = run_module(name, "-o", "report.html", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert headings(tmp_path / "report.html")[0] == f"Report on {name}"
+
+
 def test_it_prints_the_page_where_that_is_asked_for(tmp_path):
     done = run_module("ptfe-532", "-o", "/proc/self/fd/1", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -22,15 +23,27 @@ def title(name: str, wavelength_nm: float | None, theta_i_deg: float | None = No
     return ", ".join(part for part in (name, wavelength, angle) if part)
 
 
+_SAYS_WHAT_FONTS_LACK = logging.getLogger("matplotlib.mathtext")
+"""For names that stand beside a formula; for others it is a warning."""
+
+
+def _is_of_something_else(record: logging.LogRecord) -> bool:
+    return "does not have a glyph" not in record.getMessage()
+
+
 @contextlib.contextmanager
 def _whatever_the_font_lacks() -> Iterator[None]:
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
-        yield
+    _SAYS_WHAT_FONTS_LACK.addFilter(_is_of_something_else)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
+            yield
+    finally:
+        _SAYS_WHAT_FONTS_LACK.removeFilter(_is_of_something_else)
 
 
 class Picture(Figure):
-    """A figure that draws a box for each character that its font lacks, as all do, without a warning for each."""
+    """A figure that draws a box for each character that its font lacks, as all do, but says nothing of each."""
 
     def draw(self, renderer: Any) -> None:
         with _whatever_the_font_lacks():
