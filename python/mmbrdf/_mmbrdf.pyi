@@ -72,6 +72,7 @@ class Model:
         as_printed: bool = ...,
         threads: int | None = ...,
         as_xarray: Literal[False] = ...,
+        out: NDArray[np.float64] | None = ...,
     ) -> NDArray[np.float64]: ...
     @overload
     def evaluate(
@@ -85,6 +86,7 @@ class Model:
         as_printed: bool = ...,
         threads: int | None = ...,
         as_xarray: Literal[False] = ...,
+        out: NDArray[np.float64] | None = ...,
     ) -> NDArray[np.float64]: ...
     @overload
     def evaluate(
@@ -99,6 +101,7 @@ class Model:
         as_printed: bool = ...,
         threads: int | None = ...,
         as_xarray: Literal[True],
+        out: NDArray[np.float64] | None = ...,
     ) -> xarray.DataArray: ...
     @overload
     def evaluate(
@@ -112,6 +115,7 @@ class Model:
         as_printed: bool = ...,
         threads: int | None = ...,
         as_xarray: Literal[True],
+        out: NDArray[np.float64] | None = ...,
     ) -> xarray.DataArray: ...
     @overload
     def evaluate_uncertainty(

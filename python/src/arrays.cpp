@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
@@ -51,6 +53,40 @@ double loaded(const char* data) {
   double value;
   std::memcpy(&value, data, sizeof value);
   return value;
+}
+
+/// `count` numbers at this distance; returns where the next goes.
+double* gather_numbers(const char* data, py::ssize_t stride, std::size_t count, double* out) {
+  if (stride == static_cast<py::ssize_t>(sizeof(double))) {
+    std::memcpy(out, data, count * sizeof(double));
+  } else if (stride == 0) {
+    std::fill_n(out, count, loaded(data));
+  } else {
+    for (std::size_t i = 0; i < count; ++i, data += stride) out[i] = loaded(data);
+  }
+  return out + count;
+}
+
+/// Angles in degrees of some directions: theta_i, phi_i, theta_r, phi_r.
+using Angles = std::array<const double*, 4>;
+
+/// Whether none needs to be unfolded or is invalid, as nearly always. Bits are gathered, since loops with comparisons
+/// do not become loops of vectors: x − x has none unless x is not finite, θ (90 − θ) has a sign outside [0, 90].
+bool plain(const Angles& angles, std::size_t count) {
+  std::uint64_t none = 0, sign = 0;
+  for (const std::size_t a : {0U, 1U, 2U, 3U})
+    for (std::size_t i = 0; i < count; ++i) none |= std::bit_cast<std::uint64_t>(angles[a][i] - angles[a][i]);
+  for (const std::size_t a : {0U, 2U})
+    for (std::size_t i = 0; i < count; ++i) sign |= std::bit_cast<std::uint64_t>(angles[a][i] * (90 - angles[a][i]));
+  return none == 0 && sign >> 63 == 0;
+}
+
+Geometry geometry_from(const Angles& angles, std::size_t i) {
+  const Geometry result{direction_from_degrees(angles[0][i], angles[1][i]),
+                        direction_from_degrees(angles[2][i], angles[3][i])};
+  if (!std::isfinite(result.incident.phi)) throw std::invalid_argument("phi_i_deg is not finite");
+  if (!std::isfinite(result.reflected.phi)) throw std::invalid_argument("phi_r_deg is not finite");
+  return result;
 }
 
 }  // namespace
@@ -104,12 +140,33 @@ void Broadcast::gather(std::size_t which, std::size_t begin, std::size_t end, do
       row /= length;
     }
     const std::size_t count = std::min(end - begin, inner - begin % inner);
+    const auto [rows, columns] = source.lengths;
+    if (rows == 1 && columns == 1) {
+      out = gather_numbers(data, stride, count, out);
+      begin += count;
+      continue;
+    }
     for (std::size_t i = 0; i < count; ++i, data += stride)
-      for (py::ssize_t a = 0; a < source.lengths[0]; ++a)
-        for (py::ssize_t b = 0; b < source.lengths[1]; ++b)
+      for (py::ssize_t a = 0; a < rows; ++a)
+        for (py::ssize_t b = 0; b < columns; ++b)
           *out++ = loaded(data + a * source.core_strides[0] + b * source.core_strides[1]);
     begin += count;
   }
+}
+
+const double* Broadcast::numbers(std::size_t which, std::size_t begin, std::size_t end, double* room) const {
+  const Source& source = sources_[which];
+  constexpr auto step = static_cast<py::ssize_t>(sizeof(double));
+  const bool adjacent = shape_.size() == 1 && source.strides[0] == step &&
+                        reinterpret_cast<std::uintptr_t>(source.data) % alignof(double) == 0;
+  if (adjacent) {
+    // Several arrays are read in turn, a little of each: the processor does not see what comes next.
+    const double* const here = reinterpret_cast<const double*>(source.data) + begin;
+    for (std::size_t i = begin + 512; i < std::min(end + 512, size_); i += 8) __builtin_prefetch(here + (i - begin));
+    return here;
+  }
+  gather(which, begin, end, room);
+  return room;
 }
 
 std::invalid_argument Broadcast::at_place(const std::invalid_argument& error, std::size_t position) const {
@@ -160,17 +217,20 @@ std::vector<Operand> direction_operands(const Given& theta_i, const Given& phi_i
 
 void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, std::size_t end, Geometry* out) {
   constexpr std::size_t some = 256;
-  std::array<std::array<double, some>, 4> angles;
+  std::array<std::array<double, some>, 4> room;
   for (; begin < end; begin += some) {
     const std::size_t count = std::min(some, end - begin);
-    for (std::size_t a = 0; a < 4; ++a) broadcast.gather(first + a, begin, begin + count, angles[a].data());
+    Angles angles;
+    for (std::size_t a = 0; a < 4; ++a) angles[a] = broadcast.numbers(first + a, begin, begin + count, room[a].data());
+    if (plain(angles, count)) {  // what direction_from_degrees() does with these, without its questions
+      for (std::size_t i = 0; i < count; ++i)
+        out[i] = {{radians(angles[0][i]), radians(angles[1][i])}, {radians(angles[2][i]), radians(angles[3][i])}};
+      out += count;
+      continue;
+    }
     for (std::size_t i = 0; i < count; ++i) {
       try {
-        const Direction incident = direction_from_degrees(angles[0][i], angles[1][i]);
-        const Direction reflected = direction_from_degrees(angles[2][i], angles[3][i]);
-        if (!std::isfinite(incident.phi)) throw std::invalid_argument("phi_i_deg is not finite");
-        if (!std::isfinite(reflected.phi)) throw std::invalid_argument("phi_r_deg is not finite");
-        *out++ = {incident, reflected};
+        *out++ = geometry_from(angles, i);
       } catch (const std::invalid_argument& error) {
         throw broadcast.at_place(std::invalid_argument("direction " + std::string(error.what())), begin + i);
       }

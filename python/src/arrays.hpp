@@ -54,6 +54,9 @@ class Broadcast {
   /// Copies what operand `which` has at the positions begin … end − 1 of the result (C order), core after core.
   void gather(std::size_t which, std::size_t begin, std::size_t end, double* out) const;
 
+  /// The same for an operand of numbers: where they stand if they stand one behind the other, else copied to `room`.
+  const double* numbers(std::size_t which, std::size_t begin, std::size_t end, double* room) const;
+
   /// The core at one position.
   template <std::size_t n>
   std::array<double, n> at(std::size_t which, std::size_t position) const {

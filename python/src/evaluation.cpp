@@ -102,13 +102,14 @@ class Question {
 /// Counts what lies outside the fitted range, and says so in one warning.
 class Range {
  public:
+  explicit Range(const ModelObject& model)
+      : theta_i_max_(model.model().validity.theta_i_max.value_or(radians(90))),
+        theta_r_max_(model.model().validity.theta_r_max.value_or(radians(90))) {}
+
   void count(const PreparedModel& model, std::span<const Geometry> geometries) {
-    Geometry widest;
-    for (const Geometry& g : geometries) {
-      widest.incident.theta = std::max(widest.incident.theta, g.incident.theta);
-      widest.reflected.theta = std::max(widest.reflected.theta, g.reflected.theta);
-    }
-    if (known(model.outside(widest)) == 0) return;
+    bool beyond = known(model.outside({})) != 0;  // the wavelength
+    for (const Geometry& g : geometries) beyond |= g.incident.theta > theta_i_max_ || g.reflected.theta > theta_r_max_;
+    if (!beyond) return;
     for (const Geometry& g : geometries) {
       const unsigned outside = known(model.outside(g));
       reasons_ |= outside;
@@ -121,14 +122,26 @@ class Range {
  private:
   static unsigned known(Outside outside) { return outside & ~static_cast<unsigned>(unknown_range); }
 
+  double theta_i_max_, theta_r_max_;
   std::atomic<unsigned> reasons_ = 0;
   std::atomic<std::size_t> count_ = 0;
 };
 
-py::object evaluate(const Question& question, Frame frame, int threads) {
-  auto result = new_array<double>(question.broadcast(), {4, 4});
+/// The array that the caller gave for the result, or a new one.
+py::array_t<double> room_for_matrices(const Broadcast& broadcast, const std::optional<py::array>& out) {
+  if (!out) return new_array<double>(broadcast, {4, 4});
+  std::vector<py::ssize_t> shape = broadcast.shape();
+  shape.insert(shape.end(), {4, 4});
+  const bool fits = std::equal(shape.begin(), shape.end(), out->shape(), out->shape() + out->ndim());
+  if (!fits || !py::isinstance<py::array_t<double, py::array::c_style>>(*out) || !out->writeable())
+    throw std::invalid_argument("out: must be a writable array of float64 in C order, of the shape of the result");
+  return py::array_t<double>(*out);
+}
+
+py::object evaluate(const Question& question, Frame frame, int threads, const std::optional<py::array>& given) {
+  auto result = room_for_matrices(question.broadcast(), given);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());  // sixteen doubles each
-  Range range;
+  Range range(question.model());
   without_gil([&] {
     question.each(
         threads, 2048,
@@ -154,7 +167,7 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
   };
   auto result = new_array<double>(question.broadcast(), core);
   double* const out = result.mutable_data();
-  Range range;
+  Range range(question.model());
   without_gil([&] {
     question.each(
         threads, 64,
@@ -256,7 +269,7 @@ py::object evaluate_draws(const Question& question, Frame frame, int count, unsi
   py::array_t<double> result(shape);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());
   const std::size_t size = question.broadcast().size();
-  Range range;
+  Range range(question.model());
   without_gil([&] {
     const Draws draws(question.model().model(), count, seed, question.rotation_of_model());
     question.each(
@@ -282,7 +295,8 @@ constexpr const char* evaluate_doc =
     "frame    'xy', 'sp' or 'scattering_plane': the axes of the Stokes components\n"
     "as_printed  published coefficients: the sum at the azimuths given, to compare only\n"
     "threads  how many at most; None or 0: as many as there are cores\n"
-    "as_xarray  an xarray.DataArray with named axes, units and conventions, which to_netcdf() can write\n\n"
+    "as_xarray  an xarray.DataArray with named axes, units and conventions, which to_netcdf() can write\n"
+    "out        an array of float64 in C order for the result, which is then not allocated anew\n\n"
     "Warns (ExtrapolationWarning) of geometries outside the fitted range. Raises ValueError for angles outside\n"
     "[-90, 90] degrees, shapes that do not broadcast, and a wavelength that is missing or not positive.";
 
@@ -342,11 +356,12 @@ void bind_evaluation(ModelClass& c) {
   define(
       c, "evaluate",
       [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
-         const std::string& name, bool printed, Threads count, bool names) {
-        const py::object values = evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count.value_or(0));
+         const std::string& name, bool printed, Threads count, bool names, const std::optional<py::array>& out) {
+        const py::object values =
+            evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count.value_or(0), out);
         return names ? labelled(values, "brdf", model, name, arguments(w, ti, pi, tr, pr), printed) : values;
       },
-      evaluate_doc, frame, as_printed, threads, as_xarray);
+      evaluate_doc, frame, as_printed, threads, as_xarray, py::arg("out") = py::none());
   define(
       c, "evaluate_uncertainty",
       [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,

@@ -139,6 +139,26 @@ def test_a_model_of_one_wavelength_needs_none():
     )
 
 
+def test_the_result_may_go_into_an_array_that_is_there(ptfe):
+    theta = np.array([[10.0, 20.0, 30.0], [40.0, 50.0, 60.0]])
+    room = np.full((2, 3, 4, 4), np.nan)
+    result = ptfe.evaluate(532, 45, 0, theta, 180, out=room)
+    assert np.shares_memory(result, room)
+    np.testing.assert_array_equal(room, ptfe.evaluate(532, 45, 0, theta, 180))
+    read_only = np.zeros((2, 3, 4, 4))
+    read_only.setflags(write=False)
+    for wrong in (
+        np.zeros((3, 2, 4, 4)),
+        np.zeros((2, 3, 16)),
+        np.zeros((2, 3, 4, 4), dtype=np.float32),
+        np.zeros((2, 3, 4, 4), order="F"),
+        np.zeros((2, 3, 4, 8))[..., ::2],
+        read_only,
+    ):
+        with pytest.raises(ValueError, match="out: must be"):
+            ptfe.evaluate(532, 45, 0, theta, 180, out=wrong)
+
+
 def test_every_number_of_threads_gives_the_same_bits(ptfe):
     geometry = mmbrdf.random_geometries(20000, seed=3)
     for wavelengths in (532, np.linspace(351, 1064, 20000)):
