@@ -3,17 +3,17 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include "eigen_index.hpp"
+#include "fold.hpp"
 #include "numbers.hpp"
 
 // The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ|
-// is the norm of what the columns of A cannot reach. New rows B are folded in column by column: the reflection that
-// maps (T_jj, B_j) to (β, 0) is applied to the columns behind j.
+// is the norm of what the columns of A cannot reach.
 
 namespace mmbrdf {
 namespace {
@@ -26,11 +26,28 @@ using Vector = Eigen::Map<const VectorXd>;
 constexpr std::size_t rows_at_once = 128;    // keeps a block of rows in the cache
 constexpr double estimability_limit = 1e-8;  // theory 4.2
 
+/// Four sums at a time, of which none waits for another.
+template <class Step>
+double over_all(std::span<const double> numbers, Step step) {
+  std::array<double, 4> parts{};
+  std::size_t i = 0;
+  for (; i + 4 <= numbers.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) parts[k] = step(parts[k], numbers[i + k]);
+  for (; i < numbers.size(); ++i) parts[0] = step(parts[0], numbers[i]);
+  return step(step(parts[0], parts[1]), step(parts[2], parts[3]));
+}
+
 void require_finite(std::span<const double> numbers, const char* what) {
+  if (over_all(numbers, [](double sum, double x) { return sum + 0 * x; }) == 0) return;  // NaN if one is not finite
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!std::isfinite(numbers[i]))
       throw std::invalid_argument("LeastSquares: " + std::string(what) + " number " + std::to_string(i + 1) +
                                   " is not finite");
+}
+
+/// Column j of a square, multiplied by a factor, as column `to`.
+void copy_column(const std::vector<double>& square, std::size_t j, double factor, RowColumns& rows, std::size_t to) {
+  for (std::size_t i = 0; i < rows.rows(); ++i) rows.column(to)[i] = factor * square[j * rows.rows() + i];
 }
 
 }  // namespace
@@ -59,28 +76,6 @@ LeastSquares::LeastSquares(int unknowns) : unknowns_(unknowns) {
   triangle_.assign(width() * width(), 0.0);
 }
 
-void LeastSquares::fold(std::vector<double>& columns, std::size_t count) {
-  Eigen::Map<MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
-  Eigen::Map<MatrixXd> block(columns.data(), index(count), index(width()));
-  VectorXd products, w;
-  for (Index j = 0; j <= unknowns_; ++j) {
-    const double norm = block.col(j).stableNorm();
-    if (norm == 0) continue;
-    const double pivot = triangle(j, j);
-    const double beta = -std::copysign(std::hypot(pivot, norm), pivot);
-    const double v = pivot - beta;  // the reflection is 1 − τ (1, w) (1, w)ᵀ, |w| ≤ 1
-    const double tau = -v / beta;
-    const Index rest = unknowns_ - j;
-    w = block.col(j) / v;
-    products.noalias() = block.rightCols(rest).transpose() * w;
-    products += triangle.row(j).tail(rest).transpose();
-    products *= tau;
-    triangle.row(j).tail(rest) -= products.transpose();
-    block.rightCols(rest).noalias() -= w * products.transpose();
-    triangle(j, j) = beta;
-  }
-}
-
 void LeastSquares::add(std::span<const double> rows, std::span<const double> values, std::span<const double> weights) {
   const std::size_t n = width() - 1;
   if (rows.size() != n * values.size())
@@ -97,22 +92,20 @@ void LeastSquares::add(std::span<const double> rows, std::span<const double> val
     throw std::invalid_argument("LeastSquares: weight " + shortest(*low) + " is negative");
 
   const auto largest = [](std::span<const double> numbers) {
-    return std::accumulate(numbers.begin(), numbers.end(), 0.0,
-                           [](double m, double x) { return std::max(m, std::abs(x)); });
+    return over_all(numbers, [](double m, double x) { return std::max(m, std::abs(x)); });
   };
-  if (!std::isfinite(std::sqrt(largest(weights)) * std::max(largest(rows), largest(values))))
+  if (!weights.empty() && !std::isfinite(std::sqrt(largest(weights)) * std::max(largest(rows), largest(values))))
     throw std::invalid_argument("LeastSquares: weight " + shortest(largest(weights)) + " makes a row infinite");
 
-  std::vector<double> columns;
   for (std::size_t first = 0; first < values.size(); first += rows_at_once) {
     const std::size_t count = std::min(rows_at_once, values.size() - first);
-    columns.resize(count * width());
+    RowColumns columns(width(), count);
     for (std::size_t row = 0; row < count; ++row) {
       const double factor = weights.empty() ? 1 : std::sqrt(weights[first + row]);
-      for (std::size_t j = 0; j < n; ++j) columns[j * count + row] = factor * rows[(first + row) * n + j];
-      columns[n * count + row] = factor * values[first + row];
+      for (std::size_t j = 0; j < n; ++j) columns.column(j)[row] = factor * rows[(first + row) * n + j];
+      columns.column(n)[row] = factor * values[first + row];
     }
-    fold(columns, count);
+    fold(triangle_.data(), n, columns);
   }
   rows_ += static_cast<long>(values.size()) - std::count(weights.begin(), weights.end(), 0.0);
 }
@@ -121,8 +114,13 @@ void LeastSquares::merge(const LeastSquares& other) {
   if (other.unknowns_ != unknowns_)
     throw std::invalid_argument("LeastSquares: cannot merge " + std::to_string(other.unknowns_) + " unknowns into " +
                                 std::to_string(unknowns_));
-  std::vector<double> rows = other.triangle_;
-  fold(rows, width());
+  if (std::all_of(triangle_.begin(), triangle_.end(), [](double x) { return x == 0; })) {
+    triangle_ = other.triangle_;
+  } else {
+    RowColumns rows(width(), width());
+    for (std::size_t j = 0; j < width(); ++j) copy_column(other.triangle_, j, 1, rows, j);
+    fold(triangle_.data(), width() - 1, rows, Shape::triangle);
+  }
   rows_ += other.rows_;
 }
 
@@ -132,15 +130,12 @@ LeastSquares LeastSquares::repeated(std::span<const double> factors, double valu
   if (factors.size() > static_cast<std::size_t>(max_unknowns))
     throw std::invalid_argument("LeastSquares: too many factors");
   LeastSquares result(unknowns_ * static_cast<int>(factors.size()));
-  std::vector<double> rows;
-  rows.reserve(width() * result.width());
-  const auto append = [&](std::size_t column, double factor) {
-    for (std::size_t i = 0; i < width(); ++i) rows.push_back(factor * triangle_[column * width() + i]);
-  };
+  RowColumns rows(result.width(), width());
+  std::size_t j = 0;
   for (const double factor : factors)
-    for (std::size_t column = 0; column + 1 < width(); ++column) append(column, factor);
-  append(width() - 1, value_factor);
-  result.fold(rows, width());
+    for (std::size_t column = 0; column + 1 < width(); ++column) copy_column(triangle_, column, factor, rows, j++);
+  copy_column(triangle_, width() - 1, value_factor, rows, j);
+  fold(result.triangle_.data(), result.width() - 1, rows, Shape::triangle);
   result.rows_ = rows_;
   return result;
 }
@@ -154,15 +149,11 @@ LeastSquares LeastSquares::restricted(std::span<const std::size_t> unknowns) con
     taken[unknown] = true;
   }
   LeastSquares result(static_cast<int>(unknowns.size()));
-  std::vector<double> rows;
-  rows.reserve(width() * result.width());
-  const auto append = [&](std::size_t column) {
-    const auto first = triangle_.begin() + static_cast<std::ptrdiff_t>(column * width());
-    rows.insert(rows.end(), first, first + static_cast<std::ptrdiff_t>(width()));
-  };
-  for (const std::size_t unknown : unknowns) append(unknown);
-  append(width() - 1);
-  result.fold(rows, width());
+  RowColumns rows(result.width(), width());
+  std::size_t j = 0;
+  for (const std::size_t unknown : unknowns) copy_column(triangle_, unknown, 1, rows, j++);
+  copy_column(triangle_, width() - 1, 1, rows, j);
+  fold(result.triangle_.data(), result.width() - 1, rows);
   result.rows_ = rows_;
   return result;
 }

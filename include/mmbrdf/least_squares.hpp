@@ -78,7 +78,6 @@ class LeastSquares {
 
  private:
   std::size_t width() const { return static_cast<std::size_t>(unknowns_) + 1; }
-  void fold(std::vector<double>& columns, std::size_t count);
 
   int unknowns_;
   long rows_ = 0;
