@@ -6,17 +6,19 @@
 #include <stdexcept>
 #include <string>
 
+#include "eigen_index.hpp"
 #include "mmbrdf/radiometry.hpp"
 #include "numbers.hpp"
+#include "shared_rows.hpp"
 
 // For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit
 // of a block over all wavelengths, with any powers and any reflectance table, is put together from them: a coefficient
-// that is a polynomial of λ repeats the columns of each wavelength's triangle, multiplied by λ^p.
+// that is a polynomial of λ repeats the columns of each wavelength's triangle, multiplied by λ^p. Where the wavelengths
+// have the same geometries their triangles differ in the values alone, and the powers of λ are split off.
 
 namespace mmbrdf {
 namespace {
 
-constexpr std::size_t samples_at_once = 128;
 constexpr double involved = 1e-6;       // least part of a free combination for which a mode is named
 constexpr std::size_t most_named = 24;  // modes in a message of one line
 
@@ -61,14 +63,43 @@ void require_determined(const std::string& complaints) {
                                 "; choose lower orders, or ask for the solution of minimum norm");
 }
 
-void require_weights(std::span<const Mueller> weights, std::size_t samples) {
-  if (!weights.empty() && weights.size() != samples)
-    throw std::invalid_argument("fit: " + std::to_string(weights.size()) + " weights for " + std::to_string(samples) +
-                                " samples");
-  for (std::size_t s = 0; s < weights.size(); ++s)
-    for (const double weight : weights[s].elements)
-      if (!(weight >= 0) || !std::isfinite(weight))
-        throw std::invalid_argument("fit: weight " + shortest(weight) + " of sample " + std::to_string(s + 1));
+Solution solution_of(const LeastSquares& rows, double rank_tolerance, Decompositions& known) {
+  return SharedRows(rows).solve(Eigen::MatrixXd::Ones(1, 1), rows.rows(), rank_tolerance, known);
+}
+
+/// The elements' triangles below each other, with a column of values for each wavelength. Values are divided.
+SharedRows put_together(std::span<const std::vector<SharedRows>> parts, std::size_t modes,
+                        const Eigen::VectorXd& divisors) {
+  const std::size_t count = parts[0].size();
+  SharedRows result(modes, count);
+  for (const std::vector<SharedRows>& part : parts) {
+    RowColumns rows(modes + count, modes + 1);
+    for (std::size_t j = 0; j < modes; ++j) std::copy_n(part[0].triangle().col(index(j)).data(), modes, rows.column(j));
+    for (std::size_t v = 0; v < count; ++v)
+      for (std::size_t i = 0; i <= modes; ++i)
+        rows.column(modes + v)[i] = part[v].triangle()(index(i), index(modes)) / divisors(index(v));
+    result.add(rows, Shape::triangle);
+  }
+  return result;
+}
+
+/// All triangles below each other, each repeated beside itself times its wavelength's factors. Values are divided.
+SharedRows repeated(std::span<const std::vector<SharedRows>> parts, std::size_t modes, const Eigen::VectorXd& divisors,
+                    const Eigen::MatrixXd& factors) {
+  const std::size_t powers = size(static_cast<int>(factors.cols()));
+  SharedRows result(modes * powers, 1);
+  for (const std::vector<SharedRows>& part : parts)
+    for (std::size_t v = 0; v < part.size(); ++v) {
+      RowColumns rows(modes * powers + 1, modes + 1);
+      const auto copy = [&](std::size_t j, std::size_t to, double factor) {
+        for (std::size_t i = 0; i <= modes; ++i) rows.column(to)[i] = factor * part[v].triangle()(index(i), index(j));
+      };
+      for (std::size_t p = 0; p < powers; ++p)
+        for (std::size_t j = 0; j < modes; ++j) copy(j, p * modes + j, factors(index(v), index(p)));
+      copy(modes, modes * powers, 1 / divisors(index(v)));
+      result.add(rows, Shape::triangle);
+    }
+  return result;
 }
 
 }  // namespace
@@ -83,7 +114,8 @@ double polarization_rms(const FitResult& result) {
   return rows > 0 ? std::sqrt(squares / rows) : 0;
 }
 
-FitAccumulator::FitAccumulator(const Basis& basis) : basis_(basis), blocks_(blocks(basis.family, basis.orders)) {
+FitAccumulator::FitAccumulator(const Basis& basis)
+    : basis_(basis), blocks_(blocks(basis.family, basis.orders)), designs_(designs(blocks_, basis.family)) {
   block_of_.fill(-1);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (blocks_[b].modes.size() > size(LeastSquares::max_unknowns))
@@ -91,9 +123,6 @@ FitAccumulator::FitAccumulator(const Basis& basis) : basis_(basis), blocks_(bloc
                                   std::to_string(blocks_[b].modes.size()) + " modes at these orders, more than " +
                                   std::to_string(LeastSquares::max_unknowns));
     for (const auto& [row, column] : blocks_[b].elements) block_of_[size(4 * row + column)] = static_cast<int>(b);
-    for (std::size_t q = 0; q < blocks_[b].modes.size(); ++q)
-      for (const Term& term : terms(blocks_[b].modes[q], basis.family))
-        terms_[size(4 * term.row + term.column)].push_back({q, size(term.incident), size(term.reflected), term.weight});
   }
 }
 
@@ -104,50 +133,6 @@ FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
   for (const int block : block_of_)
     fresh.elements.emplace_back(block < 0 ? 1 : static_cast<int>(blocks_[size(block)].modes.size()));
   return fresh;
-}
-
-void FitAccumulator::add(std::span<const Sample> samples, std::span<const Mueller> weights) {
-  require_valid(samples);
-  require_weights(weights, samples.size());
-  std::map<AtWavelength*, std::vector<std::size_t>> groups;
-  for (std::size_t s = 0; s < samples.size(); ++s) groups[&slot(samples[s].wavelength)].push_back(s);
-  for (auto& [at, members] : groups)
-    for (std::size_t first = 0; first < members.size(); first += samples_at_once)
-      add_some(*at, samples, std::span(members).subspan(first, std::min(samples_at_once, members.size() - first)),
-               weights);
-  for (const Sample& sample : samples) {
-    theta_i_max_ = std::max(theta_i_max_, sample.geometry.incident.theta);
-    theta_r_max_ = std::max(theta_r_max_, sample.geometry.reflected.theta);
-  }
-  samples_ += static_cast<long>(samples.size());
-}
-
-void FitAccumulator::add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
-                              std::span<const Mueller> weights) {
-  std::vector<Sample> used;
-  const int order = std::max(basis_.orders.f11, basis_.orders.other);
-  const std::size_t functions = size(zernike_count(order));
-  std::vector<double> k_i(members.size() * functions), k_r(members.size() * functions);
-  for (std::size_t s = 0; s < members.size(); ++s) {
-    used.push_back(turns() ? at_zero_azimuth(samples[members[s]]) : samples[members[s]]);
-    zernike_table(order, disc_point(used[s].geometry.incident, basis_.mapping), &k_i[s * functions]);
-    zernike_table(order, disc_point(used[s].geometry.reflected, basis_.mapping), &k_r[s * functions]);
-  }
-  std::vector<double> rows, values, row_weights;
-  for (std::size_t e = 0; e < 16; ++e) {
-    const std::size_t columns = size(at.elements[e].unknowns());
-    rows.assign(members.size() * columns, 0);
-    values.clear();
-    row_weights.clear();
-    for (std::size_t s = 0; s < members.size(); ++s) {
-      for (const ColumnTerm& t : terms_[e])
-        rows[s * columns + t.column] += t.weight * k_i[s * functions + t.incident] * k_r[s * functions + t.reflected];
-      values.push_back(e == 0 ? used[s].f11 : used[s].normalized.elements[e]);
-      row_weights.push_back(weights.empty() ? 1 : weights[members[s]].elements[e]);
-      at.weight[e] += row_weights.back();
-    }
-    at.elements[e].add(rows, values, weights.empty() ? std::span<const double>{} : row_weights);
-  }
 }
 
 void FitAccumulator::merge(const FitAccumulator& other) {
@@ -164,16 +149,32 @@ void FitAccumulator::merge(const FitAccumulator& other) {
   samples_ += other.samples_;
 }
 
-LeastSquares FitAccumulator::over_wavelengths(std::size_t element, int powers,
-                                              const ReflectanceTable& reflectance) const {
-  const int modes = wavelengths_.begin()->second.elements[element].unknowns();
-  LeastSquares result(modes * (powers + 1));
-  for (const auto& [wavelength, at] : wavelengths_) {
-    std::vector<double> factors{1};
-    for (int p = 1; p <= powers; ++p) factors.push_back(factors.back() * wavelength);
-    result.merge(at.elements[element].repeated(factors, element == 0 ? 1 / reflectance.at(wavelength) : 1));
+Solution FitAccumulator::block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance,
+                                        double rank_tolerance, Decompositions& known) const {
+  const std::size_t modes = blocks_[block].modes.size();
+  std::vector<std::vector<SharedRows>> parts;  // for each element, of each wavelength
+  long rows = 0;
+  for (const auto& [row, column] : blocks_[block].elements) {
+    parts.emplace_back();
+    for (const auto& [wavelength, at] : wavelengths_) {
+      parts.back().emplace_back(at.elements[size(4 * row + column)]);
+      rows += at.elements[size(4 * row + column)].rows();
+    }
   }
-  return result;
+  Eigen::VectorXd divisors = Eigen::VectorXd::Ones(index(wavelengths_.size()));
+  Eigen::MatrixXd factors(index(wavelengths_.size()), powers + 1);
+  Eigen::Index w = 0;
+  for (const auto& [wavelength, at] : wavelengths_) {
+    if (block_of_[0] == static_cast<int>(block)) divisors(w) = reflectance.at(wavelength);
+    factors(w, 0) = 1;
+    for (int p = 1; p <= powers; ++p) factors(w, p) = factors(w, p - 1) * wavelength;
+    ++w;
+  }
+  const bool alike = std::all_of(parts.begin(), parts.end(), [](const std::vector<SharedRows>& part) {
+    return std::all_of(part.begin(), part.end(), [&](const SharedRows& at) { return at.has_unknowns_of(part[0]); });
+  });
+  if (alike) return put_together(parts, modes, divisors).solve(factors, rows, rank_tolerance, known);
+  return repeated(parts, modes, divisors, factors).solve(Eigen::MatrixXd::Ones(1, 1), rows, rank_tolerance, known);
 }
 
 bool FitAccumulator::turns() const {
@@ -184,10 +185,10 @@ bool FitAccumulator::takes_own_reflectance(const FitOptions& options) const {
   return !options.reflectance && wavelengths_.size() > 1;
 }
 
-ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options) const {
+ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, Decompositions& known) const {
   ReflectanceTable table;
   for (const auto& [wavelength, at] : wavelengths_) {
-    const Solution solution = at.elements[0].solve(options.rank_tolerance);
+    const Solution solution = solution_of(at.elements[0], options.rank_tolerance, known);
     if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
       throw std::invalid_argument("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
                                   "reflectance it is to be divided by; give a reflectance table" + free);
@@ -233,6 +234,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   if (samples_ == 0) throw std::invalid_argument("fit: no samples");
   const int powers = chosen_powers(options);
   std::string complaints;
+  Decompositions known;
   FitResult result;
   Model& model = result.model;
   model.family = basis_.family;
@@ -240,19 +242,15 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   model.powers = powers;
   model.validity = {{}, theta_i_max_, theta_r_max_};
   for (const auto& [wavelength, at] : wavelengths_) model.validity.wavelengths.push_back(wavelength);
-  if (takes_own_reflectance(options)) model.reflectance = own_reflectance(options);
+  if (takes_own_reflectance(options)) model.reflectance = own_reflectance(options, known);
   if (options.reflectance) model.reflectance = {options.reflectance->wavelengths, options.reflectance->values};
   require_valid(model.reflectance);
   require_covered(model.reflectance);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    std::vector<std::pair<std::size_t, LeastSquares>> parts;
-    for (const auto& [row, column] : blocks_[b].elements)
-      parts.emplace_back(size(4 * row + column), over_wavelengths(size(4 * row + column), powers, model.reflectance));
-    LeastSquares whole = parts.front().second;
-    for (std::size_t i = 1; i < parts.size(); ++i) whole.merge(parts[i].second);
-    Solution solution = whole.solve(options.rank_tolerance);
+    Solution solution = block_solution(b, powers, model.reflectance, options.rank_tolerance, known);
     if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
-    for (const auto& [e, part] : parts) result.elements[e] = element_fit(e, part, solution.x);
+    for (const auto& [row, column] : blocks_[b].elements)
+      result.elements[size(4 * row + column)] = element_fit(size(4 * row + column), solution.x, model.reflectance);
     FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition(), solution.null_space};
     if (solution.degrees_of_freedom() > 0) {
       fitted.covariance = solution.inverse;
@@ -264,9 +262,9 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   require_determined(complaints);
   for (std::size_t e = 0; e < 16; ++e)
     if (block_of_[e] < 0)  // no mode: the model's element is 0
-      result.elements[e] = element_fit(e, over_wavelengths(e, 0, model.reflectance), std::array{0.0});
+      result.elements[e] = element_fit(e, std::array{0.0}, model.reflectance);
   if (takes_own_reflectance(options) && result.solutions.front().degrees_of_freedom() > 0)
-    add_own_reflectance_covariance(result, options.rank_tolerance, nullptr);
+    add_own_reflectance_covariance(result, options.rank_tolerance, known, nullptr);
   return result;
 }
 
@@ -278,15 +276,24 @@ void FitAccumulator::require_covered(const ReflectanceTable& table) const {
       throw std::invalid_argument("fit: the reflectance table does not reach " + nanometres(wavelength) + " nm");
 }
 
-ElementFit FitAccumulator::element_fit(std::size_t element, const LeastSquares& rows, std::span<const double> x) const {
+ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const double> x,
+                                       const ReflectanceTable& reflectance) const {
   ElementFit fit;
-  fit.rows = rows.rows();
-  const double norm = rows.residual_norm(x);
-  fit.chi_squared = norm * norm;
-  double weight = 0;
-  for (const auto& [wavelength, at] : wavelengths_) weight += at.weight[element];
-  fit.weight = weight;
-  fit.rms = weight > 0 ? norm / std::sqrt(weight) : 0;
+  for (const auto& [wavelength, at] : wavelengths_) {
+    const LeastSquares& rows = at.elements[element];
+    const double divisor = element == 0 ? reflectance.at(wavelength) : 1;
+    std::vector<double> here(size(rows.unknowns()));
+    double power = divisor;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (i > 0 && i % here.size() == 0) power *= wavelength;
+      here[i % here.size()] += power * x[i];
+    }
+    const double norm = rows.residual_norm(here) / divisor;
+    fit.rows += rows.rows();
+    fit.chi_squared += norm * norm;
+    fit.weight += at.weight[element];
+  }
+  fit.rms = fit.weight > 0 ? std::sqrt(fit.chi_squared / fit.weight) : 0;
   return fit;
 }
 

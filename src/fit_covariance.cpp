@@ -7,6 +7,7 @@
 #include "eigen_index.hpp"
 #include "mmbrdf/fit.hpp"
 #include "mmbrdf/radiometry.hpp"
+#include "shared_rows.hpp"
 
 // Covariances of a fit that are not s² (XᵀWX)⁺.
 //
@@ -46,11 +47,15 @@ MatrixXd repetition(Index modes, int powers, double wavelength) {
   return result;
 }
 
+double small_sample_factor(const Solution& solution) {
+  return static_cast<double>(solution.rows) / static_cast<double>(solution.degrees_of_freedom());
+}
+
 }  // namespace
 
 /// With a reflectance from the data themselves an error ε of τ changes both R, by R dᵀP ε, and what y is divided by:
 ///   dR = R dᵀP ε,     da = G Λ (ε − τ dR / R).
-void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double rank_tolerance,
+void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double rank_tolerance, Decompositions& known,
                                                     const FitAccumulator* squares) const {
   Model& model = result.model;
   const Solution& f11 = result.solutions.front();
@@ -64,7 +69,8 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double ra
     const LeastSquares& rows = at.elements.front();
     const double reflectance = model.reflectance.values[static_cast<std::size_t>(k)];
     const VectorXd tau = vector(rows.normal_vector()) / reflectance;
-    const VectorXd q = square(rows.solve(rank_tolerance).inverse, modes) * d;
+    const VectorXd q =
+        square(SharedRows(rows).solve(MatrixXd::Ones(1, 1), rows.rows(), rank_tolerance, known).inverse, modes) * d;
     const MatrixXd c = squares ? square(squares->wavelengths_.at(wavelength).elements.front().normal_matrix(), modes)
                                : MatrixXd(f11.variance() * square(rows.normal_matrix(), modes));
     MatrixXd slopes = MatrixXd::Zero(size + count, modes);
@@ -84,24 +90,24 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double ra
 /// G (Σ w² r² x xᵀ) G over the rows of each block; `squares` holds the rows with weights w² r².
 void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const {
   Model& model = result.model;
+  Decompositions known;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Solution& solution = result.solutions[b];
     if (solution.degrees_of_freedom() <= 0) continue;
     const Index size = index(solution.x.size());
     MatrixXd middle = MatrixXd::Zero(size, size);
     for (const auto& [row, column] : blocks_[b].elements)
-      middle += square(
-          squares.over_wavelengths(static_cast<std::size_t>(4 * row + column), model.powers, {}).normal_matrix(), size);
+      for (const auto& [wavelength, at] : squares.wavelengths_) {
+        const LeastSquares& rows = at.elements[static_cast<std::size_t>(4 * row + column)];
+        const MatrixXd repeat = repetition(rows.unknowns(), model.powers, wavelength);
+        middle += repeat * square(rows.normal_matrix(), rows.unknowns()) * repeat.transpose();
+      }
     const MatrixXd g = square(solution.inverse, size);
     const MatrixXd half = g * middle * g * small_sample_factor(solution);
     model.blocks[b].covariance = row_major(0.5 * (half + half.transpose()));
   }
   if (takes_own_reflectance(options) && result.solutions.front().degrees_of_freedom() > 0)
-    add_own_reflectance_covariance(result, options.rank_tolerance, &squares);
-}
-
-double FitAccumulator::small_sample_factor(const Solution& solution) {
-  return static_cast<double>(solution.rows) / static_cast<double>(solution.degrees_of_freedom());
+    add_own_reflectance_covariance(result, options.rank_tolerance, known, &squares);
 }
 
 }  // namespace mmbrdf

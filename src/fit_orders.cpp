@@ -17,9 +17,9 @@ std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
   std::array<ElementFit, 16> result;
   for (std::size_t e = 0; e < 16 && samples_ > 0; ++e) {
     const bool fed = block_of_[e] >= 0;
-    const LeastSquares rows = over_wavelengths(e, fed ? model.powers : 0, model.reflectance);
-    result[e] = element_fit(
-        e, rows, fed ? model.blocks[static_cast<std::size_t>(block_of_[e])].coefficients : std::vector<double>{0});
+    result[e] =
+        element_fit(e, fed ? model.blocks[static_cast<std::size_t>(block_of_[e])].coefficients : std::vector<double>{0},
+                    model.reflectance);
   }
   return result;
 }

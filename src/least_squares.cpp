@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/least_squares.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <string>
 
 #include "eigen_index.hpp"
-#include "fold.hpp"
 #include "numbers.hpp"
+#include "shared_rows.hpp"
 
 // The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ|
 // is the norm of what the columns of A cannot reach.
@@ -210,30 +210,8 @@ LeastSquares LeastSquares::from_state(int unknowns, std::span<const double> stat
 Solution LeastSquares::solve(double tolerance) const {
   if (!(tolerance >= 0 && tolerance < 1))
     throw std::invalid_argument("LeastSquares: rank tolerance " + shortest(tolerance) + " is not in [0, 1)");
-  const Index n = unknowns_;
-  const Eigen::Map<const MatrixXd> triangle(triangle_.data(), n + 1, n + 1);
-  const MatrixXd r = triangle.topLeftCorner(n, n).triangularView<Eigen::Upper>();
-  // Not BDCSVD: for the triangles of symmetric grids it returned singular vectors that were off by 2e-4 (Eigen 3.4).
-  const Eigen::JacobiSVD<MatrixXd> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const VectorXd& s = svd.singularValues();
-  const Index rank = (s.array() > tolerance * s(0)).count();
-  const MatrixXd kept = svd.matrixV().leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
-  const VectorXd projected = svd.matrixU().transpose() * triangle.col(n).head(n);
-  const VectorXd x = kept * projected.head(rank);
-  MatrixXd inverse = MatrixXd::Zero(n, n);  // symmetric to the last bit
-  inverse.selfadjointView<Eigen::Lower>().rankUpdate(kept);
-  inverse.triangularView<Eigen::StrictlyUpper>() = inverse.transpose();
-  const MatrixXd null = svd.matrixV().rightCols(n - rank);
-
-  Solution solution;
-  solution.x.assign(x.data(), x.data() + n);
-  solution.singular_values.assign(s.data(), s.data() + n);
-  solution.rank = static_cast<int>(rank);
-  solution.residual_norm = std::hypot(triangle(n, n), projected.tail(n - rank).stableNorm());
-  solution.rows = rows_;
-  solution.inverse.assign(inverse.data(), inverse.data() + n * n);
-  solution.null_space.assign(null.data(), null.data() + null.size());
-  return solution;
+  Decompositions none;
+  return SharedRows(*this).solve(MatrixXd::Ones(1, 1), rows_, tolerance, none);
 }
 
 }  // namespace mmbrdf

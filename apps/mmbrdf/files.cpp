@@ -106,7 +106,8 @@ std::string data_name(const std::string& path) { return path == "-" ? "standard 
 
 void read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
                      const std::function<void(std::span<const Sample>)>& use) {
-  constexpr std::size_t some = 4096;
+  constexpr std::size_t some =
+      8192;  // the published data come in one piece, so that their wavelengths are folded together
   const std::vector<double> wanted = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
   const auto near = [](double a, double b) { return std::abs(a - b) <= wavelength_resolution; };
   std::set<double> there;

@@ -20,6 +20,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -77,6 +78,8 @@ struct FitOptions {
   Covariance covariance = Covariance::residuals;  ///< sandwich needs the samples again: only in fit()
 };
 
+class Decompositions;  // of the library's own
+
 /// How well one matrix element is fitted. An element without modes is 0 in the model, and its samples are the
 /// residuals.
 struct ElementFit {
@@ -133,33 +136,30 @@ class FitAccumulator {
     std::array<double, 16> weight{};     // Σ w
   };
 
-  /// A term of a mode, with the mode's place in its block.
-  struct ColumnTerm {
-    std::size_t column, incident, reflected;
-    double weight;
-  };
+  struct Design;   // modes of elements: fit_rows.cpp
+  struct Folding;  // of samples into triangles: there too
 
+  static std::shared_ptr<const std::vector<Design>> designs(std::span<const Block> blocks, Family family);
   AtWavelength& slot(double wavelength);
-  void add_some(AtWavelength& at, std::span<const Sample> samples, std::span<const std::size_t> members,
-                std::span<const Mueller> weights);
   friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);
   FitResult solved(const FitOptions& options) const;
-  void add_own_reflectance_covariance(FitResult& result, double rank_tolerance, const FitAccumulator* squares) const;
+  Solution block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance, double rank_tolerance,
+                          Decompositions& known) const;
+  void add_own_reflectance_covariance(FitResult& result, double rank_tolerance, Decompositions& known,
+                                      const FitAccumulator* squares) const;
   void use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const;
-  static double small_sample_factor(const Solution& solution);
   bool takes_own_reflectance(const FitOptions& options) const;
   bool turns() const;
   bool accepts_minimum_norm(const FitOptions& options) const;
   int chosen_powers(const FitOptions& options) const;
-  ReflectanceTable own_reflectance(const FitOptions& options) const;
+  ReflectanceTable own_reflectance(const FitOptions& options, Decompositions& known) const;
   void require_covered(const ReflectanceTable& table) const;
-  LeastSquares over_wavelengths(std::size_t element, int powers, const ReflectanceTable& reflectance) const;
-  ElementFit element_fit(std::size_t element, const LeastSquares& rows, std::span<const double> x) const;
+  ElementFit element_fit(std::size_t element, std::span<const double> x, const ReflectanceTable& reflectance) const;
 
   Basis basis_;
   std::vector<Block> blocks_;
-  std::array<int, 16> block_of_{};                 // −1: no block feeds the element
-  std::array<std::vector<ColumnTerm>, 16> terms_;  // of all modes that feed an element
+  std::array<int, 16> block_of_{};  // −1: no block feeds the element
+  std::shared_ptr<const std::vector<Design>> designs_;
   std::map<double, AtWavelength> wavelengths_;
   double theta_i_max_ = 0, theta_r_max_ = 0;
   long samples_ = 0;

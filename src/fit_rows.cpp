@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How samples are folded into the triangles of a fit. Part of fit.hpp.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "mmbrdf/fit.hpp"
+#include "numbers.hpp"
+#include "shared_rows.hpp"
+
+// Rows cost the square of their length, values only the length. So what has the same rows is folded together: elements
+// with the same modes, and wavelengths that were measured at the same geometries in the same order. Each of them then
+// has the triangle of the unknowns, to the last bit, with its own values beside it.
+
+namespace mmbrdf {
+namespace {
+
+constexpr std::size_t rows_at_once = 128;   // a block of them, some 50 columns wide, stays in the second-level cache
+constexpr std::size_t values_at_once = 64;  // columns of values beside each other, so that it does
+
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+void require_weights(std::span<const Mueller> weights, std::size_t samples) {
+  if (!weights.empty() && weights.size() != samples)
+    throw std::invalid_argument("fit: " + std::to_string(weights.size()) + " weights for " + std::to_string(samples) +
+                                " samples");
+  for (std::size_t s = 0; s < weights.size(); ++s)
+    for (const double weight : weights[s].elements)
+      if (!(weight >= 0) || !std::isfinite(weight))
+        throw std::invalid_argument("fit: weight " + shortest(weight) + " of sample " + std::to_string(s + 1));
+}
+
+/// K at the directions of some samples; the values of each function stand side by side.
+class Tables {
+ public:
+  Tables(int order, DiscMapping mapping)
+      : order_(order),
+        mapping_(mapping),
+        functions_(static_cast<std::size_t>(zernike_count(order))),
+        incident_(functions_ * rows_at_once),
+        reflected_(functions_ * rows_at_once),
+        one_(functions_) {}
+
+  void set(std::size_t row, const Geometry& geometry) {
+    set(incident_, row, geometry.incident);
+    set(reflected_, row, geometry.reflected);
+  }
+  const double* incident(std::size_t function) const { return &incident_[function * rows_at_once]; }
+  const double* reflected(std::size_t function) const { return &reflected_[function * rows_at_once]; }
+
+ private:
+  void set(std::vector<double>& table, std::size_t row, const Direction& direction) {
+    zernike_table(order_, disc_point(direction, mapping_), one_.data());
+    for (std::size_t f = 0; f < functions_; ++f) table[f * rows_at_once + row] = one_[f];
+  }
+
+  int order_;
+  DiscMapping mapping_;
+  std::size_t functions_;
+  std::vector<double> incident_, reflected_, one_;
+};
+
+}  // namespace
+
+/// Elements whose rows are the same at the same geometry.
+struct FitAccumulator::Design {
+  struct Term {
+    std::size_t column, incident, reflected;  // place of the mode in its block, and of both functions
+    double weight;
+    friend bool operator==(const Term&, const Term&) = default;
+  };
+  std::vector<std::size_t> elements;
+  std::size_t modes;
+  std::vector<Term> terms;
+};
+
+std::shared_ptr<const std::vector<FitAccumulator::Design>> FitAccumulator::designs(std::span<const Block> blocks,
+                                                                                   Family family) {
+  std::array<Design, 16> of_elements;
+  for (std::size_t e = 0; e < 16; ++e) of_elements[e] = {{e}, 1, {}};  // until a block feeds it
+  for (const Block& block : blocks) {
+    for (const auto& [row, column] : block.elements) of_elements[size(4 * row + column)].modes = block.modes.size();
+    for (std::size_t q = 0; q < block.modes.size(); ++q)
+      for (const mmbrdf::Term& t : terms(block.modes[q], family))
+        of_elements[size(4 * t.row + t.column)].terms.push_back({q, size(t.incident), size(t.reflected), t.weight});
+  }
+  auto result = std::make_shared<std::vector<Design>>();
+  for (Design& design : of_elements) {
+    const auto same = std::find_if(result->begin(), result->end(), [&](const Design& other) {
+      return other.modes == design.modes && other.terms == design.terms;
+    });
+    if (same != result->end())
+      same->elements.push_back(design.elements[0]);
+    else
+      result->push_back(std::move(design));
+  }
+  return result;
+}
+
+/// Samples at wavelengths with the same geometries.
+struct FitAccumulator::Folding {
+  struct Group {
+    AtWavelength* at;
+    std::vector<std::size_t> members;
+  };
+  struct Column {
+    std::size_t element, group;
+  };
+  /// Elements and wavelengths with the same rows and the same weights.
+  struct Share {
+    const Design* design;
+    std::vector<Column> columns;
+    SharedRows rows;
+  };
+
+  std::span<const Sample> samples;
+  std::span<const Mueller> weights;
+  std::vector<Group> groups{};
+
+  bool has_geometries_of(const std::vector<std::size_t>& members) const {
+    return std::equal(members.begin(), members.end(), groups[0].members.begin(), groups[0].members.end(),
+                      [&](std::size_t a, std::size_t b) { return samples[a].geometry == samples[b].geometry; });
+  }
+  void fold(const FitAccumulator& into) const;
+
+ private:
+  struct Some;
+
+  std::size_t rows() const { return groups[0].members.size(); }
+  double weight(const Column& c, std::size_t row) const {
+    return weights.empty() ? 1 : weights[groups[c.group].members[row]].elements[c.element];
+  }
+  bool have_same_weights(const Column& a, const Column& b) const {
+    for (std::size_t row = 0; row < rows() && !weights.empty(); ++row)
+      if (weight(a, row) != weight(b, row)) return false;
+    return true;
+  }
+  std::vector<Share> shares(std::span<const Design> designs) const;
+  void deliver(const Share& share) const;
+};
+
+void FitAccumulator::add(std::span<const Sample> samples, std::span<const Mueller> weights) {
+  require_valid(samples);
+  require_weights(weights, samples.size());
+  std::map<AtWavelength*, std::vector<std::size_t>> members;
+  for (std::size_t s = 0; s < samples.size(); ++s) members[&slot(samples[s].wavelength)].push_back(s);
+  std::vector<Folding> all;
+  for (auto& [at, list] : members) {
+    const auto same = [&here = list](const Folding& folding) { return folding.has_geometries_of(here); };
+    auto found = std::find_if(all.begin(), all.end(), same);
+    if (found == all.end()) found = all.insert(found, {samples, weights});
+    found->groups.push_back({at, std::move(list)});
+  }
+  for (const Folding& folding : all) folding.fold(*this);
+  for (const Sample& sample : samples) {
+    theta_i_max_ = std::max(theta_i_max_, sample.geometry.incident.theta);
+    theta_r_max_ = std::max(theta_r_max_, sample.geometry.reflected.theta);
+  }
+  samples_ += static_cast<long>(samples.size());
+}
+
+std::vector<FitAccumulator::Folding::Share> FitAccumulator::Folding::shares(std::span<const Design> designs) const {
+  std::vector<Share> result;
+  for (const Design& design : designs)
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (const std::size_t e : design.elements) {
+        const auto found = std::find_if(result.begin(), result.end(), [&](const Share& share) {
+          return share.design == &design && share.columns.size() < values_at_once &&
+                 have_same_weights(share.columns[0], {e, g});
+        });
+        if (found != result.end())
+          found->columns.push_back({e, g});
+        else
+          result.push_back({&design, {{e, g}}, SharedRows(1, 1)});
+      }
+  for (Share& share : result) share.rows = SharedRows(share.design->modes, share.columns.size());
+  return result;
+}
+
+/// Some of the rows: functions of their directions, and values of the elements.
+struct FitAccumulator::Folding::Some {
+  const Folding& all;
+  std::size_t first, count;
+  Tables tables;
+  std::vector<Mueller> values;  // rows_at_once for each group
+
+  void set(bool turns) {
+    for (std::size_t g = 0; g < all.groups.size(); ++g)
+      for (std::size_t r = 0; r < count; ++r) {
+        const Sample& sample = all.samples[all.groups[g].members[first + r]];
+        const auto& [incident, reflected] = sample.geometry;
+        const double turn = turns ? incident.phi : 0;
+        if (g == 0) tables.set(r, {{incident.theta, incident.phi - turn}, {reflected.theta, reflected.phi - turn}});
+        Mueller& value = values[g * rows_at_once + r];
+        value = turn == 0 ? sample.normalized : turned(sample.normalized, -turn);
+        value(0, 0) = sample.f11;
+      }
+  }
+
+  RowColumns rows(const Share& share) const {
+    const std::size_t modes = share.design->modes;
+    RowColumns result(modes + share.columns.size(), count);
+    for (const Design::Term& t : share.design->terms) {
+      double* const column = result.column(t.column);
+      const double *const k_i = tables.incident(t.incident), *const k_r = tables.reflected(t.reflected);
+      for (std::size_t r = 0; r < count; ++r) column[r] += t.weight * k_i[r] * k_r[r];
+    }
+    for (std::size_t c = 0; c < share.columns.size(); ++c) {
+      const auto [element, group] = share.columns[c];
+      for (std::size_t r = 0; r < count; ++r)
+        result.column(modes + c)[r] = values[group * rows_at_once + r].elements[element];
+    }
+    if (all.weights.empty()) return result;
+    std::array<double, rows_at_once> roots;
+    for (std::size_t r = 0; r < count; ++r) roots[r] = std::sqrt(all.weight(share.columns[0], first + r));
+    for (std::size_t j = 0; j < result.columns(); ++j)
+      for (std::size_t r = 0; r < count; ++r) result.column(j)[r] *= roots[r];
+    return result;
+  }
+};
+
+void FitAccumulator::Folding::fold(const FitAccumulator& into) const {
+  std::vector<Share> together = shares(*into.designs_);
+  Some some{*this, 0, 0, Tables(std::max(into.basis_.orders.f11, into.basis_.orders.other), into.basis_.mapping),
+            std::vector<Mueller>(groups.size() * rows_at_once)};
+  for (; some.first < rows(); some.first += rows_at_once) {
+    some.count = std::min(rows_at_once, rows() - some.first);
+    some.set(into.turns());
+    for (Share& share : together) {
+      RowColumns block = some.rows(share);
+      share.rows.add(block);
+    }
+  }
+  for (const Share& share : together) deliver(share);
+}
+
+/// To the triangle of each element and wavelength.
+void FitAccumulator::Folding::deliver(const Share& share) const {
+  for (std::size_t c = 0; c < share.columns.size(); ++c) {
+    const Column& column = share.columns[c];
+    AtWavelength& at = *groups[column.group].at;
+    long counted = 0;
+    for (std::size_t row = 0; row < rows(); ++row) {
+      const double w = weight(column, row);
+      at.weight[column.element] += w;
+      counted += w == 0 ? 0 : 1;
+    }
+    at.elements[column.element].merge(share.rows.of(c, counted));
+  }
+}
+
+}  // namespace mmbrdf
