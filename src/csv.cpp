@@ -62,6 +62,9 @@ CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::m
 CsvReader::CsvReader(std::istream& in, std::string name, std::vector<std::string> columns)
     : in_(in), name_(std::move(name)), line_(longest_line + 1), columns_(std::move(columns)) {}
 
+CsvReader::CsvReader(std::istream& in, const CsvReader& whole, long lines_before)
+    : in_(in), name_(whole.name_), line_(longest_line + 1), line_number_(lines_before), columns_(whole.columns_) {}
+
 std::runtime_error CsvReader::error(const std::string& text) const {
   return std::runtime_error(name_ + ":" + std::to_string(line_number_) + ": " + text);
 }

@@ -49,9 +49,29 @@ class Descriptor : public std::streambuf {
   }
 
   int sync() override {
-    const char* next = pbase();
-    while (next < pptr() && error_ == 0) {
-      const ssize_t written = ::write(number_, next, static_cast<std::size_t>(pptr() - next));
+    write_out(pbase(), pptr());
+    setp(buffer_.data(), buffer_.data() + buffer_.size());
+    return error_ == 0 ? 0 : -1;
+  }
+
+  /// What does not fit into the buffer goes past it.
+  std::streamsize xsputn(const char* text, std::streamsize size) override {
+    if (size < epptr() - pptr()) return std::streambuf::xsputn(text, size);
+    if (sync() != 0) return 0;
+    write_out(text, text + size);
+    return error_ == 0 ? size : 0;
+  }
+
+  /// To the beginning only, to write again what is known at the end.
+  pos_type seekpos(pos_type position, std::ios_base::openmode) override {
+    if (position != pos_type(0) || sync() != 0 || ::lseek(number_, 0, SEEK_SET) != 0) return pos_type(off_type(-1));
+    return position;
+  }
+
+ private:
+  void write_out(const char* next, const char* end) {
+    while (next < end && error_ == 0) {
+      const ssize_t written = ::write(number_, next, static_cast<std::size_t>(end - next));
       if (written > 0)
         next += written;
       else if (written == 0)
@@ -59,11 +79,8 @@ class Descriptor : public std::streambuf {
       else if (errno != EINTR)
         error_ = errno;
     }
-    setp(buffer_.data(), buffer_.data() + buffer_.size());
-    return error_ == 0 ? 0 : -1;
   }
 
- private:
   int number_;
   int error_ = 0;
   std::array<char, 1 << 16> buffer_;

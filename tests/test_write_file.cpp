@@ -45,6 +45,29 @@ TEST(Files, AppearWhole) {
   EXPECT_EQ(folder.files(), 1);
 }
 
+TEST(Files, AreWrittenInOrderWhateverTheSizeOfThePieces) {
+  const Folder folder;
+  std::string expected;
+  write_file(folder / "a", [&](std::ostream& out) {
+    for (const std::size_t size : {1u, 65535u, 65536u, 65537u, 10u, 300000u, 0u, 65536u, 5u}) {
+      const std::string piece(size, static_cast<char>('a' + expected.size() % 26));
+      out << piece;
+      expected += piece;
+    }
+  });
+  EXPECT_EQ(contents(folder / "a"), expected);
+}
+
+TEST(Files, CanBeginWithWhatIsKnownAtTheEnd) {
+  const Folder folder;
+  write_file(folder / "a", [&](std::ostream& out) {
+    out << "rows: ?\n" << std::string(100000, '.');
+    out.seekp(0);
+    out << "rows: 7";
+  });
+  EXPECT_EQ(contents(folder / "a"), "rows: 7\n" + std::string(100000, '.'));
+}
+
 TEST(Files, AreLeftAsTheyWereByAnErrorOnTheWay) {
   const Folder folder;
   put(folder / "a", "old");

@@ -10,6 +10,7 @@
 #include "mmbrdf/analysis.hpp"
 #include "mmbrdf/description.hpp"
 #include "mmbrdf/io.hpp"
+#include "npy.hpp"
 #include "output.hpp"
 #include "scan.hpp"
 
@@ -143,10 +144,13 @@ void analyze_scan(const Options& options) {
 void analyze_file(const Options& options) {
   const Model model = model_of_rows(options);
   const auto analyzer = analyzer_of(model, options);
-  evaluate_file(model, rows_of(options), analyzed_columns(*analyzer));
+  evaluate_file(model, rows_of(options), one_by_one(analyzed_columns(*analyzer)));
 }
 
 void analyze(Options& options) {
+  if (is_npy(options.output)) {
+    throw CLI::ValidationError("--output", "only evaluate writes .npy");
+  }
   const bool rows = !options.geometries.empty() || !options.scan_texts.empty();
   for (const std::string& text : options.scan_texts) {
     options.scans.push_back(parsed("--scan", text, scan_from));

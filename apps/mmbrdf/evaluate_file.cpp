@@ -8,11 +8,14 @@
 #include <iostream>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "files.hpp"
+#include "in_order.hpp"
 #include "mmbrdf/description.hpp"
 #include "mmbrdf/io.hpp"
+#include "npy.hpp"
 #include "output.hpp"
 #include "recent_wavelengths.hpp"
 
@@ -23,9 +26,9 @@ namespace {
 /// Counts rows on standard error, if that is a terminal.
 class Progress {
  public:
-  void row() {
-    ++rows_;
-    if (terminal_ && rows_ % 4096 == 0 && Clock::now() - shown_ > std::chrono::milliseconds(250)) {
+  void add(long rows) {
+    rows_ += rows;
+    if (terminal_ && Clock::now() - shown_ > std::chrono::milliseconds(250)) {
       shown_ = Clock::now();
       std::cerr << "\rmmbrdf: " << rows_ << " rows" << std::flush;
     }
@@ -52,84 +55,98 @@ double own_wavelength(const Model& model) {
   }
 }
 
-std::string header(const CsvReader& reader, const std::string& added) {
-  const std::vector<std::string>& columns = reader.columns();
+std::string header(const GeometrySource& source, const std::string& added) {
+  const std::vector<std::string>& columns = source.columns;
   std::string text;
   for (const std::string& column : columns) {
     const bool taken = !column.empty() && (added + ",").find("," + column + ",") != std::string::npos;
     const std::string name = (taken ? "input_" : "") + column;
     if (taken && std::find(columns.begin(), columns.end(), name) != columns.end()) {
-      throw reader.error("columns " + column + " and " + name + " are there already: " + column +
-                         " would be written again");
+      throw source.error(
+          0, "columns " + column + " and " + name + " are there already: " + column + " would be written again");
     }
     text += (&column == &columns.front() ? "" : ",") + name;
   }
   return text + added + "\n";
 }
 
-bool has_wavelengths(const CsvReader& reader) {
-  try {
-    GeometryColumns{reader};
-    return true;
-  } catch (const std::runtime_error&) {
-    return false;
-  }
-}
+/// A piece of the input and what it becomes.
+struct EvaluatedPiece {
+  Piece piece;
+  std::string out;
+  long rows = 0, outside = 0;
+};
 
 class FileEvaluator {
  public:
-  FileEvaluator(const Model& model, const RowsOfFile& what, const AddedColumns& added, CsvReader& reader)
-      : added_(added),
-        reader_(reader),
-        columns_(reader, what.wavelength > 0 ? what.wavelength : own_wavelength(model)),
-        header_(header(reader, added.names)),
+  FileEvaluator(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
+                const std::string& name)
+      : evaluated_(evaluated),
+        output_(what.output),
+        source_(open_geometries(in, name, what.wavelength > 0 ? what.wavelength : own_wavelength(model),
+                                !evaluated.binary)),
+        header_(evaluated.binary ? npy_header({0, 4, 4}) : header(source_, evaluated.names)),
         unknown_(unknown_range_line(what.model, model.validity)) {
-    if (what.wavelength > 0 && has_wavelengths(reader)) {
+    if (what.wavelength > 0 && source_.has_wavelengths) {
       warn("--wavelength is not used: the rows have their own");
     }
   }
 
   /// The rest of the file.
   void write(std::ostream& out) {
-    RowWriter writer(out, header_);
-    while (out && reader_.next()) {  // when out has failed, write_file tells why
-      add_row(writer.text());
-      progress_.row();
-      writer.end_row();
+    run_in_order<EvaluatedPiece>({.read = [this](EvaluatedPiece& p) { return source_.next(p.piece); },
+                                  .worker = [this] { return worker(); },
+                                  .write =
+                                      [&](EvaluatedPiece& p) {
+                                        outside_ += p.outside;
+                                        progress_.add(p.rows);
+                                        put(out, p.out.insert(0, std::exchange(header_, "")));
+                                        return static_cast<bool>(out);  // else write_file tells why
+                                      }},
+                                 evaluated_.threads);
+    put(out, header_);  // of no rows
+    if (evaluated_.binary && out) {
+      if (!out.seekp(0)) {
+        throw std::runtime_error(
+            output_ + ": a .npy file begins with the number of its rows, which cannot be written at the end");
+      }
+      put(out, npy_header({static_cast<std::size_t>(progress_.rows()), 4, 4}));
     }
-    writer.flush();
   }
 
   void report() const {
     progress_.end();
-    report_rows(outside_, progress_.rows(), unknown_);
+    report_rows(outside_, progress_.rows(), unknown_, evaluated_.binary ? "" : ": see column validity");
   }
 
  private:
-  void add_row(std::string& text) {
-    const double wavelength = columns_.wavelength(reader_);
-    const Geometry geometry = columns_.geometry(reader_);
-    text += reader_.text();
-    try {
-      outside_ += leaves_known_range(added_.append(text, wavelength, geometry)) ? 1 : 0;
-    } catch (const std::invalid_argument& error) {
-      throw reader_.error(plain_message(error));
+  std::function<void(EvaluatedPiece&)> worker() const {
+    return [this, write = evaluated_.writer()](EvaluatedPiece& p) {
+      const Rows rows = source_.rows(p.piece);
+      p.rows = static_cast<long>(rows.size());
+      p.outside = write(source_, rows, p.out);
+    };
+  }
+
+  static void put(std::ostream& out, const std::string& text) {
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    if (&out == &std::cout) {
+      flush_output();
     }
   }
 
-  const AddedColumns& added_;
-  CsvReader& reader_;
-  GeometryColumns columns_;
+  const Evaluated& evaluated_;
+  std::string output_;
+  GeometrySource source_;
   std::string header_;
   Progress progress_;
   std::string unknown_;  // what the model does not say about its range
   long outside_ = 0;
 };
 
-void evaluate_stream(const Model& model, const RowsOfFile& what, const AddedColumns& added, std::istream& in,
+void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
                      const std::string& name) {
-  CsvReader reader(in, name);
-  FileEvaluator evaluator(model, what, added, reader);
+  FileEvaluator evaluator(model, what, evaluated, in, name);
   if (is_standard_output(what.output)) {
     evaluator.write(std::cout);
   } else {
@@ -137,6 +154,75 @@ void evaluate_stream(const Model& model, const RowsOfFile& what, const AddedColu
   }
   evaluator.report();
 }
+
+/// Evaluates rows of one wavelength after the other at once.
+class RowsEvaluator {
+ public:
+  RowsEvaluator(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary)
+      : models_([first = prepare(model, 1, rotation)](double wavelength) { return first.at(wavelength); }),
+        frame_(frame),
+        normalized_(normalized),
+        binary_(binary) {}
+
+  long write(const GeometrySource& source, const Rows& rows, std::string& out) {
+    long outside = 0;
+    out.reserve(rows.size() * (binary_ ? 16 * sizeof(double) : 420));
+    for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
+      end = first + 1;
+      while (end < rows.size() && rows.wavelengths[end] == rows.wavelengths[first]) {
+        ++end;
+      }
+      outside += write(source, rows, first, end, out);
+    }
+    return outside;
+  }
+
+ private:
+  long write(const GeometrySource& source, const Rows& rows, std::size_t first, std::size_t end, std::string& out) {
+    long outside = 0;
+    std::size_t row = first;
+    try {
+      const PreparedModel& prepared = models_.at(rows.wavelengths[first]);
+      matrices_.resize(end - first);
+      prepared.evaluate(std::span(rows.geometries).subspan(first, end - first), frame_, matrices_);
+      for (; row < end; ++row) {
+        Mueller& f = matrices_[row - first];
+        f = normalized_ ? normalized_beside_f11(f) : f;
+        const Outside here = prepared.outside(rows.geometries[row]);
+        outside += leaves_known_range(here) ? 1 : 0;
+        if (!binary_) {
+          out += rows.text(row);
+          append_elements(out, f);
+          out += ',';
+          out += to_string(here);
+          out += '\n';
+        }
+      }
+    } catch (const std::invalid_argument& error) {
+      throw source.error(rows.numbers[row], plain_message(error));
+    }
+    if (binary_) {
+      append_npy(out);
+    }
+    return outside;
+  }
+
+  void append_npy(std::string& out) const {
+    std::size_t at = out.size();
+    out.resize(at + matrices_.size() * 16 * sizeof(double));
+    for (const Mueller& f : matrices_) {
+      for (const double value : f.elements) {
+        to_npy(value, &out[at]);
+        at += sizeof(double);
+      }
+    }
+  }
+
+  RecentWavelengths<PreparedModel> models_;
+  std::vector<Mueller> matrices_;
+  Frame frame_;
+  bool normalized_, binary_;
+};
 
 }  // namespace
 
@@ -156,34 +242,45 @@ void RowWriter::flush() {
   }
 }
 
-void report_rows(long outside, long rows, const std::string& unknown_range) {
+void report_rows(long outside, long rows, const std::string& unknown_range, const std::string& where) {
   if (outside > 0) {
     warn(std::to_string(outside) + " of " + counted(rows, "row") + (outside == 1 ? " lies" : " lie") +
-         " outside the fitted range: see column validity");
+         " outside the fitted range" + where);
   }
   if (!unknown_range.empty()) {
     warn(unknown_range);
   }
 }
 
-AddedColumns evaluated_columns(const Model& model, Frame frame, Rotation rotation, bool normalized) {
-  const auto models = std::make_shared<RecentWavelengths<PreparedModel>>(
-      [first = prepare(model, 1, rotation)](double wavelength) { return first.at(wavelength); });
-  return {element_columns(normalized) + ",validity",
-          [models, frame, normalized](std::string& text, double wavelength, const Geometry& geometry) {
-            const PreparedModel& prepared = models->at(wavelength);
-            const Mueller f = prepared.evaluate(geometry, frame);
-            append_elements(text, normalized ? normalized_beside_f11(f) : f);
-            const Outside outside = prepared.outside(geometry);
-            text += ',';
-            text += to_string(outside);
-            return outside;
+Evaluated evaluated_rows(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary) {
+  return {.names = element_columns(normalized) + ",validity", .binary = binary, .writer = [=, &model] {
+            const auto evaluator = std::make_shared<RowsEvaluator>(model, frame, rotation, normalized, binary);
+            return [evaluator](const GeometrySource& source, const Rows& rows, std::string& out) {
+              return evaluator->write(source, rows, out);
+            };
           }};
 }
 
-void evaluate_file(const Model& model, const RowsOfFile& what, const AddedColumns& columns) {
+Evaluated one_by_one(const AddedColumns& columns) {
+  const auto write = [columns](const GeometrySource& source, const Rows& rows, std::string& out) {
+    long outside = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      out += rows.text(row);
+      try {
+        outside += leaves_known_range(columns.append(out, rows.wavelengths[row], rows.geometries[row])) ? 1 : 0;
+      } catch (const std::invalid_argument& error) {
+        throw source.error(rows.numbers[row], plain_message(error));
+      }
+      out += '\n';
+    }
+    return outside;
+  };
+  return {.names = columns.names, .binary = false, .writer = [write] { return write; }};
+}
+
+void evaluate_file(const Model& model, const RowsOfFile& what, const Evaluated& evaluated) {
   read_input(what.input,
-             [&](std::istream& in, const std::string& name) { evaluate_stream(model, what, columns, in, name); });
+             [&](std::istream& in, const std::string& name) { evaluate_stream(model, what, evaluated, in, name); });
 }
 
 }  // namespace mmbrdf::program

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 
+#include "geometry_rows.hpp"
 #include "mmbrdf/geometry.hpp"
 #include "mmbrdf/model.hpp"
 
@@ -19,8 +20,21 @@ struct AddedColumns {
   std::function<Outside(std::string& text, double wavelength, const Geometry& geometry)> append;
 };
 
-/// The 16 elements and the validity.
-AddedColumns evaluated_columns(const Model& model, Frame frame, Rotation rotation, bool normalized);
+/// What is written of many rows.
+struct Evaluated {
+  std::string names;    ///< ",f11,f12,…" behind the columns of the input
+  bool binary = false;  ///< the 16 elements of each row alone, as a .npy file has them
+  /// Makes what appends some rows to `out`, each behind its text unless binary, and returns how many of them lie
+  /// outside the fitted range. One for each thread. Throws std::runtime_error from the source.
+  std::function<std::function<long(const GeometrySource&, const Rows&, std::string& out)>()> writer;
+  int threads = 1;
+};
+
+/// The 16 elements, and the validity unless binary.
+Evaluated evaluated_rows(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary);
+
+/// The same of columns that are worked out row by row in one thread.
+Evaluated one_by_one(const AddedColumns& columns);
 
 struct RowsOfFile {
   std::string model;      ///< name, for messages
@@ -29,10 +43,10 @@ struct RowsOfFile {
   double wavelength = 0;  ///< micrometres, for rows without; 0: the model's own
 };
 
-/// Each row as it is, with the columns behind it. A column of the input that has the name of one of those is called
-/// input_NAME. Says on standard error how many rows lie outside the fitted range, if that is known.
+/// Each row as it is, with the columns behind it; or binary. A column of the input that has the name of one of those is
+/// called input_NAME. Says on standard error how many rows lie outside the fitted range, if that is known.
 /// Throws std::runtime_error naming file and line.
-void evaluate_file(const Model& model, const RowsOfFile& what, const AddedColumns& columns);
+void evaluate_file(const Model& model, const RowsOfFile& what, const Evaluated& evaluated);
 
 /// Text that goes to `out` piece by piece.
 class RowWriter {
@@ -47,7 +61,8 @@ class RowWriter {
   std::string text_;
 };
 
-/// Says that so many rows lie outside the fitted range, and what the model does not say about it.
-void report_rows(long outside, long rows, const std::string& unknown_range);
+/// Says that so many rows lie outside the fitted range, and what the model does not say about it. `where` says which.
+void report_rows(long outside, long rows, const std::string& unknown_range,
+                 const std::string& where = ": see column validity");
 
 }  // namespace mmbrdf::program

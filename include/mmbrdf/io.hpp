@@ -36,6 +36,9 @@ class CsvReader {
   /// A file without a header line, whose columns are these.
   CsvReader(std::istream& in, std::string name, std::vector<std::string> columns);
 
+  /// Rows of the same file as `whole` that are behind so many lines of it: for pieces of it in several threads.
+  CsvReader(std::istream& in, const CsvReader& whole, long lines_before);
+
   CsvReader(const CsvReader&) = delete;
   CsvReader& operator=(const CsvReader&) = delete;
 
@@ -151,8 +154,9 @@ void save_model(const std::string& path, const Model& model);
 
 /// Runs `write` on a stream whose contents appear under `path` only when all of it is written: a temporary file in the
 /// same folder, renamed. Links are followed, and an existing file keeps its permissions. A path that exists and is not
-/// a regular file (a device, a pipe, /dev/stdout) is written to directly. Throws std::runtime_error naming the path if
-/// it cannot be written in full, and whatever `write` throws; then an earlier file is left as it was.
+/// a regular file (a device, a pipe, /dev/stdout) is written to directly. The stream can go back to the beginning,
+/// seekp(0), where the file can. Throws std::runtime_error naming the path if it cannot be written in full, and
+/// whatever `write` throws; then an earlier file is left as it was.
 void write_file(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace mmbrdf

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reading, computing and writing at the same time, in the order of the input.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace mmbrdf::program {
+
+/// What happens to each piece of a stream.
+template <class Piece>
+struct Stages {
+  std::function<bool(Piece&)> read;                     ///< false at the end. One at a time, in order
+  std::function<std::function<void(Piece&)>()> worker;  ///< computes; one for each thread, any number at a time
+  std::function<bool(Piece&)> write;  ///< false if no more can be written. One at a time, in the order of reading
+};
+
+namespace in_order {
+
+template <class Piece>
+class Line {
+ public:
+  explicit Line(const Stages<Piece>& stages) : stages_(stages) {}
+
+  /// Until the end. To be run by as many threads as shall work on pieces.
+  void run() {
+    std::function<void(Piece&)> compute;
+    while (!stopped_) {
+      Piece piece;
+      std::exception_ptr error;
+      bool there = false;
+      const long number = next(piece, there, error);
+      try {
+        if (there && !compute) {
+          compute = stages_.worker();
+        }
+        if (there) {
+          compute(piece);
+        }
+      } catch (...) {
+        error = std::current_exception();
+      }
+      finish(number, piece, there, error);
+    }
+  }
+
+  void throw_error() const {
+    if (error_) {
+      std::rethrow_exception(error_);
+    }
+  }
+
+ private:
+  long next(Piece& piece, bool& there, std::exception_ptr& error) {
+    const std::lock_guard lock(reading_);
+    try {
+      there = !stopped_ && stages_.read(piece);
+    } catch (...) {
+      error = std::current_exception();
+    }
+    return next_++;
+  }
+
+  /// What went wrong with a piece counts only if nothing did before it.
+  void finish(long number, Piece& piece, bool there, const std::exception_ptr& error) {
+    std::unique_lock lock(writing_);
+    turn_.wait(lock, [&] { return stopped_ || written_ == number; });
+    if (stopped_) {
+      return;
+    }
+    try {
+      if (error) {
+        std::rethrow_exception(error);
+      }
+      stopped_ = !there || !stages_.write(piece);
+    } catch (...) {
+      error_ = std::current_exception();
+      stopped_ = true;
+    }
+    ++written_;
+    turn_.notify_all();
+  }
+
+  const Stages<Piece>& stages_;
+  std::mutex reading_, writing_;
+  std::condition_variable turn_;
+  long next_ = 0, written_ = 0;
+  std::atomic<bool> stopped_ = false;
+  std::exception_ptr error_;
+};
+
+}  // namespace in_order
+
+/// Runs the stages in so many threads, each of which holds one piece. Throws what a stage throws, the first in the
+/// order of the input; what was read before that is written.
+template <class Piece>
+void run_in_order(const Stages<Piece>& stages, int threads) {
+  in_order::Line<Piece> line(stages);
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (int i = 1; i < threads; ++i) {
+        others.emplace_back([&line] { line.run(); });
+      }
+    } catch (const std::system_error&) {  // no more threads to be had: those that there are do the work
+    }
+    line.run();
+  }
+  line.throw_error();
+}
+
+}  // namespace mmbrdf::program
