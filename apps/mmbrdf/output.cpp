@@ -36,12 +36,6 @@ std::string format(const char* pattern, ...) {
   return std::string(buffer.data(), static_cast<std::size_t>(size));
 }
 
-void append_exact(std::string& text, double value) {
-  std::array<char, 32> buffer;  // sign, 17 digits, point and exponent: 24 at most
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 17);
-  text.append(buffer.data(), end.ptr);
-}
-
 std::string exact(double value) {
   std::string text;
   append_exact(text, value);

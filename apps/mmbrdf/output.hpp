@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "exact.hpp"
 #include "mmbrdf/mueller.hpp"
 
 namespace mmbrdf::program {
@@ -29,8 +30,7 @@ std::string joined(const std::vector<std::string>& words);
 /// What an error says, without the name of the library's function that begins some messages.
 std::string plain_message(const std::exception& error);
 
-/// Appends 17 significant digits: reading them gives the same number.
-void append_exact(std::string& text, double value);
+/// 17 significant digits: reading them gives the same number.
 std::string exact(double value);
 
 /// The fewest digits that give the same number: 0.984.

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the program's streams are made of: digits, and pieces that are worked on by many threads.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "../apps/mmbrdf/exact.hpp"
+#include "../apps/mmbrdf/in_order.hpp"
+
+namespace mmbrdf::program {
+namespace {
+
+std::string found(double value) {
+  std::string text;
+  append_exact(text, value);
+  return text;
+}
+
+std::string expected(double value) {
+  std::array<char, 32> text;
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::general, 17).ptr};
+}
+
+// Of all numbers that there are, and of those that matrices have.
+RC_GTEST_PROP(Digits, AreThoseOfTheStandardLibrary, (std::uint64_t bits, std::uint32_t fraction)) {
+  const auto any = std::bit_cast<double>(bits);
+  if (!std::isnan(any)) RC_ASSERT(found(any) == expected(any));
+  const double exponent = *rc::gen::inRange(-24, 18);
+  const double value = (fraction - 2147483648.0 + 1 / 3.0) / 2147483648.0 * std::pow(10, exponent);
+  RC_ASSERT(found(value) == expected(value));
+}
+
+TEST(Digits, AreThoseOfTheStandardLibraryNextToPowersOfTenAndOfTwo) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (int k = -25; k < 20; ++k)
+    for (const double towards : {0.0, infinity}) {
+      double value = std::pow(10, k);
+      for (int step = 0; step < 40; ++step, value = std::nextafter(value, towards))
+        for (const double x : {value, -value}) EXPECT_EQ(found(x), expected(x));
+    }
+  // Few bits: ties between two numbers of 17 digits.
+  for (int k = -80; k < 60; ++k)
+    for (int odd = 1; odd < 200; odd += 2) EXPECT_EQ(found(std::ldexp(odd, k)), expected(std::ldexp(odd, k)));
+}
+
+TEST(Digits, OfNumbersThatAreNoneOrNothingAreThoseOfTheStandardLibrary) {
+  for (const double value : {0.0, -0.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::min(),
+                             std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()})
+    EXPECT_EQ(found(value), expected(value));
+}
+
+/// A stream of the numbers below `count`, each of which becomes its square; what is written is the list of them.
+struct Squares {
+  int count = 100, read = 0;
+  std::string written{};
+  int refused = -1, broken = -1, full = 1000000;  // a number that cannot be read, computed, written
+
+  void run(int threads) {
+    run_in_order<int>({.read =
+                           [this](int& number) {
+                             if (read == refused) throw std::runtime_error("read");
+                             number = read++;
+                             return number < count;
+                           },
+                       .worker =
+                           [this] {
+                             return [this](int& number) {
+                               for (int i = 0; i < number % 7; ++i) std::this_thread::yield();
+                               if (number == broken) throw std::runtime_error("compute " + std::to_string(number));
+                               number *= number;
+                             };
+                           },
+                       .write =
+                           [this](int& number) {
+                             if (number >= full) return false;
+                             written += std::to_string(number) + " ";
+                             return true;
+                           }},
+                      threads);
+  }
+
+  static std::string list(int end) {
+    std::string text;
+    for (int i = 0; i < end; ++i) text += std::to_string(i * i) + " ";
+    return text;
+  }
+};
+
+TEST(Pieces, AreWrittenInTheOrderInWhichTheyWereReadByAnyNumberOfThreads) {
+  for (const int threads : {1, 2, 3, 8})
+    for (const int count : {0, 1, 2, 500}) {
+      Squares squares{.count = count};
+      squares.run(threads);
+      EXPECT_EQ(squares.written, Squares::list(count)) << threads;
+    }
+}
+
+TEST(Pieces, BeforeTheFirstErrorAreWrittenAndThatErrorIsThrown) {
+  for (const int threads : {1, 2, 8}) {
+    Squares in_the_middle{.refused = 60, .broken = 40}, at_the_end{.refused = 40, .broken = 60};
+    EXPECT_THROW(
+        {
+          try {
+            in_the_middle.run(threads);
+          } catch (const std::runtime_error& error) {
+            EXPECT_STREQ(error.what(), "compute 40");
+            throw;
+          }
+        },
+        std::runtime_error);
+    EXPECT_EQ(in_the_middle.written, Squares::list(40));
+    EXPECT_THROW(at_the_end.run(threads), std::runtime_error);
+    EXPECT_EQ(at_the_end.written, Squares::list(40));
+  }
+}
+
+TEST(Pieces, EndWhereNoMoreCanBeWritten) {
+  for (const int threads : {1, 2, 8}) {
+    Squares squares{.full = 30 * 30};
+    squares.run(threads);
+    EXPECT_EQ(squares.written, Squares::list(30));
+    EXPECT_LE(squares.read, 30 + 2 * threads);
+  }
+}
+
+}  // namespace
+}  // namespace mmbrdf::program
