@@ -164,7 +164,7 @@ KernelMatrices<T> from(KernelMatrices<T> out, std::size_t first) {
 template <class T>
 KernelMatrices<T> rows(T* values) {
   KernelMatrices<T> out{{}, 16};
-  for (std::size_t e = 0; e < 16; ++e) out.element[e] = values + e;
+  for (std::size_t e = 0; e < 16 && values; ++e) out.element[e] = values + e;  // of nothing, nothing
   return out;
 }
 

@@ -3,9 +3,6 @@
 
 import ast
 import inspect
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -69,30 +66,3 @@ def test_nothing_is_no_object_of_the_library(tmp_path):
     ):
         with pytest.raises((TypeError, RuntimeError)):
             call()
-
-
-SCRIPT = """
-import mmbrdf
-ptfe = mmbrdf.material("ptfe")
-f11 = ptfe.evaluate(532, 45, 0, [0, 30], 180)[..., 0, 0] + 1
-names = ptfe.evaluate(532, 45, 0, [0, 30], 180, as_xarray=True).dims
-u = ptfe.evaluate_uncertainty(theta_i_deg=45, phi_i_deg=0, theta_r_deg=0, phi_r_deg=0)
-data = mmbrdf.simulate(ptfe, 532, mmbrdf.germer2017_grid())
-values = [part.f11 for part in data[:3]]
-model: mmbrdf.Model = mmbrdf.fit(data, weights="speckle", reflectance={532: 0.98}).model
-"""
-
-
-@pytest.mark.parametrize(("more", "good"), [("", True), ("ptfe.evaluate(532)", False), ("ptfe.save(1)", False)])
-def test_scripts_are_checked_by_their_types(more, good, tmp_path):
-    pytest.importorskip("mypy")
-    (tmp_path / "script.py").write_text(SCRIPT + more + "\n")
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "script.py"],
-        cwd=tmp_path,
-        env={**os.environ, "MYPYPATH": str(Path(mmbrdf.__file__).parents[1])},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode == 0) == good, done.stdout
