@@ -217,6 +217,13 @@ def write(path: str | os.PathLike[str], text: str) -> None:
     _write_text(path, text)
 
 
+def _require_kept(output: str, inputs: Sequence[str | None]) -> None:
+    """Raises ValueError if the page would take the place of what it is about, under whatever names and links."""
+    for name in inputs:
+        if name and os.path.isfile(output) and os.path.exists(name) and os.path.samefile(output, name):
+            raise ValueError(f"{output}: would overwrite {name}")
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """python3 -m mmbrdf.report"""
     parser = argparse.ArgumentParser(prog="python3 -m mmbrdf.report", description=__doc__)
@@ -228,8 +235,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--theta-i", metavar="DEG", type=float, default=45, help="angle of incidence of the pictures [45]"
     )
     options = parser.parse_args(arguments)
+    built_in = options.model in materials()
     try:
-        model = material(options.model) if options.model in materials() else load(options.model)
+        _require_kept(options.output, [options.data] if built_in else [options.model, options.data])
+        model = material(options.model) if built_in else load(options.model)
         data = load(options.data) if options.data else None
         for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
             if thing is not None and not isinstance(thing, kind):

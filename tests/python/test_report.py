@@ -263,6 +263,18 @@ def test_it_prints_the_page_where_that_is_asked_for(tmp_path):
     assert done.stdout.startswith("<!DOCTYPE html>") and done.stdout.endswith("</html>\n")
 
 
+def test_it_does_not_overwrite_what_it_reports_on(page, tmp_path):
+    model, data, _ = page
+    model.save(tmp_path / "model.json")
+    data[:100].save(tmp_path / "data.csv")
+    (tmp_path / "link.html").symlink_to("data.csv")
+    before = (tmp_path / "data.csv").read_bytes()
+    for output in ("model.json", "data.csv", "link.html"):
+        done = run_module("model.json", "data.csv", "-o", output, folder=tmp_path)
+        assert done.returncode == 1 and "would overwrite" in done.stderr
+    assert (tmp_path / "data.csv").read_bytes() == before and mmbrdf.load(tmp_path / "model.json") == model
+
+
 def test_importing_the_module_leaves_the_function():
     import mmbrdf.report
 
