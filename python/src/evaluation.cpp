@@ -2,130 +2,14 @@
 // Models at many wavelengths and geometries.
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <numeric>
-#include <span>
-
-#include "bindings.hpp"
 #include "mmbrdf/budget.hpp"
 #include "mmbrdf/monte_carlo.hpp"
 #include "mmbrdf/uncertainty.hpp"
+#include "question.hpp"
 
 namespace mmbrdf::python {
 
 namespace {
-
-/// Geometries of one wavelength, next to each other in the order of the question.
-struct Some {
-  std::span<const Geometry> geometries;
-  const std::size_t* positions;  // of each in the result; null: from `begin` on
-  std::size_t begin;
-  std::size_t position(std::size_t i) const { return positions ? positions[i] : begin + i; }
-};
-
-/// What a model is asked for: wavelengths and directions, broadcast.
-class Question {
- public:
-  Question(ModelObject& model, const std::optional<Given>& wavelength_nm, const Given& theta_i, const Given& phi_i,
-           const Given& theta_r, const Given& phi_r, bool as_printed)
-      : model_(model.shared_from_this()),
-        rotation_(rotation(as_printed)),
-        broadcast_(operands(*model_, wavelength_nm, theta_i, phi_i, theta_r, phi_r)),
-        one_wavelength_(broadcast_.given(0) == 1) {}
-
-  const Broadcast& broadcast() const { return broadcast_; }
-  const ModelObject& model() const { return *model_; }
-  Rotation rotation_of_model() const { return rotation_; }
-
-  /// use(prepared, some) with prepared = make(wavelength in micrometres), for all positions. Needs no GIL.
-  template <class Make, class Use>
-  void each(int threads, std::size_t least, Make make, Use use) const {
-    if (broadcast_.size() == 0) return;
-    if (one_wavelength_) {
-      const auto prepared = make(micrometres(broadcast_.number(0, 0)));
-      in_parts(broadcast_.size(), threads, least,
-               [&](std::size_t begin, std::size_t end) { run(begin, end, nullptr, prepared, use); });
-      return;
-    }
-    std::vector<double> wavelengths(broadcast_.size());
-    broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
-    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
-      try {
-        wavelengths[i] = micrometres(wavelengths[i]);
-      } catch (const std::invalid_argument& error) {
-        throw broadcast_.at_place(error, i);
-      }
-    }
-    std::vector<std::size_t> order(wavelengths.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return wavelengths[a] < wavelengths[b]; });
-    in_parts(order.size(), threads, least, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t next = begin; begin < end; begin = next) {
-        const double wavelength = wavelengths[order[begin]];
-        while (next < end && wavelengths[order[next]] == wavelength) ++next;
-        run(begin, next, order.data(), make(wavelength), use);
-      }
-    });
-  }
-
- private:
-  static std::vector<Operand> operands(const ModelObject& model, const std::optional<Given>& wavelength_nm,
-                                       const Given& theta_i, const Given& phi_i, const Given& theta_r,
-                                       const Given& phi_r) {
-    std::vector<Operand> result = direction_operands(theta_i, phi_i, theta_r, phi_r);
-    result.insert(result.begin(), model.wavelength_operand(wavelength_nm));
-    return result;
-  }
-
-  template <class Prepared, class Use>
-  void run(std::size_t begin, std::size_t end, const std::size_t* order, const Prepared& prepared, Use use) const {
-    constexpr std::size_t most = 512;  // geometries and matrices stay in the first-level cache, or nearly
-    std::vector<Geometry> geometries(std::min(most, end - begin));
-    for (; begin < end; begin += geometries.size()) {
-      const std::size_t count = std::min(geometries.size(), end - begin);
-      if (order == nullptr) {
-        gather(broadcast_, 1, begin, begin + count, geometries.data());
-      } else {
-        for (std::size_t i = 0; i < count; ++i) geometries[i] = geometry(broadcast_, 1, order[begin + i]);
-      }
-      use(prepared, Some{{geometries.data(), count}, order ? order + begin : nullptr, begin});
-    }
-  }
-
-  ModelPointer model_;
-  Rotation rotation_;
-  Broadcast broadcast_;
-  bool one_wavelength_;
-};
-
-/// Counts what lies outside the fitted range, and says so in one warning.
-class Range {
- public:
-  explicit Range(const ModelObject& model)
-      : theta_i_max_(model.model().validity.theta_i_max.value_or(radians(90))),
-        theta_r_max_(model.model().validity.theta_r_max.value_or(radians(90))) {}
-
-  void count(const PreparedModel& model, std::span<const Geometry> geometries) {
-    bool beyond = known(model.outside({})) != 0;  // the wavelength
-    for (const Geometry& g : geometries) beyond |= g.incident.theta > theta_i_max_ || g.reflected.theta > theta_r_max_;
-    if (!beyond) return;
-    for (const Geometry& g : geometries) {
-      const unsigned outside = known(model.outside(g));
-      reasons_ |= outside;
-      count_ += outside != 0 ? 1 : 0;
-    }
-  }
-
-  void warn(const ModelObject& model, std::size_t size) const { warn_outside(model, reasons_, count_, size); }
-
- private:
-  static unsigned known(Outside outside) { return outside & ~static_cast<unsigned>(unknown_range); }
-
-  double theta_i_max_, theta_r_max_;
-  std::atomic<unsigned> reasons_ = 0;
-  std::atomic<std::size_t> count_ = 0;
-};
 
 /// The array that the caller gave for the result, or a new one.
 py::array_t<double> room_for_matrices(const Broadcast& broadcast, const std::optional<py::array>& out) {
@@ -147,14 +31,14 @@ py::object evaluate(const Question& question, Frame frame, int threads, const st
         threads, 2048,
         [&](double wavelength) { return question.model().prepared(wavelength, question.rotation_of_model()); },
         [&](const PreparedModel& model, const Some& some) {
-          range.count(model, some.geometries);
+          range.count(model.wavelength(), some.geometries);
           if (!some.positions)
             return model.evaluate(some.geometries, frame, {out + some.begin, some.geometries.size()});
           for (std::size_t i = 0; i < some.geometries.size(); ++i)
             out[some.position(i)] = model.evaluate(some.geometries[i], frame);
         });
   });
-  range.warn(question.model(), question.broadcast().size());
+  range.warn(question.broadcast().size());
   return result;
 }
 
@@ -176,14 +60,14 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
                           question.model().prepared(wavelength, question.rotation_of_model())};
         },
         [&](const Prepared& p, const Some& some) {
-          range.count(p.model, some.geometries);
+          range.count(p.model.wavelength(), some.geometries);
           for (std::size_t i = 0; i < some.geometries.size(); ++i) {
             const std::array<double, n> values = f(p.uncertainty, p.model, some.geometries[i]);
             std::copy(values.begin(), values.end(), out + n * some.position(i));
           }
         });
   });
-  range.warn(question.model(), question.broadcast().size());
+  range.warn(question.broadcast().size());
   return result;
 }
 
@@ -275,13 +159,13 @@ py::object evaluate_draws(const Question& question, Frame frame, int count, unsi
     question.each(
         threads, 16, [&](double wavelength) { return draws.at(wavelength); },
         [&](const std::vector<PreparedModel>& models, const Some& some) {
-          range.count(models.front(), some.geometries);
+          range.count(models.front().wavelength(), some.geometries);
           for (std::size_t d = 0; d < models.size(); ++d)
             for (std::size_t i = 0; i < some.geometries.size(); ++i)
               out[d * size + some.position(i)] = models[d].evaluate(some.geometries[i], frame);
         });
   });
-  range.warn(question.model(), size);
+  range.warn(size);
   return result;
 }
 

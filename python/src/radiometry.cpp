@@ -4,7 +4,6 @@
 
 #include <pybind11/stl.h>
 
-#include <atomic>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include "dataset.hpp"
 #include "mmbrdf/reflectance_uncertainty.hpp"
 #include "mmbrdf/subsets.hpp"
+#include "question.hpp"
 
 namespace mmbrdf::python {
 
@@ -41,24 +41,6 @@ using Uncertainties = ForWavelengths<PreparedUncertainty>;
 Uncertainties uncertainties_of(const ModelObject& o) {
   return Uncertainties([&o](double wavelength) { return prepare_uncertainty(o.model(), wavelength); });
 }
-
-/// Counts questions that leave the fitted range of a model.
-class Range {
- public:
-  explicit Range(const ModelObject& model) : model_(model) {}
-  void count(double wavelength, const Geometry& geometry) {
-    const Outside where = outside(model_.model().validity, wavelength, geometry);
-    if (!leaves_known_range(where)) return;
-    reasons_ |= where & ~static_cast<unsigned>(unknown_range);
-    ++count_;
-  }
-  void warn(std::size_t size) const { warn_outside(model_, reasons_, count_, size); }
-
- private:
-  const ModelObject& model_;
-  std::atomic<unsigned> reasons_ = 0;
-  std::atomic<std::size_t> count_ = 0;
-};
 
 /// Which of the two directions of a geometry is asked for; the other is anywhere.
 enum class Side { incident, reflected };

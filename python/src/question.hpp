@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A model at many wavelengths and geometries.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "bindings.hpp"
+
+namespace mmbrdf::python {
+
+/// Counts, in many threads, what lies outside the fitted range of a model, and says so in one warning.
+class Range {
+ public:
+  explicit Range(const ModelObject& model)
+      : model_(model),
+        theta_i_max_(validity().theta_i_max.value_or(radians(90))),
+        theta_r_max_(validity().theta_r_max.value_or(radians(90))) {}
+
+  void count(double wavelength, const Geometry& geometry) {
+    const Outside where = outside(validity(), wavelength, geometry);
+    if (!leaves_known_range(where)) return;
+    reasons_ |= where & ~static_cast<unsigned>(unknown_range);
+    ++count_;
+  }
+
+  void count(double wavelength, std::span<const Geometry> geometries) {
+    bool beyond = leaves_known_range(outside(validity(), wavelength, {}));
+    for (const Geometry& g : geometries) beyond |= g.incident.theta > theta_i_max_ || g.reflected.theta > theta_r_max_;
+    if (!beyond) return;  // as nearly always
+    for (const Geometry& g : geometries) count(wavelength, g);
+  }
+
+  void warn(std::size_t size) const { warn_outside(model_, reasons_, count_, size); }
+
+ private:
+  const Validity& validity() const { return model_.model().validity; }
+
+  const ModelObject& model_;
+  double theta_i_max_, theta_r_max_;
+  std::atomic<unsigned> reasons_ = 0;
+  std::atomic<std::size_t> count_ = 0;
+};
+
+/// Geometries of one wavelength, next to each other in the order of the question.
+struct Some {
+  std::span<const Geometry> geometries;
+  const std::size_t* positions;  // of each in the result; null: from `begin` on
+  std::size_t begin;
+  std::size_t position(std::size_t i) const { return positions ? positions[i] : begin + i; }
+};
+
+/// What a model is asked for: wavelengths and directions, broadcast.
+class Question {
+ public:
+  Question(ModelObject& model, const std::optional<Given>& wavelength_nm, const Given& theta_i, const Given& phi_i,
+           const Given& theta_r, const Given& phi_r, bool as_printed)
+      : model_(model.shared_from_this()),
+        rotation_(rotation(as_printed)),
+        broadcast_(operands(*model_, wavelength_nm, theta_i, phi_i, theta_r, phi_r)),
+        one_wavelength_(broadcast_.given(0) == 1) {}
+
+  const Broadcast& broadcast() const { return broadcast_; }
+  const ModelObject& model() const { return *model_; }
+  Rotation rotation_of_model() const { return rotation_; }
+
+  /// use(prepared, some) with prepared = make(wavelength in micrometres), for all positions. Needs no GIL.
+  template <class Make, class Use>
+  void each(int threads, std::size_t least, Make make, Use use) const {
+    if (broadcast_.size() == 0) return;
+    if (one_wavelength_) {
+      const auto prepared = make(micrometres(broadcast_.number(0, 0)));
+      in_parts(broadcast_.size(), threads, least,
+               [&](std::size_t begin, std::size_t end) { run(begin, end, nullptr, prepared, use); });
+      return;
+    }
+    std::vector<double> wavelengths(broadcast_.size());
+    broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
+    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+      try {
+        wavelengths[i] = micrometres(wavelengths[i]);
+      } catch (const std::invalid_argument& error) {
+        throw broadcast_.at_place(error, i);
+      }
+    }
+    std::vector<std::size_t> order(wavelengths.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return wavelengths[a] < wavelengths[b]; });
+    in_parts(order.size(), threads, least, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t next = begin; begin < end; begin = next) {
+        const double wavelength = wavelengths[order[begin]];
+        while (next < end && wavelengths[order[next]] == wavelength) ++next;
+        run(begin, next, order.data(), make(wavelength), use);
+      }
+    });
+  }
+
+ private:
+  static std::vector<Operand> operands(const ModelObject& model, const std::optional<Given>& wavelength_nm,
+                                       const Given& theta_i, const Given& phi_i, const Given& theta_r,
+                                       const Given& phi_r) {
+    std::vector<Operand> result = direction_operands(theta_i, phi_i, theta_r, phi_r);
+    result.insert(result.begin(), model.wavelength_operand(wavelength_nm));
+    return result;
+  }
+
+  template <class Prepared, class Use>
+  void run(std::size_t begin, std::size_t end, const std::size_t* order, const Prepared& prepared, Use use) const {
+    constexpr std::size_t most = 512;  // geometries and matrices stay in the first-level cache, or nearly
+    std::vector<Geometry> geometries(std::min(most, end - begin));
+    for (; begin < end; begin += geometries.size()) {
+      const std::size_t count = std::min(geometries.size(), end - begin);
+      if (order == nullptr) {
+        gather(broadcast_, 1, begin, begin + count, geometries.data());
+      } else {
+        for (std::size_t i = 0; i < count; ++i) geometries[i] = geometry(broadcast_, 1, order[begin + i]);
+      }
+      use(prepared, Some{{geometries.data(), count}, order ? order + begin : nullptr, begin});
+    }
+  }
+
+  ModelPointer model_;
+  Rotation rotation_;
+  Broadcast broadcast_;
+  bool one_wavelength_;
+};
+
+}  // namespace mmbrdf::python
