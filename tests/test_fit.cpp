@@ -32,6 +32,13 @@ void* operator new(std::size_t size) {
   peak = std::max(peak, held);
   return static_cast<char*>(memory) + before;
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // of std::stable_sort
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* memory) noexcept {
   if (!memory) return;
   memory = static_cast<char*>(memory) - before;
