@@ -65,6 +65,8 @@ void require_valid(const UnitVectors<T>& vectors, const char* side, int threads)
                                 shortest(vectors.z[bad]) + ") is not a unit vector with z >= 0");
 }
 
+void require_known(Frame frame) { to_string(frame); }  // throws
+
 template <class T>
 Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {
   return {vectors.x[q], vectors.y[q], vectors.z[q]};
@@ -97,6 +99,7 @@ class Question {
       all.insert(all.end(), power.begin(), power.end());
     }
     reflectance = &pattern.reflectance;
+    require_finite_sums(all, pattern.modes() == 0 ? 0 : pattern.by_powers.size() / pattern.modes());
     asked.powers = static_cast<int>(pattern.by_powers.size() / pattern.modes()) - 1;
     asked.coefficients = all.data();
     convert(asked, std::move(all));
@@ -114,6 +117,23 @@ class Question {
   const ReflectanceTable* reflectance = nullptr;
 
  private:
+  /// At each of the wavelengths: `all` has the coefficients of λ⁰, then those of λ¹, …
+  void require_finite_sums(std::span<const double> all, std::size_t powers) const {
+    if (wavelengths.empty() || powers == 0) return;
+    const double longest = *std::max_element(wavelengths.begin(), wavelengths.end());
+    const std::size_t count = all.size() / powers;
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      double sum = 0, power = 1;
+      for (std::size_t p = 0; p < powers; ++p, power *= longest) sum += std::abs(all[p * count + i]) * power;
+      largest = std::max(largest, sum);
+    }
+    for (const double value : reflectance->values) largest = std::max(largest, std::abs(value));
+    if (!(largest <= static_cast<double>(std::numeric_limits<T>::max())))
+      throw std::invalid_argument("evaluate: wavelength " + shortest(in_nanometres(longest)) +
+                                  " nm: its powers are too large");
+  }
+
   void convert(const KernelModel<double>& from, std::vector<double>&& own) {
     model = {from.form,
              from.projected,
@@ -204,6 +224,7 @@ void run_in_blocks(const Question<T>& question, const KernelPoints<T>& points, c
 template <class T, class GeometryOf, class Finish>
 void run(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out, std::size_t count,
          const BatchOptions& options, GeometryOf geometry, Finish finish) {
+  require_known(options.frame);
   in_parts(count, options.threads, [&](std::size_t first, std::size_t part) {
     if (options.frame == Frame::xy && !question.reflectance)
       run_kernel(question.model, from(points, first), from(out, first), part);

@@ -35,6 +35,21 @@ void require_weights(std::span<const Mueller> weights, std::size_t samples) {
         throw std::invalid_argument("fit: weight " + shortest(weight) + " of sample " + std::to_string(s + 1));
 }
 
+/// Squares of rows are added up: what is larger than this would leave no finite sum of a million of them.
+constexpr double largest_value = 1e150;
+
+/// Nothing is added if this throws.
+void require_moderate(std::span<const Sample> samples, std::span<const Mueller> weights) {
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    for (std::size_t e = 0; e < 16; ++e) {
+      const double value = std::abs(e == 0 ? samples[s].f11 : samples[s].normalized.elements[e]);
+      const double root = weights.empty() ? 1 : std::sqrt(weights[s].elements[e]);
+      if (root * std::max(value, 1.0) > largest_value)
+        throw std::invalid_argument("fit: sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
+                                    shortest(value) + " with weight " + shortest(root * root) + " is too large");
+    }
+}
+
 /// K at the directions of some samples; the values of each function stand side by side.
 class Tables {
  public:
@@ -147,6 +162,7 @@ struct FitAccumulator::Folding {
 void FitAccumulator::add(std::span<const Sample> samples, std::span<const Mueller> weights) {
   require_valid(samples);
   require_weights(weights, samples.size());
+  require_moderate(samples, weights);
   std::map<AtWavelength*, std::vector<std::size_t>> members;
   for (std::size_t s = 0; s < samples.size(); ++s) members[&slot(samples[s].wavelength)].push_back(s);
   std::vector<Folding> all;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,9 +27,13 @@ void in_parts(std::size_t count, int threads, Part part) {
   const std::size_t each = (count / parts + 63) / 64 * 64;  // no two threads write to one cache line
   std::vector<std::jthread> others;
   if (parts > 1) others.reserve(parts - 1);
-  for (std::size_t first = each; first < count; first += each)
-    others.emplace_back([=] { part(first, std::min(each, count - first)); });
+  std::size_t first = each;
+  try {
+    for (; first < count; first += each) others.emplace_back([=] { part(first, std::min(each, count - first)); });
+  } catch (const std::system_error&) {  // no more threads to be had: this one does the rest
+  }
   part(std::size_t{0}, std::min(each, count));
+  if (first < count) part(first, count - first);
 }
 
 /// The first index at which a part finds something: find(first, count) returns it, or first + count.

@@ -11,6 +11,7 @@
 
 #include "cases.hpp"
 #include "mmbrdf/dataset.hpp"
+#include "mmbrdf/materials.hpp"
 #include "random_model.hpp"
 
 using namespace mmbrdf;
@@ -232,6 +233,35 @@ TEST(Batch, RefusesSizesThatDoNotAgree) {
   const VectorGeometries<double> uneven{vectors.incident(),
                                         {vectors.in[3], std::span(vectors.in[4]).first(2), vectors.in[5]}};
   EXPECT_EQ(message_of([&] { evaluate(model, uneven, three); }), "evaluate: reflected vectors with 3 x, 2 y and 3 z");
+}
+
+TEST(Batch, RefusesWavelengthsWhosePowersAreTooLarge) {
+  Model model = random_model(Family::isotropic, {2, 1}, max_power, 1);
+  const std::vector<Geometry> geometries = random_geometries(2, 1);
+  const PreparedModel prepared = prepare(model, 0.5);
+  const std::vector<double> long_waves{0.5, 5e4};  // λ⁹ = 2e42: too much for a float
+  BatchOptions options;
+  options.wavelengths = long_waves;
+  const Columns<float> vectors(geometries);
+  std::vector<float> numbers(32, -1);
+  EXPECT_THROW(evaluate(prepared, vectors.geometries(), numbers, options), std::invalid_argument);
+  EXPECT_EQ(numbers, std::vector<float>(32, -1));
+  std::vector<Mueller> out(2);
+  EXPECT_NO_THROW(evaluate(prepared, geometries, out, options));
+  for (FittedBlock& block : model.blocks)
+    for (double& a : block.coefficients) a = 1e270;
+  EXPECT_THROW(evaluate(prepare(model, 0.5), geometries, out, options), std::invalid_argument);
+}
+
+TEST(Batch, RefusesAFrameThatIsNoneOnAnyNumberOfThreads) {
+  const std::vector<Geometry> geometries = random_geometries(20000, 1);
+  std::vector<Mueller> out(geometries.size());
+  for (const int threads : {1, 2}) {
+    BatchOptions options;
+    options.frame = static_cast<Frame>(7);
+    options.threads = threads;
+    EXPECT_THROW(evaluate(prepare(material("ptfe"), 0.532), geometries, out, options), std::invalid_argument);
+  }
 }
 
 TEST(Batch, OfNothingIsNothing) {

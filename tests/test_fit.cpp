@@ -391,6 +391,12 @@ TEST(Fit, RefusesWhatItCannotFit) {
   std::vector<Mueller> weights(one.size());
   weights[6](2, 1) = -1;
   EXPECT_EQ(message_of([&] { accumulator.add(one, weights); }), "fit: weight -1 of sample 7");
+  weights.assign(one.size(), diagonal(1, 1, 1, 1));
+  weights[6](0, 0) = 1e300;
+  bad = one;
+  bad[6].f11 = 1e200;
+  EXPECT_EQ(message_of([&] { accumulator.add(bad, weights); }),
+            "fit: sample 7: f11 = 1e+200 with weight 1e+300 is too large");
   EXPECT_EQ(accumulator.samples(), 0);
   EXPECT_THROW(accumulator.merge(FitAccumulator({Family::germer2017, {7, 4}})), std::invalid_argument);
   bad = one;

@@ -49,7 +49,7 @@ class Report {
 
 std::vector<const Kernel*> kernels_that_run_here();
 
-/// Geometries that fill the first-level cache together with their matrices once, or no cache at all.
+/// Geometries that stay in the second-level cache together with their matrices, 352 KB, or in no cache.
 inline constexpr std::size_t in_cache = 2000, beyond_cache = 1 << 20;
 
 void register_limits();

@@ -48,6 +48,8 @@ class Broadcast {
   const std::vector<py::ssize_t>& shape() const { return shape_; }
   std::size_t size() const { return size_; }
 
+  const Doubles& array(std::size_t which) const { return operands_[which].array; }
+
   /// How many numbers were given for one of the operands.
   std::size_t given(std::size_t which) const { return static_cast<std::size_t>(operands_[which].array.size()); }
 

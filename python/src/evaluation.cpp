@@ -12,18 +12,22 @@ namespace mmbrdf::python {
 namespace {
 
 /// The array that the caller gave for the result, or a new one.
-py::array_t<double> room_for_matrices(const Broadcast& broadcast, const std::optional<py::array>& out) {
-  if (!out) return new_array<double>(broadcast, {4, 4});
-  std::vector<py::ssize_t> shape = broadcast.shape();
+py::array_t<double> room_for_matrices(const Question& question, const std::optional<py::array>& out) {
+  if (!out) return new_array<double>(question.broadcast(), {4, 4});
+  std::vector<py::ssize_t> shape = question.broadcast().shape();
   shape.insert(shape.end(), {4, 4});
   const bool fits = std::equal(shape.begin(), shape.end(), out->shape(), out->shape() + out->ndim());
   if (!fits || !py::isinstance<py::array_t<double, py::array::c_style>>(*out) || !out->writeable())
     throw std::invalid_argument("out: must be a writable array of float64 in C order, of the shape of the result");
+  const py::object shares = py::module_::import("numpy").attr("may_share_memory");
+  for (std::size_t a = 0; a < 5; ++a)
+    if (shares(*out, question.broadcast().array(a)).cast<bool>())
+      throw std::invalid_argument("out: shares memory with an argument");
   return py::array_t<double>(*out);
 }
 
 py::object evaluate(const Question& question, Frame frame, int threads, const std::optional<py::array>& given) {
-  auto result = room_for_matrices(question.broadcast(), given);
+  auto result = room_for_matrices(question, given);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());  // sixteen doubles each
   Range range(question.model());
   without_gil([&] {
@@ -180,7 +184,8 @@ constexpr const char* evaluate_doc =
     "as_printed  published coefficients: the sum at the azimuths given, to compare only\n"
     "threads  how many at most; None or 0: as many as there are cores\n"
     "as_xarray  an xarray.DataArray with named axes, units and conventions, which to_netcdf() can write\n"
-    "out        an array of float64 in C order for the result, which is then not allocated anew\n\n"
+    "out        an array of float64 in C order for the result, which is then not allocated anew; after\n"
+    "           an error a part of it may be written\n\n"
     "Warns (ExtrapolationWarning) of geometries outside the fitted range. Raises ValueError for angles outside\n"
     "[-90, 90] degrees, shapes that do not broadcast, and a wavelength that is missing or not positive.";
 

@@ -157,6 +157,9 @@ def test_the_result_may_go_into_an_array_that_is_there(ptfe):
     ):
         with pytest.raises(ValueError, match="out: must be"):
             ptfe.evaluate(532, 45, 0, theta, 180, out=wrong)
+    memory = np.zeros(96)
+    with pytest.raises(ValueError, match="out: shares memory"):
+        ptfe.evaluate(532, 45, 0, memory[:6].reshape(2, 3), 180, out=memory.reshape(2, 3, 4, 4))
 
 
 def test_every_number_of_threads_gives_the_same_bits(ptfe):
