@@ -125,6 +125,9 @@ class FileEvaluator {
       const Rows rows = source_.rows(p.piece);
       p.rows = static_cast<long>(rows.size());
       p.outside = write(source_, rows, p.out);
+      if (rows.error) {
+        throw *rows.error;
+      }
     };
   }
 

@@ -63,12 +63,17 @@ Rows rows_of_csv(const CsvReader& whole, const GeometryColumns& columns, const P
   std::istream in(&memory);
   CsvReader reader(in, whole, piece.before);
   Rows rows;
-  while (reader.next()) {
-    rows.wavelengths.push_back(columns.wavelength(reader));
-    rows.geometries.push_back(columns.geometry(reader));
-    rows.numbers.push_back(reader.line());
-    rows.all_text += reader.text();
-    rows.text_ends.push_back(rows.all_text.size());
+  try {
+    while (reader.next()) {
+      const double wavelength = columns.wavelength(reader);
+      rows.geometries.push_back(columns.geometry(reader));
+      rows.wavelengths.push_back(wavelength);
+      rows.numbers.push_back(reader.line());
+      rows.all_text += reader.text();
+      rows.text_ends.push_back(rows.all_text.size());
+    }
+  } catch (const std::runtime_error& error) {
+    rows.error = error;
   }
   return rows;
 }
@@ -120,13 +125,16 @@ class NpyRows {
     count_ = shape[0];
   }
 
+  /// Of a file that is too short, first the rows that there are: one of them may be wrong.
   bool next(Piece& piece) {
     const std::size_t count = std::min(rows_at_once, count_ - read_), width = 8 * npy_columns.size();
     piece.before = static_cast<long>(read_);
     piece.bytes.resize(count * width);
     in_.read(piece.bytes.data(), static_cast<std::streamsize>(piece.bytes.size()));
-    read_ += static_cast<std::size_t>(in_.gcount()) / width;
-    if (static_cast<std::size_t>(in_.gcount()) != piece.bytes.size()) {
+    const std::size_t there = static_cast<std::size_t>(in_.gcount()) / width;
+    piece.bytes.resize(there * width);
+    read_ += there;
+    if (there == 0 && count > 0) {
       throw npy_error(name_, 0, "ends after " + std::to_string(read_) + " of " + std::to_string(count_) + " rows");
     }
     if (count == 0 && in_.peek() != std::istream::traits_type::eof()) {
@@ -140,6 +148,14 @@ class NpyRows {
   std::string name_;
   std::size_t count_ = 0, read_ = 0;
 };
+
+double wavelength_of(double nanometres, long number, const std::string& name) {
+  const double wavelength = nanometres / 1000;
+  if (!(wavelength > 0) || !std::isfinite(wavelength)) {
+    throw npy_error(name, number, "wavelength_nm: " + shortest(nanometres) + ": a wavelength must be positive");
+  }
+  return wavelength;
+}
 
 Direction direction_of(double theta, double phi, const char* column, long number, const std::string& name) {
   if (!(std::abs(theta) <= 90)) {
@@ -161,14 +177,16 @@ Rows rows_of_npy(const std::string& name, const Piece& piece) {
   const char* next = piece.bytes.data();
   for (std::size_t row = 0; row < count; ++row, next += 8 * npy_columns.size()) {
     const long number = piece.before + static_cast<long>(row) + 1;
-    const double wavelength = from_npy(next) / 1000;
-    if (!(wavelength > 0) || !std::isfinite(wavelength)) {
-      throw npy_error(name, number, "wavelength_nm: " + shortest(from_npy(next)) + ": a wavelength must be positive");
+    try {
+      const double wavelength = wavelength_of(from_npy(next), number, name);
+      rows.geometries.push_back({direction_of(from_npy(next + 8), from_npy(next + 16), "theta_i_deg", number, name),
+                                 direction_of(from_npy(next + 24), from_npy(next + 32), "theta_r_deg", number, name)});
+      rows.wavelengths.push_back(wavelength);
+      rows.numbers.push_back(number);
+    } catch (const std::runtime_error& error) {
+      rows.error = error;
+      break;
     }
-    rows.wavelengths.push_back(wavelength);
-    rows.geometries.push_back({direction_of(from_npy(next + 8), from_npy(next + 16), "theta_i_deg", number, name),
-                               direction_of(from_npy(next + 24), from_npy(next + 32), "theta_r_deg", number, name)});
-    rows.numbers.push_back(number);
   }
   return rows;
 }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <istream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ struct Rows {
   std::string all_text;  ///< the fields of the input, one row behind the other
   std::vector<std::size_t> text_ends;
 
+  std::optional<std::runtime_error> error;  ///< of the row behind these, which cannot be read
+
   std::size_t size() const { return geometries.size(); }
 };
 
@@ -38,8 +41,8 @@ struct Rows {
 struct GeometrySource {
   std::vector<std::string> columns;
   bool has_wavelengths = true;
-  std::function<bool(Piece&)> next;                                               ///< false at the end
-  std::function<Rows(const Piece&)> rows;                                         ///< in any thread
+  std::function<bool(Piece&)> next;        ///< false at the end
+  std::function<Rows(const Piece&)> rows;  ///< in any thread; up to the first error
   std::function<std::runtime_error(long number, const std::string& text)> error;  ///< of a row; 0: of the file
 };
 

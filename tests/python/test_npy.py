@@ -111,6 +111,18 @@ def test_arrays_of_another_kind_are_refused_by_name(tmp_path, name):
     assert error_of(tmp_path, "rows.npy").startswith(f"mmbrdf: rows.npy: {message}")
 
 
+def test_the_first_wrong_row_is_named_also_before_one_that_cannot_be_read_or_is_not_there(tmp_path):
+    rows = geometries(5000)
+    rows[4500, 0] = 2e9  # read, but not evaluated
+    rows[4600, 3] = 95  # not read
+    np.save(tmp_path / "rows.npy", rows)
+    message = "mmbrdf: rows.npy: row 4501: wavelength 2e+09 nm is more than a metre\n"
+    assert error_of(tmp_path, "rows.npy") == message
+    whole = (tmp_path / "rows.npy").read_bytes()
+    (tmp_path / "rows.npy").write_bytes(whole[:-1])
+    assert error_of(tmp_path, "rows.npy") == message
+
+
 def test_files_that_end_early_or_late_are_refused(tmp_path):
     np.save(tmp_path / "rows.npy", geometries(5000))
     whole = (tmp_path / "rows.npy").read_bytes()
