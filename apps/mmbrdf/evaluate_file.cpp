@@ -94,6 +94,9 @@ class FileEvaluator {
 
   /// The rest of the file.
   void write(std::ostream& out) {
+    if (evaluated_.binary) {
+      go_to_beginning(out);  // better refused now than after all the work
+    }
     run_in_order<EvaluatedPiece>({.read = [this](EvaluatedPiece& p) { return source_.next(p.piece); },
                                   .worker = [this] { return worker(); },
                                   .write =
@@ -105,11 +108,8 @@ class FileEvaluator {
                                       }},
                                  evaluated_.threads);
     put(out, header_);  // of no rows
-    if (evaluated_.binary && out) {
-      if (!out.seekp(0)) {
-        throw std::runtime_error(
-            output_ + ": a .npy file begins with the number of its rows, which cannot be written at the end");
-      }
+    if (evaluated_.binary && out.flush()) {
+      go_to_beginning(out);
       put(out, npy_header({static_cast<std::size_t>(progress_.rows()), 4, 4}));
     }
   }
@@ -120,6 +120,13 @@ class FileEvaluator {
   }
 
  private:
+  void go_to_beginning(std::ostream& out) const {
+    if (!out.seekp(0)) {
+      throw std::runtime_error(output_ +
+                               ": a .npy file begins with the number of its rows, which cannot be written at the end");
+    }
+  }
+
   std::function<void(EvaluatedPiece&)> worker() const {
     return [this, write = evaluated_.writer()](EvaluatedPiece& p) {
       const Rows rows = source_.rows(p.piece);
