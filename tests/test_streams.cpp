@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -121,6 +123,22 @@ TEST(Pieces, BeforeTheFirstErrorAreWrittenAndThatErrorIsThrown) {
     EXPECT_THROW(at_the_end.run(threads), std::runtime_error);
     EXPECT_EQ(at_the_end.written, Squares::list(40));
   }
+}
+
+TEST(Pieces, AreNotWorkedOnByMoreThreadsThanThereArePiecesButOne) {
+  std::mutex mutex;
+  std::set<std::thread::id> readers;
+  int read = 0;
+  run_in_order<int>({.read =
+                         [&](int&) {
+                           const std::lock_guard lock(mutex);
+                           readers.insert(std::this_thread::get_id());
+                           return ++read <= 3;
+                         },
+                     .worker = [] { return [](int&) {}; },
+                     .write = [](int&) { return true; }},
+                    1000);
+  EXPECT_LE(readers.size(), 4);
 }
 
 TEST(Pieces, EndWhereNoMoreCanBeWritten) {

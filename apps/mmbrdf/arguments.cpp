@@ -61,6 +61,15 @@ int whole_number(const std::string& text) {
   return value;
 }
 
+int thread_count(const std::string& text) {
+  constexpr int most = 1024;
+  int value = 0;
+  if (!read(text, value) || value < 0 || value > most) {
+    throw wrong(text, "a whole number from 0 to " + std::to_string(most));
+  }
+  return value;
+}
+
 unsigned long seed(const std::string& text) {
   unsigned long value = 0;
   if (!read(text, value)) {

@@ -21,6 +21,7 @@ namespace mmbrdf::program {
 
 double number(const std::string& text);     ///< finite
 int whole_number(const std::string& text);  ///< 0 or more
+int thread_count(const std::string& text);  ///< 0 to 1024
 unsigned long seed(const std::string& text);
 
 /// THETA,PHI in degrees, as typed.

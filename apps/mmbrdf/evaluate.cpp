@@ -132,7 +132,7 @@ Run evaluate_command(CLI::App& app, const CommandLine&) {
   declared.output->needs(declared.geometries);
   app.add_flag("--normalized", o->normalized, "f11 in sr^-1, and all others divided by it (m12 ... m44)");
   add_as_printed(app, *o);
-  add_option(app, "--threads", o->threads, whole_number, "N", "For the rows of a file [0: as many as there are cores]")
+  add_option(app, "--threads", o->threads, thread_count, "N", "For the rows of a file [0: as many as there are cores]")
       ->needs(declared.geometries);
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text; csv for files]");
   app.footer(footer);

@@ -2,8 +2,10 @@
 // Reading, computing and writing at the same time, in the order of the input.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <mutex>
@@ -26,10 +28,26 @@ namespace in_order {
 template <class Piece>
 class Line {
  public:
-  explicit Line(const Stages<Piece>& stages) : stages_(stages) {}
+  Line(const Stages<Piece>& stages, int threads) : stages_(stages), more_threads_(std::max(threads, 1) - 1) {
+    others_.reserve(static_cast<std::size_t>(more_threads_));
+  }
 
-  /// Until the end. To be run by as many threads as shall work on pieces.
+  /// Until the end, also of the other threads.
   void run() {
+    work();
+    std::vector<std::jthread> others;
+    const std::lock_guard lock(reading_);  // who has it from now on starts no more threads
+    others.swap(others_);
+  }
+
+  void throw_error() const {
+    if (error_) {
+      std::rethrow_exception(error_);
+    }
+  }
+
+ private:
+  void work() {
     std::function<void(Piece&)> compute;
     while (!stopped_) {
       Piece piece;
@@ -50,13 +68,6 @@ class Line {
     }
   }
 
-  void throw_error() const {
-    if (error_) {
-      std::rethrow_exception(error_);
-    }
-  }
-
- private:
   long next(Piece& piece, bool& there, std::exception_ptr& error) {
     const std::lock_guard lock(reading_);
     try {
@@ -64,7 +75,20 @@ class Line {
     } catch (...) {
       error = std::current_exception();
     }
+    if (there && more_threads_ > 0 && !stopped_) {
+      add_thread();
+    }
     return next_++;
+  }
+
+  /// For the next piece, so that there are no more threads than pieces but one.
+  void add_thread() {
+    try {
+      others_.emplace_back([this] { work(); });
+      --more_threads_;
+    } catch (const std::system_error&) {  // no more threads to be had: those that there are do the work
+      more_threads_ = 0;
+    }
   }
 
   /// What went wrong with a piece counts only if nothing did before it.
@@ -90,6 +114,8 @@ class Line {
   const Stages<Piece>& stages_;
   std::mutex reading_, writing_;
   std::condition_variable turn_;
+  int more_threads_;  // that may be started
+  std::vector<std::jthread> others_;
   long next_ = 0, written_ = 0;
   std::atomic<bool> stopped_ = false;
   std::exception_ptr error_;
@@ -97,21 +123,12 @@ class Line {
 
 }  // namespace in_order
 
-/// Runs the stages in so many threads, each of which holds one piece. Throws what a stage throws, the first in the
-/// order of the input; what was read before that is written.
+/// Runs the stages in at most so many threads, each of which holds one piece. Throws what a stage throws, the first in
+/// the order of the input; what was read before that is written.
 template <class Piece>
 void run_in_order(const Stages<Piece>& stages, int threads) {
-  in_order::Line<Piece> line(stages);
-  {
-    std::vector<std::jthread> others;
-    try {
-      for (int i = 1; i < threads; ++i) {
-        others.emplace_back([&line] { line.run(); });
-      }
-    } catch (const std::system_error&) {  // no more threads to be had: those that there are do the work
-    }
-    line.run();
-  }
+  in_order::Line<Piece> line(stages, threads);
+  line.run();
   line.throw_error();
 }
 
