@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -122,6 +123,32 @@ TEST(Pieces, BeforeTheFirstErrorAreWrittenAndThatErrorIsThrown) {
     EXPECT_EQ(in_the_middle.written, Squares::list(40));
     EXPECT_THROW(at_the_end.run(threads), std::runtime_error);
     EXPECT_EQ(at_the_end.written, Squares::list(40));
+  }
+}
+
+TEST(Pieces, ThatDoNotComeAreNotWaitedForAfterAnError) {
+  for (const int threads : {1, 2, 8}) {
+    std::atomic<bool> ended = false;
+    int next = 0;
+    const Stages<int> stages{.read =
+                                 [&](int& number) {
+                                   number = next++;
+                                   if (number == 4) ended.wait(false);
+                                   return number < 4;
+                                 },
+                             .worker =
+                                 [] {
+                                   return [](int& number) {
+                                     if (number == 3) throw std::runtime_error("compute 3");
+                                   };
+                                 },
+                             .write = [](int&) { return true; },
+                             .end_input =
+                                 [&] {
+                                   ended = true;
+                                   ended.notify_all();
+                                 }};
+    EXPECT_THROW(run_in_order(stages, threads), std::runtime_error);
   }
 }
 

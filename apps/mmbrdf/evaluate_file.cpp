@@ -18,6 +18,7 @@
 #include "npy.hpp"
 #include "output.hpp"
 #include "recent_wavelengths.hpp"
+#include "waiting_input.hpp"
 
 namespace mmbrdf::program {
 
@@ -80,8 +81,9 @@ struct EvaluatedPiece {
 class FileEvaluator {
  public:
   FileEvaluator(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
-                const std::string& name)
+                const std::string& name, std::function<void()> end_input)
       : evaluated_(evaluated),
+        end_input_(std::move(end_input)),
         output_(what.output),
         source_(open_geometries(in, name, what.wavelength > 0 ? what.wavelength : own_wavelength(model),
                                 !evaluated.binary)),
@@ -105,7 +107,8 @@ class FileEvaluator {
                                         progress_.add(p.rows);
                                         put(out, p.out.insert(0, std::exchange(header_, "")));
                                         return static_cast<bool>(out);  // else write_file tells why
-                                      }},
+                                      },
+                                  .end_input = end_input_},
                                  evaluated_.threads);
     put(out, header_);  // of no rows
     if (evaluated_.binary && out.flush()) {
@@ -146,6 +149,7 @@ class FileEvaluator {
   }
 
   const Evaluated& evaluated_;
+  std::function<void()> end_input_;
   std::string output_;
   GeometrySource source_;
   std::string header_;
@@ -155,8 +159,8 @@ class FileEvaluator {
 };
 
 void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
-                     const std::string& name) {
-  FileEvaluator evaluator(model, what, evaluated, in, name);
+                     const std::string& name, const std::function<void()>& end_input = {}) {
+  FileEvaluator evaluator(model, what, evaluated, in, name, end_input);
   if (is_standard_output(what.output)) {
     evaluator.write(std::cout);
   } else {
@@ -289,6 +293,12 @@ Evaluated one_by_one(const AddedColumns& columns) {
 }
 
 void evaluate_file(const Model& model, const RowsOfFile& what, const Evaluated& evaluated) {
+  if (may_wait(what.input)) {
+    WaitingInput input(what.input);
+    std::istream in(&input);
+    return evaluate_stream(model, what, evaluated, in, what.input == "-" ? "standard input" : what.input,
+                           [&input] { input.end(); });
+  }
   read_input(what.input,
              [&](std::istream& in, const std::string& name) { evaluate_stream(model, what, evaluated, in, name); });
 }

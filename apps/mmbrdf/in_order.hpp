@@ -20,7 +20,8 @@ template <class Piece>
 struct Stages {
   std::function<bool(Piece&)> read;                     ///< false at the end. One at a time, in order
   std::function<std::function<void(Piece&)>()> worker;  ///< computes; one for each thread, any number at a time
-  std::function<bool(Piece&)> write;  ///< false if no more can be written. One at a time, in the order of reading
+  std::function<bool(Piece&)> write;     ///< false if no more can be written. One at a time, in the order of reading
+  std::function<void()> end_input = {};  ///< if there is any: makes a read that waits return. From any thread
 };
 
 namespace in_order {
@@ -55,10 +56,10 @@ class Line {
       bool there = false;
       const long number = next(piece, there, error);
       try {
-        if (there && !compute) {
-          compute = stages_.worker();
-        }
-        if (there) {
+        if (there && !stopped_) {
+          if (!compute) {
+            compute = stages_.worker();
+          }
           compute(piece);
         }
       } catch (...) {
@@ -109,6 +110,9 @@ class Line {
     }
     ++written_;
     turn_.notify_all();
+    if (stopped_ && stages_.end_input) {
+      stages_.end_input();
+    }
   }
 
   const Stages<Piece>& stages_;
