@@ -65,7 +65,10 @@ void require_valid(const UnitVectors<T>& vectors, const char* side, int threads)
                                 shortest(vectors.z[bad]) + ") is not a unit vector with z >= 0");
 }
 
-void require_known(Frame frame) { to_string(frame); }  // throws
+void require_known(Frame frame) {
+  if (frame != Frame::xy && frame != Frame::sp && frame != Frame::scattering_plane)
+    throw std::invalid_argument("evaluate: frame " + std::to_string(static_cast<int>(frame)) + " is none");
+}
 
 template <class T>
 Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {

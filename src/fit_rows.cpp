@@ -43,10 +43,10 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
   for (std::size_t s = 0; s < samples.size(); ++s)
     for (std::size_t e = 0; e < 16; ++e) {
       const double value = std::abs(e == 0 ? samples[s].f11 : samples[s].normalized.elements[e]);
-      const double root = weights.empty() ? 1 : std::sqrt(weights[s].elements[e]);
-      if (root * std::max(value, 1.0) > largest_value)
+      const double weight = weights.empty() ? 1 : weights[s].elements[e];
+      if (std::sqrt(weight) * std::max(value, 1.0) > largest_value)
         throw std::invalid_argument("fit: sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
-                                    shortest(value) + " with weight " + shortest(root * root) + " is too large");
+                                    shortest(value) + " with weight " + shortest(weight) + " is too large");
     }
 }
 
