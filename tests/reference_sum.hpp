@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -51,6 +52,17 @@ inline Mueller sum_in_extended_precision(const Model& model, double wavelength, 
   const Long f11 = sums[0] * model.reflectance.at(wavelength);
   for (std::size_t e = 0; e < 16; ++e) result.elements[e] = static_cast<double>(e == 0 ? f11 : f11 * sums[e]);
   return result;
+}
+
+/// The largest difference of two elements, relative to m11 of the second; infinite if a number is not finite.
+inline double deviation_of_m11(const Mueller& a, const Mueller& b) {
+  double largest = 0;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const double difference = std::abs(a.elements[e] - b.elements[e]);
+    if (!std::isfinite(difference)) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, difference);
+  }
+  return largest / std::abs(b(0, 0));
 }
 
 }  // namespace mmbrdf

@@ -66,9 +66,6 @@ double deviation(const Mueller& a, const Mueller& b) {
   return largest(a - b) / std::max(largest(a), largest(b));
 }
 
-/// The largest difference of two elements, relative to m11 of the second.
-double deviation_of_m11(const Mueller& a, const Mueller& b) { return largest(a - b) / std::abs(b(0, 0)); }
-
 // inRange() alone would begin with numbers near `low` only.
 double any_theta() {
   const int kind = *rc::gen::inRange(0, 10);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the Python package share."""
 
+import functools
 import os
 import subprocess
 from pathlib import Path
@@ -32,21 +33,21 @@ def anisotropic():
 
 
 @pytest.fixture
-def program(tmp_path):
-    """Runs the program in a folder of its own; returns what it prints."""
+def printed_by(tmp_path):
+    """Runs a command in a folder of its own; returns what it prints."""
 
-    def run(*arguments):
-        done = subprocess.run(
-            [os.environ["MMBRDF_PROGRAM"], *map(str, arguments)],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+    def run(*command):
+        done = subprocess.run(list(map(str, command)), cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         return done.stdout
 
     return run
+
+
+@pytest.fixture
+def program(printed_by):
+    """Runs the program with some arguments; returns what it prints."""
+    return functools.partial(printed_by, os.environ["MMBRDF_PROGRAM"])
 
 
 @pytest.fixture(scope="session")
@@ -69,3 +70,9 @@ def random_matrices():
         product = np.einsum("...ij,...kl->...ikjl", jones, jones.conj()).reshape(5, 7, 4, 4)
         matrices += np.real(to_mueller @ product @ np.linalg.inv(to_mueller)) / 20
     return matrices
+
+
+@pytest.fixture(scope="session")
+def data(ptfe):
+    """A measurement without noise, so that every cell is known."""
+    return mmbrdf.simulate(ptfe, 532, mmbrdf.germer2017_grid())
