@@ -18,9 +18,7 @@ TEST(GaussLegendre, IsExactForPolynomialsUpToDegreeTwiceTheNodesLessOne) {
     }
     double beyond = 0;
     for (const Node& node : gauss_legendre(count)) beyond += node.weight * std::pow(node.x, 2 * count);
-    if (count <= 5) {
-      EXPECT_GT(std::abs(beyond - 1.0 / (2 * count + 1)), 1e-8) << count;
-    }
+    if (count <= 5) EXPECT_GT(std::abs(beyond - 1.0 / (2 * count + 1)), 1e-8) << count;
   }
   EXPECT_THROW(gauss_legendre(0), std::invalid_argument);
 }

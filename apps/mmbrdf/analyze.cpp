@@ -31,17 +31,14 @@ double uncertainty_from(const std::string& text, ErrorOf what) {
   const std::string unit = angle ? "deg" : "%";
   const bool with_unit = text.ends_with(unit);
   const double value = number(with_unit ? text.substr(0, text.size() - unit.size()) : text);
-  if (value < 0) {
-    throw std::invalid_argument("\"" + text + "\": expected 0 or more");
-  }
+  if (value < 0) throw std::invalid_argument("\"" + text + "\": expected 0 or more");
   return angle ? radians(value) : with_unit ? value / 100 : value;
 }
 
 TypeBTerm term_from(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos) {
+  if (equals == std::string::npos)
     throw std::invalid_argument("\"" + text + "\": expected [NAME:]KIND=VALUE, as in scale=0.3% or plaque:scale=0.003");
-  }
   const std::string name = text.substr(0, equals);
   const std::size_t colon = name.rfind(':');
   const ErrorOf what = error_from(colon == std::string::npos ? name : name.substr(colon + 1));
@@ -51,9 +48,7 @@ TypeBTerm term_from(const std::string& text) {
 
 Stokes stokes_from(const std::string& text) {
   const std::vector<double> values = numbers(text);
-  if (values.size() != 4) {
-    throw std::invalid_argument("\"" + text + "\": expected S1,S2,S3,S4");
-  }
+  if (values.size() != 4) throw std::invalid_argument("\"" + text + "\": expected S1,S2,S3,S4");
   return {values[0], values[1], values[2], values[3]};
 }
 
@@ -61,9 +56,8 @@ int draws_from(const std::string& text) {
   const int count = whole_number(text);
   constexpr int most = 100000;  // 1 GB
   constexpr int least = 100;    // fewer have no 95 % interval
-  if (count < least || count > most) {
+  if (count < least || count > most)
     throw std::invalid_argument("\"" + text + "\": expected " + std::to_string(least) + " to " + std::to_string(most));
-  }
   return count;
 }
 
@@ -86,9 +80,7 @@ std::unique_ptr<Analyzer> analyzer_of(const Model& model, const Options& options
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
   }
-  if (!analyzer->unknown_uncertainty().empty()) {
-    warn("uncertainties are not known: " + analyzer->unknown_uncertainty());
-  }
+  if (!analyzer->unknown_uncertainty().empty()) warn("uncertainties are not known: " + analyzer->unknown_uncertainty());
   return analyzer;
 }
 
@@ -133,11 +125,10 @@ void analyze_scan(const Options& options) {
   const auto analyzer = analyzer_of(model, options);
   const AddedColumns columns = analyzed_columns(*analyzer);
   long outside = 0;
-  if (is_standard_output(options.output)) {
+  if (is_standard_output(options.output))
     outside = write_scan(std::cout, model, options, columns);
-  } else {
+  else
     write_file(options.output, [&](std::ostream& out) { outside = write_scan(out, model, options, columns); });
-  }
   report_rows(outside, row_count(options.scans), unknown_range_line(base_name(options.model), model.validity));
 }
 
@@ -148,31 +139,17 @@ void analyze_file(const Options& options) {
 }
 
 void analyze(Options& options) {
-  if (is_npy(options.output)) {
-    throw CLI::ValidationError("--output", "only evaluate writes .npy");
-  }
+  if (is_npy(options.output)) throw CLI::ValidationError("--output", "only evaluate writes .npy");
   const bool rows = !options.geometries.empty() || !options.scan_texts.empty();
-  for (const std::string& text : options.scan_texts) {
-    options.scans.push_back(parsed("--scan", text, scan_from));
-  }
-  for (const std::string& text : options.term_texts) {
+  for (const std::string& text : options.scan_texts) options.scans.push_back(parsed("--scan", text, scan_from));
+  for (const std::string& text : options.term_texts)
     options.analysis.terms.push_back(parsed("--term", text, term_from));
-  }
-  if (rows && options.format && *options.format != Format::csv) {
+  if (rows && options.format && *options.format != Format::csv)
     throw CLI::ValidationError("--format", "only csv goes with --geometries and --scan");
-  }
-  if (options.analysis.light) {
-    require_possible(*options.analysis.light);
-  }
-  if (!rows && !options.output.empty()) {
-    throw CLI::ValidationError("--output", "needs --geometries or --scan");
-  }
-  if (!options.geometries.empty()) {
-    return analyze_file(options);
-  }
-  if (!options.scans.empty()) {
-    return analyze_scan(options);
-  }
+  if (options.analysis.light) require_possible(*options.analysis.light);
+  if (!rows && !options.output.empty()) throw CLI::ValidationError("--output", "needs --geometries or --scan");
+  if (!options.geometries.empty()) return analyze_file(options);
+  if (!options.scans.empty()) return analyze_scan(options);
   require_directions(options, "--geometries, --scan");
   analyze_one(options);
 }

@@ -16,9 +16,7 @@ const char* unit_of(const std::string& quantity) { return quantity.starts_with("
 
 std::string validity_words(Outside outside) {
   const std::string name = to_string(outside);
-  if (outside == inside) {
-    return name + ", inside the fitted range";
-  }
+  if (outside == inside) return name + ", inside the fitted range";
   return leaves_known_range(outside) ? name + ", outside the fitted range: the model extrapolates"
                                      : name + ", the fitted range is not known";
 }
@@ -30,9 +28,7 @@ std::string estimable_words(const std::optional<bool>& estimable) {
 }
 
 std::string realizable_words(const Analysis& a) {
-  if (a.realizable) {
-    return "yes, a scatterer can have this matrix";
-  }
+  if (a.realizable) return "yes, a scatterer can have this matrix";
   return a.elements(0, 0) > 0 ? "no, no scatterer can have this matrix: eigenvalue_min is negative"
                               : "no, no scatterer can have this matrix: f11 is not positive";
 }
@@ -91,9 +87,7 @@ struct Contribution {
 
 Contribution contribution(const MuellerCovariance& covariance, const Mueller& elements) {
   Contribution result{standard_uncertainty(covariance)(0, 0), std::nullopt};
-  if (elements(0, 0) > 0) {
-    result.depolarization = standard_uncertainty(depolarization_gradient(elements), covariance);
-  }
+  if (elements(0, 0) > 0) result.depolarization = standard_uncertainty(depolarization_gradient(elements), covariance);
   return result;
 }
 
@@ -115,9 +109,7 @@ std::vector<std::pair<std::string, Contribution>> contributions(const Budget& bu
   std::vector<std::pair<std::string, Contribution>> result;
   for (const BudgetTerm& term : budget.terms) {
     Contribution c = contribution(term.covariance, elements);
-    if (c.depolarization) {
-      c.depolarization = without_rounding(*c.depolarization, *total.depolarization);
-    }
+    if (c.depolarization) c.depolarization = without_rounding(*c.depolarization, *total.depolarization);
     result.emplace_back(term.name, c);
   }
   result.emplace_back("total", total);
@@ -130,9 +122,7 @@ void print_budget(const AnalysisReport& r) {
   std::cout << "\nterm                     u(f11)    share   u(depol.)    share\n";
   for (const auto& [name, c] : rows) {
     std::cout << format("%-20.20s ", name.c_str()) << with_share(c.f11, total.f11);
-    if (c.depolarization) {
-      std::cout << "  " << with_share(*c.depolarization, *total.depolarization);
-    }
+    if (c.depolarization) std::cout << "  " << with_share(*c.depolarization, *total.depolarization);
     std::cout << '\n';
   }
 }
@@ -142,13 +132,10 @@ nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
 }
 
 nlohmann::ordered_json rows_of(const std::optional<Mueller>& m) {
-  if (!m) {
-    return nullptr;
-  }
+  if (!m) return nullptr;
   nlohmann::ordered_json rows;
-  for (std::size_t row = 0; row < 4; ++row) {
+  for (std::size_t row = 0; row < 4; ++row)
     rows.push_back(std::vector<double>(&m->elements[4 * row], &m->elements[4 * row] + 4));
-  }
   return rows;
 }
 
@@ -168,9 +155,7 @@ void print_text(const AnalysisReport& r) {
                   .value = a.elements(0, 0),
                   .uncertainty = a.uncertainties ? std::optional((*a.uncertainties)(0, 0)) : std::nullopt},
                  a);
-  for (const Quantity& quantity : a.quantities) {
-    print_quantity(quantity, a);
-  }
+  for (const Quantity& quantity : a.quantities) print_quantity(quantity, a);
   std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
             << convention_note(r.question.frame) << ")" << (r.question.as_printed ? ", as printed" : "") << '\n';
   print_matrix(a.elements);
@@ -178,9 +163,7 @@ void print_text(const AnalysisReport& r) {
     std::cout << "its standard uncertainties\n";
     print_matrix(*a.uncertainties);
   }
-  if (a.budget && a.budget->terms.size() > 1) {
-    print_budget(r);
-  }
+  if (a.budget && a.budget->terms.size() > 1) print_budget(r);
 }
 
 void print_json(const AnalysisReport& r) {

@@ -35,16 +35,12 @@ void require_inside(Outside outside, const Validity& validity) {
     throw std::invalid_argument("outside the fitted range (" + to_string(outside) +
                                 "), refused by --strict: fitted are " + fitted_range(validity));
   }
-  if (outside != inside) {
-    throw std::invalid_argument("the fitted range is not known, refused by --strict");
-  }
+  if (outside != inside) throw std::invalid_argument("the fitted range is not known, refused by --strict");
 }
 
 void append(std::string& text, const std::optional<double>& value) {
   text += ',';
-  if (value) {
-    append_exact(text, *value);
-  }
+  if (value) append_exact(text, *value);
 }
 
 /// A quantity of a matrix in the sp frame; of incident light, too.
@@ -91,9 +87,7 @@ Quantity in_first_order(const Definition& definition, const Mueller& m, const St
   Quantity quantity{.name = definition.name};
   try {
     quantity.value = definition.value(m, light);
-    if (budget) {
-      quantity.uncertainty = standard_uncertainty(definition.gradient(m, light), budget->total);
-    }
+    if (budget) quantity.uncertainty = standard_uncertainty(definition.gradient(m, light), budget->total);
   } catch (const std::invalid_argument&) {
     return {.name = definition.name};
   }
@@ -107,9 +101,7 @@ void set_distribution(Quantity& quantity, const Definition& definition, const st
   values.reserve(drawn.size());
   quantity.uncertainty.reset();
   try {
-    for (const Mueller& m : drawn) {
-      values.push_back(definition.value(m, light));
-    }
+    for (const Mueller& m : drawn) values.push_back(definition.value(m, light));
   } catch (const std::invalid_argument&) {
     return;
   }
@@ -127,19 +119,14 @@ Analyzer::Analyzer(const Model& model, AnalysisOptions options)
       unknown_uncertainty_(why_uncertainty_is_unknown(model)),
       wavelengths_([this](double wavelength) { return prepared(wavelength); }, wavelengths_to_keep(options_.draws)) {
   require_semidefinite(model);
-  if (options_.draws > 0 && unknown_uncertainty_.empty()) {
+  if (options_.draws > 0 && unknown_uncertainty_.empty())
     draws_.emplace(model, options_.draws, options_.seed, options_.rotation);
-  }
 }
 
 Analyzer::AtWavelength Analyzer::prepared(double wavelength) const {
   AtWavelength result{prepare(model_, wavelength, options_.rotation), std::nullopt, {}};
-  if (unknown_uncertainty_.empty()) {
-    result.uncertainty = prepare_uncertainty(model_, wavelength, options_.rotation);
-  }
-  if (draws_) {
-    result.draws = draws_->at(wavelength);
-  }
+  if (unknown_uncertainty_.empty()) result.uncertainty = prepare_uncertainty(model_, wavelength, options_.rotation);
+  if (draws_) result.draws = draws_->at(wavelength);
   return result;
 }
 
@@ -151,11 +138,8 @@ Stokes Analyzer::light_sp(const Geometry& geometry) const {
 
 std::optional<Budget> Analyzer::budget_of(const AtWavelength& at, const Geometry& geometry) const {
   const bool grazing = std::cos(geometry.reflected.theta) < grazing_limit;
-  for (const TypeBTerm& term : options_.terms) {
-    if (term.what == ErrorOf::theta_r && grazing) {
-      return std::nullopt;  // it has no limit there
-    }
-  }
+  for (const TypeBTerm& term : options_.terms)
+    if (term.what == ErrorOf::theta_r && grazing) return std::nullopt;  // it has no limit there
   return at.uncertainty ? std::optional(budget(at.model, *at.uncertainty, options_.terms, geometry, Frame::sp))
                         : std::nullopt;
 }
@@ -164,16 +148,14 @@ std::vector<Quantity> Analyzer::quantities(const AtWavelength& at, const Geometr
                                            const Analysis& analysis) const {
   const Stokes light = light_sp(geometry);
   std::vector<Mueller> matrices;
-  if (draws_ && analysis.budget) {
+  if (draws_ && analysis.budget)
     matrices = drawn(at.draws, at.model, options_.terms, geometry, Frame::sp, options_.seed);
-  }
   std::vector<Quantity> result;
   for (const Definition& definition : definitions_for(options_)) {
     Quantity& quantity = result.emplace_back(in_first_order(definition, analysis.elements_sp, light, analysis.budget));
     quantity.has_interval = has_interval(definition, options_);
-    if (quantity.value && quantity.has_interval && !matrices.empty()) {
+    if (quantity.value && quantity.has_interval && !matrices.empty())
       set_distribution(quantity, definition, matrices, light);
-    }
   }
   return result;
 }
@@ -184,16 +166,11 @@ Analysis Analyzer::at(double wavelength, const Geometry& geometry) {
   a.elements = at.model.evaluate(geometry, options_.frame);
   a.elements_sp = at.model.evaluate(geometry, Frame::sp);
   a.outside = at.model.outside(geometry);
-  if (options_.strict) {
-    require_inside(a.outside, model_.validity);
-  }
+  if (options_.strict) require_inside(a.outside, model_.validity);
   a.budget = budget_of(at, geometry);
-  if (a.budget) {
+  if (a.budget)
     a.uncertainties = standard_uncertainty(change_frame(a.budget->total, geometry, Frame::sp, options_.frame));
-  }
-  if (at.uncertainty) {
-    a.estimable = at.uncertainty->estimable(geometry);
-  }
+  if (at.uncertainty) a.estimable = at.uncertainty->estimable(geometry);
   a.realizable = a.elements(0, 0) > 0 && realizable(a.elements);
   a.quantities = quantities(at, geometry, a);
   return a;
@@ -201,9 +178,7 @@ Analysis Analyzer::at(double wavelength, const Geometry& geometry) {
 
 std::string Analyzer::columns() const {
   std::string text = element_columns(false) + ",validity";
-  for (std::size_t element = 0; element < 16; ++element) {
-    text += ",u_f" + element_name(element);
-  }
+  for (std::size_t element = 0; element < 16; ++element) text += ",u_f" + element_name(element);
   for (const Definition& definition : definitions_for(options_)) {
     const std::string name = definition.name;
     text += "," + name + ",u_" + name;
@@ -218,9 +193,8 @@ AddedColumns analyzed_columns(Analyzer& analyzer) {
             const Analysis a = analyzer.at(wavelength, geometry);
             append_elements(text, a.elements);
             text += ',' + to_string(a.outside);
-            for (std::size_t element = 0; element < 16; ++element) {
+            for (std::size_t element = 0; element < 16; ++element)
               append(text, a.uncertainties ? std::optional(a.uncertainties->elements[element]) : std::nullopt);
-            }
             for (const Quantity& quantity : a.quantities) {
               append(text, quantity.value);
               append(text, quantity.uncertainty);

@@ -47,58 +47,45 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 
 double number(const std::string& text) {
   double value = 0;
-  if (!read(text, value) || !std::isfinite(value)) {
-    throw wrong(text, "a number");
-  }
+  if (!read(text, value) || !std::isfinite(value)) throw wrong(text, "a number");
   return value;
 }
 
 int whole_number(const std::string& text) {
   int value = 0;
-  if (!read(text, value) || value < 0) {
-    throw wrong(text, "a whole number of 0 or more");
-  }
+  if (!read(text, value) || value < 0) throw wrong(text, "a whole number of 0 or more");
   return value;
 }
 
 int thread_count(const std::string& text) {
   constexpr int most = 1024;
   int value = 0;
-  if (!read(text, value) || value < 0 || value > most) {
+  if (!read(text, value) || value < 0 || value > most)
     throw wrong(text, "a whole number from 0 to " + std::to_string(most));
-  }
   return value;
 }
 
 unsigned long seed(const std::string& text) {
   unsigned long value = 0;
-  if (!read(text, value)) {
-    throw wrong(text, "a whole number of 0 or more");
-  }
+  if (!read(text, value)) throw wrong(text, "a whole number of 0 or more");
   return value;
 }
 
 DirectionDegrees direction_degrees(const std::string& text) {
   const auto values = two_numbers(text);
-  if (!values) {
-    throw wrong(text, "THETA,PHI in degrees");
-  }
+  if (!values) throw wrong(text, "THETA,PHI in degrees");
   return {values->first, values->second};
 }
 
 AnglesDegrees angles_degrees(const std::string& text) {
   const auto values = two_numbers(text);
-  if (!values) {
-    throw wrong(text, "THETA_I,THETA_R in degrees");
-  }
+  if (!values) throw wrong(text, "THETA_I,THETA_R in degrees");
   return {values->first, values->second};
 }
 
 std::vector<double> numbers(const std::string& text) {
   std::vector<double> values;
-  for (const std::string& part : split(text, ',')) {
-    values.push_back(number(part));
-  }
+  for (const std::string& part : split(text, ',')) values.push_back(number(part));
   return values;
 }
 
@@ -106,31 +93,22 @@ std::vector<double> range_from(const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
   std::array<double, 3> bounds{};
   bool good = parts.size() == bounds.size();
-  for (std::size_t i = 0; good && i < bounds.size(); ++i) {
-    good = read(parts[i], bounds[i]) && std::isfinite(bounds[i]);
-  }
+  for (std::size_t i = 0; good && i < bounds.size(); ++i) good = read(parts[i], bounds[i]) && std::isfinite(bounds[i]);
   const auto [from, to, step] = bounds;
-  if (!good || !(step > 0) || to < from) {
-    throw wrong(text, "FROM:TO:STEP with a positive step, as in -60:60:1");
-  }
+  if (!good || !(step > 0) || to < from) throw wrong(text, "FROM:TO:STEP with a positive step, as in -60:60:1");
   constexpr double most = 100000, rounding = 1e-9;  // 0:1:0.1 has 11 values
   const double steps = std::floor((to - from) / step + rounding);
-  if (!(steps < most)) {
-    throw wrong(text, "at most 100000 values");
-  }
+  if (!(steps < most)) throw wrong(text, "at most 100000 values");
   std::vector<double> values;
-  for (double i = 0; i <= steps; ++i) {
-    values.push_back(from + i * step);
-  }
+  for (double i = 0; i <= steps; ++i) values.push_back(from + i * step);
   return values;
 }
 
 Orders orders_from(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   Orders orders;
-  if (parts.size() != 2 || !read(parts[0], orders.f11) || !read(parts[1], orders.other)) {
+  if (parts.size() != 2 || !read(parts[0], orders.f11) || !read(parts[1], orders.other))
     throw wrong(text, "two whole numbers, of f11 and of the other elements, as in 7,4");
-  }
   return orders;
 }
 
@@ -144,9 +122,8 @@ ReflectanceTable reflectance_from(const std::string& text) {
         !std::isfinite(value)) {
       throw wrong(part, "NM:REFLECTANCE, as in 532:0.984");
     }
-    if (!nodes.emplace(wavelength_nm, value).second) {
+    if (!nodes.emplace(wavelength_nm, value).second)
       throw std::invalid_argument("\"" + part + "\": this wavelength is given twice");
-    }
   }
   ReflectanceTable table;
   for (const auto& [wavelength_nm, value] : nodes) {
@@ -157,53 +134,36 @@ ReflectanceTable reflectance_from(const std::string& text) {
 }
 
 Grid grid_from(const std::string& text) {
-  if (text == "germer2017") {
-    return {};
-  }
+  if (text == "germer2017") return {};
   const std::string prefix = "random:";
-  if (!text.starts_with(prefix)) {
-    throw std::invalid_argument("\"" + text + "\": expected germer2017 or random:N");
-  }
+  if (!text.starts_with(prefix)) throw std::invalid_argument("\"" + text + "\": expected germer2017 or random:N");
   const int count = whole_number(text.substr(prefix.size()));
-  if (count == 0) {
-    throw std::invalid_argument("\"" + text + "\": expected at least 1");
-  }
+  if (count == 0) throw std::invalid_argument("\"" + text + "\": expected at least 1");
   return {count};
 }
 
 Format format_from(const std::string& name) {
-  if (name == "text") {
-    return Format::text;
-  }
-  if (name == "csv") {
-    return Format::csv;
-  }
-  if (name == "json") {
-    return Format::json;
-  }
+  if (name == "text") return Format::text;
+  if (name == "csv") return Format::csv;
+  if (name == "json") return Format::json;
   throw wrong(name, "text, csv or json");
 }
 
 double micrometres(double wavelength_nm) {
-  if (!(wavelength_nm > 0)) {
+  if (!(wavelength_nm > 0))
     throw std::invalid_argument("wavelength " + shortest(wavelength_nm) + " nm: must be positive");
-  }
   return wavelength_nm / 1000;
 }
 
 std::vector<double> micrometres(const std::vector<double>& wavelengths_nm) {
   std::vector<double> result;
   result.reserve(wavelengths_nm.size());
-  for (const double wavelength_nm : wavelengths_nm) {
-    result.push_back(micrometres(wavelength_nm));
-  }
+  for (const double wavelength_nm : wavelengths_nm) result.push_back(micrometres(wavelength_nm));
   return result;
 }
 
 double wavelength_from(const std::optional<double>& wavelength_nm, const Model& model) {
-  if (wavelength_nm) {
-    return micrometres(*wavelength_nm);
-  }
+  if (wavelength_nm) return micrometres(*wavelength_nm);
   try {
     return only_wavelength(model);
   } catch (const std::invalid_argument& error) {

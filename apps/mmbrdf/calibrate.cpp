@@ -25,17 +25,13 @@ struct Options {
 };
 
 int dial_sense(const std::string& text) {
-  if (text != "+1" && text != "1" && text != "-1") {
-    throw std::invalid_argument("\"" + text + "\": expected +1 or -1");
-  }
+  if (text != "+1" && text != "1" && text != "-1") throw std::invalid_argument("\"" + text + "\": expected +1 or -1");
   return text == "-1" ? -1 : 1;
 }
 
 double extinction(const std::string& text) {
   const double value = number(text);
-  if (!(value >= 0 && value < 1)) {
-    throw std::invalid_argument("\"" + text + "\": expected 0 or more, and less than 1");
-  }
+  if (!(value >= 0 && value < 1)) throw std::invalid_argument("\"" + text + "\": expected 0 or more, and less than 1");
   return value;
 }
 
@@ -76,9 +72,7 @@ void calibrate_instrument(Options options, const CommandLine& line) {
   result.provenance["references"] = std::to_string(file.references.size());
   result.provenance["command"] = line.text({options.references, options.output});
   result.provenance["software"] = software();
-  if (!options.output.empty()) {
-    save_instrument(options.output, result);
-  }
+  if (!options.output.empty()) save_instrument(options.output, result);
 }
 
 constexpr const char* calibrate_footer =

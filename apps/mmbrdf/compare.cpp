@@ -31,9 +31,7 @@ struct Options {
 /// The wavelengths that both models know; what one does not know is left to the other.
 std::vector<double> common_wavelengths(const Model& first, const Model& second) {
   const std::vector<double>&a = first.validity.wavelengths, &b = second.validity.wavelengths;
-  if (a.empty() || b.empty()) {
-    return a.empty() ? b : a;
-  }
+  if (a.empty() || b.empty()) return a.empty() ? b : a;
   std::vector<double> common;
   std::copy_if(a.begin(), a.end(), std::back_inserter(common), [&](double one) {
     return std::any_of(b.begin(), b.end(),
@@ -43,9 +41,7 @@ std::vector<double> common_wavelengths(const Model& first, const Model& second) 
 }
 
 std::vector<double> wavelengths_of(const Model& first, const Model& second, const Options& options) {
-  if (options.wavelengths_nm) {
-    return micrometres(*options.wavelengths_nm);
-  }
+  if (options.wavelengths_nm) return micrometres(*options.wavelengths_nm);
   std::vector<double> common = common_wavelengths(first, second);
   if (common.empty()) {
     throw CLI::ValidationError("--wavelength is required",
@@ -100,9 +96,7 @@ struct Row {
 
 std::vector<Row> rows_of(const Comparison& comparison) {
   std::vector<Row> rows{{"11", "sr^-1", comparison.f11}, {"11", "f11", comparison.f11_relative}};
-  for (std::size_t e = 1; e < 16; ++e) {
-    rows.push_back({element_name(e), "f11", comparison.normalized[e]});
-  }
+  for (std::size_t e = 1; e < 16; ++e) rows.push_back({element_name(e), "f11", comparison.normalized[e]});
   return rows;
 }
 
@@ -137,12 +131,8 @@ std::string csv(const Report& report) {
   std::string text = "element,unit,rms,mean,largest,wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg\n";
   for (const auto& [element, unit, d] : rows_of(report.comparison)) {
     text += element + "," + unit;
-    for (const double value : {d.rms, d.mean, d.largest}) {
-      text += "," + exact(value);
-    }
-    for (const double value : place(d)) {
-      text += "," + shortest(value);
-    }
+    for (const double value : {d.rms, d.mean, d.largest}) text += "," + exact(value);
+    for (const double value : place(d)) text += "," + shortest(value);
     text += "\n";
   }
   return text + "polarization,f11," + exact(polarization_rms(report.comparison)) + ",,,,,,,\n";
@@ -154,9 +144,7 @@ std::string json(const Report& report) {
                               {"rotation", report.as_printed ? "as_printed" : "covariant"},
                               {"frame", "xy"},
                               {"samples", report.comparison.samples}};
-  for (const double wavelength : report.wavelengths) {
-    json["wavelengths_nm"].push_back(nanometres(wavelength));
-  }
+  for (const double wavelength : report.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
   for (const auto& [element, unit, d] : rows_of(report.comparison)) {
     const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(d);
     json["elements"].push_back({{"element", element},
@@ -177,9 +165,7 @@ std::string json(const Report& report) {
 
 void require_within(double tolerance, const Comparison& comparison) {
   const Difference most = largest(comparison);
-  if (most.largest <= tolerance) {
-    return;
-  }
+  if (most.largest <= tolerance) return;
   const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(most);
   throw std::runtime_error("the largest difference / f11, " + brief(most.largest) + " at " + brief(nm) +
                            " nm, incident " + brief(theta_i) + "," + brief(phi_i) + ", reflected " + brief(theta_r) +
@@ -187,18 +173,15 @@ void require_within(double tolerance, const Comparison& comparison) {
 }
 
 void require_valid(const Options& options) {
-  if (options.theta_max_deg && !(*options.theta_max_deg > 0 && *options.theta_max_deg <= 90)) {
+  if (options.theta_max_deg && !(*options.theta_max_deg > 0 && *options.theta_max_deg <= 90))
     throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": must be in (0, 90] degrees");
-  }
   require_model_kept(options.first, options.output);
-  if (is_samples(options.second)) {
+  if (is_samples(options.second))
     require_kept(options.second, options.output, "data");
-  } else {
+  else
     require_model_kept(options.second, options.output);
-  }
-  if (is_samples(options.first)) {
+  if (is_samples(options.first))
     throw std::invalid_argument(data_name(options.first) + ": samples; the first argument must be a model");
-  }
 }
 
 Comparison compared(const Model& first, const std::vector<Sample>& samples, const Options& options) {
@@ -212,13 +195,10 @@ Comparison compared(const Model& first, const std::vector<Sample>& samples, cons
 void compare_them(const Options& options) {
   require_valid(options);
   const Model first = open_model(options.first);
-  if (options.as_printed) {
-    note_unless_printed(first, base_name(options.first));
-  }
+  if (options.as_printed) note_unless_printed(first, base_name(options.first));
   const std::vector<Sample> samples = samples_of(first, options);
-  if (samples.empty()) {
+  if (samples.empty())
     throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": no geometry is within");
-  }
   const Comparison comparison = compared(first, samples, options);
   const Report report{base_name(options.first), data_name(options.second), wavelengths(samples), comparison,
                       options.as_printed};
@@ -226,16 +206,12 @@ void compare_them(const Options& options) {
                               : options.format == Format::csv ? csv
                                                               : json)(report));
   warn_if_outside(first, samples, base_name(options.first));
-  if (options.tolerance) {
-    require_within(*options.tolerance, comparison);
-  }
+  if (options.tolerance) require_within(*options.tolerance, comparison);
 }
 
 double tolerance_from(const std::string& text) {
   const double value = number(text);
-  if (value < 0) {
-    throw std::invalid_argument("\"" + text + "\": expected 0 or more");
-  }
+  if (value < 0) throw std::invalid_argument("\"" + text + "\": expected 0 or more");
   return value;
 }
 

@@ -29,9 +29,7 @@ struct Options {
 
 Family family_to_convert_to(const std::string& name) {
   const Family family = family_from(name);
-  if (family == Family::anisotropic) {
-    throw std::invalid_argument("\"anisotropic\": expected isotropic or germer2017");
-  }
+  if (family == Family::anisotropic) throw std::invalid_argument("\"anisotropic\": expected isotropic or germer2017");
   return family;
 }
 
@@ -55,9 +53,7 @@ Change change(const Model& before, const Model& after) {
       const Mueller f = old_model.evaluate(geometry), g = new_model.evaluate(geometry);
       const Mueller difference = normalized(f) - normalized(g);
       change.f11 += std::pow(f(0, 0) - g(0, 0), 2);
-      for (const double m : difference.elements) {
-        change.others += m * m;
-      }
+      for (const double m : difference.elements) change.others += m * m;
     }
   }
   const double geometries = count * static_cast<double>(wavelengths.size());
@@ -87,9 +83,8 @@ void record_wavelengths(Model& model, const std::vector<double>& wavelengths_nm)
   std::vector<double> wavelengths = micrometres(wavelengths_nm);
   std::sort(wavelengths.begin(), wavelengths.end());
   const std::vector<double>& old = model.validity.wavelengths;
-  if (!old.empty() && nanometre_list(old) != nanometre_list(wavelengths)) {
+  if (!old.empty() && nanometre_list(old) != nanometre_list(wavelengths))
     warn("--wavelength replaces the fitted wavelengths " + nanometre_list(old));
-  }
   model.validity.wavelengths = wavelengths;
 }
 
@@ -103,35 +98,26 @@ void record_angles(Model& model, const AnglesDegrees& angles) {
   const Validity old = model.validity;
   model.validity.theta_i_max = radians(angles.theta_i);
   model.validity.theta_r_max = radians(angles.theta_r);
-  if (angles_line(old) != "not known" && angles_line(old) != angles_line(model.validity)) {
+  if (angles_line(old) != "not known" && angles_line(old) != angles_line(model.validity))
     warn("--angles replaces the fitted angles " + angles_line(old));
-  }
 }
 
 void record_reflectance(Model& model, const ReflectanceTable& table) {
   const std::string old = reflectance_line(model.reflectance);
-  if (!old.empty() && old != reflectance_line(table)) {
+  if (!old.empty() && old != reflectance_line(table))
     warn("--reflectance replaces the table there was: --reflectance " + old);
-  }
   model.reflectance = table;
 }
 
 void record(Model& model, const Options& options) {
-  if (options.wavelengths_nm) {
-    record_wavelengths(model, *options.wavelengths_nm);
-  }
-  if (options.angles) {
-    record_angles(model, *options.angles);
-  }
-  if (options.reflectance) {
-    record_reflectance(model, *options.reflectance);
-  }
+  if (options.wavelengths_nm) record_wavelengths(model, *options.wavelengths_nm);
+  if (options.angles) record_angles(model, *options.angles);
+  if (options.reflectance) record_reflectance(model, *options.reflectance);
 }
 
 void convert(const Options& options, const CommandLine& line) {
-  if (options.orders && options.family == Family::germer2017) {
+  if (options.orders && options.family == Family::germer2017)
     throw CLI::ValidationError("--orders", "goes with the isotropic basis only");
-  }
   require_model_kept(options.input, options.output);
   Model model = open_model(options.input);
   record(model, options);
@@ -139,11 +125,10 @@ void convert(const Options& options, const CommandLine& line) {
   result.name = options.name.empty() ? result.name : options.name;
   result.provenance["conversion"] = line.text({options.input, options.output}) + " (" + software() + ")";
   save(result, options.output);
-  if (is_csv(options.output)) {
+  if (is_csv(options.output))
     warn_of_what_is_left_out(model, options.output, !options.name.empty());
-  } else if (has_covariance(model) && !has_covariance(result)) {
+  else if (has_covariance(model) && !has_covariance(result))
     warn("the covariance of the coefficients is not carried over");
-  }
 }
 
 constexpr const char* footer =

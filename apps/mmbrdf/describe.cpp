@@ -19,13 +19,10 @@ std::string dumped(const nlohmann::ordered_json& json) {
 /// In one line, but the members of an object and the rows of a table in one line each.
 std::string by_lines(const nlohmann::ordered_json& json) {
   const bool table = json.is_array() && !json.empty() && json.front().is_structured();
-  if (!table && !(json.is_object() && !json.empty())) {
-    return dumped(json);
-  }
+  if (!table && !(json.is_object() && !json.empty())) return dumped(json);
   std::string text;
-  for (const auto& [name, value] : json.items()) {
+  for (const auto& [name, value] : json.items())
     text += (text.empty() ? "\n    " : ",\n    ") + (table ? "" : dumped(name) + ": ") + dumped(value);
-  }
   return (table ? "[" : "{") + text + (table ? "\n  ]" : "\n  }");
 }
 
@@ -37,16 +34,13 @@ nlohmann::ordered_json basis_json(const Model& model) {
                               {"powers", model.powers},           {"mapping", to_string(model.mapping)},
                               {"modes", mode_count(model)},       {"coefficients", coefficient_count(model)}};
   json["wavelengths_nm"] = nlohmann::ordered_json::array();
-  for (const double wavelength : model.validity.wavelengths) {
-    json["wavelengths_nm"].push_back(nanometres(wavelength));
-  }
+  for (const double wavelength : model.validity.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
   return json;
 }
 
 void note_unless_printed(const Model& model, const std::string& name) {
-  if (model.family != Family::germer2017) {
+  if (model.family != Family::germer2017)
     note("--as-printed changes nothing: " + name + " is of the basis " + to_string(model.family) + ", not germer2017");
-  }
 }
 
 void warn_if_outside(const Model& model, std::span<const Sample> samples, const std::string& name) {
@@ -59,9 +53,7 @@ void warn_if_outside(const Model& model, std::span<const Sample> samples, const 
          (count == 1 ? " lies" : " lie") + " outside the fitted range: fitted are " + fitted_range(model.validity));
   }
   const std::string unknown = unknown_range_line(name, model.validity);
-  if (!unknown.empty()) {
-    note(unknown);
-  }
+  if (!unknown.empty()) note(unknown);
 }
 
 std::string normal_reflectance_line(const Model& model) {
@@ -78,9 +70,7 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
   for (const double wavelength : known_wavelengths(model)) {
     nlohmann::ordered_json entry;
     entry["wavelength_nm"] = nullptr;
-    if (knows_wavelength(model)) {
-      entry["wavelength_nm"] = nanometres(wavelength);
-    }
+    if (knows_wavelength(model)) entry["wavelength_nm"] = nanometres(wavelength);
     entry["reflectance"] = directional_hemispherical_reflectance(model, wavelength, {});
     json.push_back(entry);
   }
@@ -89,9 +79,8 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
 
 std::string printed(const nlohmann::ordered_json& json) {
   std::string text;
-  for (const auto& [name, value] : json.items()) {
+  for (const auto& [name, value] : json.items())
     text += (text.empty() ? "{\n  " : ",\n  ") + dumped(name) + ": " + by_lines(value);
-  }
   return text + "\n}\n";
 }
 

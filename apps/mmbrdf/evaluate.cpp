@@ -65,9 +65,8 @@ void print_json(const Answer& a) {
   }
   Mueller m = a.mueller;
   m(0, 0) = a.options.normalized ? 1 : m(0, 0);
-  for (std::size_t row = 0; row < 4; ++row) {
+  for (std::size_t row = 0; row < 4; ++row)
     json["mueller"].push_back(std::vector<double>(&m.elements[4 * row], &m.elements[4 * row] + 4));
-  }
   json["validity"] = to_string(a.outside);
   print(json);
 }
@@ -95,13 +94,10 @@ void evaluate(const Options& options) {
     require_directions(options, "--geometries");
     return evaluate_one(options);
   }
-  if (options.format && *options.format != Format::csv) {
+  if (options.format && *options.format != Format::csv)
     throw CLI::ValidationError("--format", "only csv goes with --geometries");
-  }
   const bool binary = is_npy(options.output);
-  if (options.format && binary) {
-    throw CLI::ValidationError("--format", "csv does not go with an output in .npy");
-  }
+  if (options.format && binary) throw CLI::ValidationError("--format", "csv does not go with an output in .npy");
   const Model model = model_of_rows(options);
   Evaluated evaluated = evaluated_rows(model, options.frame, options.rotation(), options.normalized, binary);
   evaluated.threads = options.threads > 0 ? options.threads : available_threads();

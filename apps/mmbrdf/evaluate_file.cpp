@@ -35,9 +35,7 @@ class Progress {
     }
   }
   void end() const {
-    if (terminal_) {
-      std::cerr << "\r\033[K" << std::flush;
-    }
+    if (terminal_) std::cerr << "\r\033[K" << std::flush;
   }
   long rows() const { return rows_; }
 
@@ -89,16 +87,12 @@ class FileEvaluator {
                                 !evaluated.binary)),
         header_(evaluated.binary ? npy_header({0, 4, 4}) : header(source_, evaluated.names)),
         unknown_(unknown_range_line(what.model, model.validity)) {
-    if (what.wavelength > 0 && source_.has_wavelengths) {
-      warn("--wavelength is not used: the rows have their own");
-    }
+    if (what.wavelength > 0 && source_.has_wavelengths) warn("--wavelength is not used: the rows have their own");
   }
 
   /// The rest of the file.
   void write(std::ostream& out) {
-    if (evaluated_.binary) {
-      go_to_beginning(out);  // better refused now than after all the work
-    }
+    if (evaluated_.binary) go_to_beginning(out);  // better refused now than after all the work
     run_in_order<EvaluatedPiece>({.read = [this](EvaluatedPiece& p) { return source_.next(p.piece); },
                                   .worker = [this] { return worker(); },
                                   .write =
@@ -135,17 +129,13 @@ class FileEvaluator {
       const Rows rows = source_.rows(p.piece);
       p.rows = static_cast<long>(rows.size());
       p.outside = write(source_, rows, p.out);
-      if (rows.error) {
-        throw *rows.error;
-      }
+      if (rows.error) throw *rows.error;
     };
   }
 
   static void put(std::ostream& out, const std::string& text) {
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    if (&out == &std::cout) {
-      flush_output();
-    }
+    if (&out == &std::cout) flush_output();
   }
 
   const Evaluated& evaluated_;
@@ -161,11 +151,10 @@ class FileEvaluator {
 void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
                      const std::string& name, const std::function<void()>& end_input = {}) {
   FileEvaluator evaluator(model, what, evaluated, in, name, end_input);
-  if (is_standard_output(what.output)) {
+  if (is_standard_output(what.output))
     evaluator.write(std::cout);
-  } else {
+  else
     write_file(what.output, [&](std::ostream& out) { evaluator.write(out); });
-  }
   evaluator.report();
 }
 
@@ -183,9 +172,7 @@ class RowsEvaluator {
     out.reserve(rows.size() * (binary_ ? 16 * sizeof(double) : 420));
     for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
       end = first + 1;
-      while (end < rows.size() && rows.wavelengths[end] == rows.wavelengths[first]) {
-        ++end;
-      }
+      while (end < rows.size() && rows.wavelengths[end] == rows.wavelengths[first]) ++end;
       outside += write(source, rows, first, end, out);
     }
     return outside;
@@ -215,9 +202,7 @@ class RowsEvaluator {
     } catch (const std::invalid_argument& error) {
       throw source.error(rows.numbers[row], plain_message(error));
     }
-    if (binary_) {
-      append_npy(out);
-    }
+    if (binary_) append_npy(out);
     return outside;
   }
 
@@ -243,17 +228,13 @@ class RowsEvaluator {
 void RowWriter::end_row() {
   constexpr std::size_t chunk = 1 << 16;
   text_ += '\n';
-  if (text_.size() > chunk) {
-    flush();
-  }
+  if (text_.size() > chunk) flush();
 }
 
 void RowWriter::flush() {
   out_.write(text_.data(), static_cast<std::streamsize>(text_.size()));
   text_.clear();
-  if (&out_ == &std::cout) {
-    flush_output();
-  }
+  if (&out_ == &std::cout) flush_output();
 }
 
 void report_rows(long outside, long rows, const std::string& unknown_range, const std::string& where) {
@@ -261,9 +242,7 @@ void report_rows(long outside, long rows, const std::string& unknown_range, cons
     warn(std::to_string(outside) + " of " + counted(rows, "row") + (outside == 1 ? " lies" : " lie") +
          " outside the fitted range" + where);
   }
-  if (!unknown_range.empty()) {
-    warn(unknown_range);
-  }
+  if (!unknown_range.empty()) warn(unknown_range);
 }
 
 Evaluated evaluated_rows(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary) {

@@ -32,9 +32,7 @@ constexpr Word one_digit_more = 100'000'000'000'000'000;  // 10^17
 
 constexpr std::array<Wide, powers> powers_of_ten = [] {
   std::array<Wide, powers> result{1};
-  for (std::size_t k = 1; k < powers; ++k) {
-    result[k] = 10 * result[k - 1];
-  }
+  for (std::size_t k = 1; k < powers; ++k) result[k] = 10 * result[k - 1];
   return result;
 }();
 
@@ -85,9 +83,7 @@ void write_digits(char* to, Word number) {
 /// end that it returns.
 char* write_general(char* to, const char* d, int exponent) {
   int count = digits;
-  while (count > 1 && d[count - 1] == '0') {
-    --count;
-  }
+  while (count > 1 && d[count - 1] == '0') --count;
   if (exponent >= -4 && exponent < 0) {
     std::memcpy(to, "0.0000", 6);
     to += 1 - exponent;
@@ -111,9 +107,7 @@ char* write_general(char* to, const char* d, int exponent) {
 char* write(char* to, double value) {
   constexpr double smallest = 1.1e-22, end = 4503599627370496.0;  // 2^52
   const double x = std::abs(value);
-  if (!(x >= smallest && x < end)) {
-    return written(to, value);
-  }
+  if (!(x >= smallest && x < end)) return written(to, value);
   const auto bits = std::bit_cast<Word>(x);
   const int power = static_cast<int>(bits >> 52) - 1023;  // 2^power ≤ x < 2^(power + 1)
   const Word m = (bits & ((Word{1} << 52) - 1)) | (Word{1} << 52);

@@ -29,17 +29,11 @@ bool is_built_in(const std::string& name) {
 /// A truncated coefficient file is a valid one, of fewer modes.
 void warn_of_missing_elements(const Model& model) {
   std::array<bool, 16> there{};
-  for (const FittedBlock& fitted : model.blocks) {
-    for (const auto& [row, column] : fitted.block.elements) {
-      there[static_cast<std::size_t>(4 * row + column)] = true;
-    }
-  }
+  for (const FittedBlock& fitted : model.blocks)
+    for (const auto& [row, column] : fitted.block.elements) there[static_cast<std::size_t>(4 * row + column)] = true;
   std::vector<std::string> missing;
-  for (std::size_t element = 0; element < 16; ++element) {
-    if (!there[element]) {
-      missing.push_back(element_name(element));
-    }
-  }
+  for (std::size_t element = 0; element < 16; ++element)
+    if (!there[element]) missing.push_back(element_name(element));
   if (missing.size() == 15) {
     warn("no modes of elements other than 11: they are 0");
   } else if (!missing.empty()) {
@@ -49,23 +43,18 @@ void warn_of_missing_elements(const Model& model) {
 }
 
 std::string file_name(const std::string& text) {
-  if (text.empty()) {
-    throw std::invalid_argument("\"\": expected the name of a file");
-  }
+  if (text.empty()) throw std::invalid_argument("\"\": expected the name of a file");
   return text;
 }
 
 std::string output_file_name(const std::string& text) {
-  if (text == "-") {
+  if (text == "-")
     throw std::invalid_argument("\"-\": expected the name of a file; models do not go to standard output");
-  }
   return file_name(text);
 }
 
 std::string model_name(const std::string& text) {
-  if (text.empty()) {
-    throw std::invalid_argument("\"\": expected a built-in name or a file");
-  }
+  if (text.empty()) throw std::invalid_argument("\"\": expected a built-in name or a file");
   return text;
 }
 
@@ -81,18 +70,15 @@ bool is_csv(const std::string& path) {
 }
 
 Model open_model(const std::string& name) {
-  if (!is_built_in(name) && !std::filesystem::exists(name)) {
+  if (!is_built_in(name) && !std::filesystem::exists(name))
     throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(materials()) + ")");
-  }
   Model model = is_built_in(name) ? material(name) : load_model(name);
   warn_of_missing_elements(model);
   return model;
 }
 
 bool is_samples(const std::string& name) {
-  if (name == "-" || is_built_in(name) || !std::filesystem::exists(name)) {
-    return name == "-";
-  }
+  if (name == "-" || is_built_in(name) || !std::filesystem::exists(name)) return name == "-";
   std::ifstream in = open_input(name);
   std::string line;
   while (std::getline(in, line) &&
@@ -117,9 +103,7 @@ void read_samples_at(const std::string& path, const std::optional<std::vector<do
     for (Sample sample; reader.next(sample);) {
       there.insert(sample.wavelength);
       const auto is_it = [&](double wavelength) { return near(wavelength, sample.wavelength); };
-      if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) {
-        samples.push_back(sample);
-      }
+      if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) samples.push_back(sample);
       if (samples.size() == some) {
         use(samples);
         samples.clear();
@@ -146,15 +130,13 @@ std::vector<Sample> samples_at(const std::string& path, const std::optional<std:
 void require_kept(const std::string& input, const std::string& output, const std::string& what) {
   const std::string source = input == "-" ? "/dev/stdin" : input;
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(output, ignored) && std::filesystem::equivalent(source, output, ignored)) {
+  if (std::filesystem::is_regular_file(output, ignored) && std::filesystem::equivalent(source, output, ignored))
     throw std::invalid_argument(output + ": would overwrite the " + what);
-  }
 }
 
 void require_model_kept(const std::string& model, const std::string& output) {
-  if (!is_built_in(model)) {
+  if (!is_built_in(model))
     require_kept(model == "-" ? "./-" : model, output, "model");  // a model is never standard input
-  }
 }
 
 void save(const Model& model, const std::string& path) {
@@ -163,15 +145,11 @@ void save(const Model& model, const std::string& path) {
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(path + ": " + plain_message(error));
   }
-  if (is_built_in(path)) {
-    warn("a built-in model has the name " + path + " and comes first; the file is ./" + path);
-  }
+  if (is_built_in(path)) warn("a built-in model has the name " + path + " and comes first; the file is ./" + path);
 }
 
 void read_input(const std::string& path, const std::function<void(std::istream&, const std::string&)>& read) {
-  if (path == "-") {
-    return read(std::cin, "standard input");
-  }
+  if (path == "-") return read(std::cin, "standard input");
   std::ifstream file = open_input(path);
   read(file, path);
 }
@@ -185,9 +163,7 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
   const Validity& validity = model.validity;
   std::vector<std::string> lost;
   const auto lose = [&lost](bool there, const std::string& what) {
-    if (there) {
-      lost.push_back(what);
-    }
+    if (there) lost.push_back(what);
   };
   lose(named, "the name");
   lose(!validity.wavelengths.empty(), "the fitted wavelengths");
@@ -197,9 +173,7 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
   lose(!model.provenance.empty(), "the provenance");
   lose(!model.reflectance.values.empty(), "the reflectance that f11 is multiplied by (keep it: --reflectance " +
                                               reflectance_line(model.reflectance) + ")");
-  if (!lost.empty()) {
-    warn(base_name(path) + " has no place for: " + joined(lost));
-  }
+  if (!lost.empty()) warn(base_name(path) + " has no place for: " + joined(lost));
 }
 
 CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
@@ -215,11 +189,10 @@ CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::strin
 bool is_standard_output(const std::string& output) { return output.empty() || output == "-"; }
 
 void write_text(const std::string& output, const std::string& text) {
-  if (is_standard_output(output)) {
+  if (is_standard_output(output))
     std::cout << text;
-  } else {
+  else
     write_file(output, [&](std::ostream& out) { out << text; });
-  }
 }
 
 CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name) {

@@ -34,9 +34,7 @@ struct Options {
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
 void require_valid(const Options& options) {
   blocks(options.basis.family, options.basis.orders);
-  if (options.fit.reflectance) {
-    mmbrdf::require_valid(*options.fit.reflectance);
-  }
+  if (options.fit.reflectance) mmbrdf::require_valid(*options.fit.reflectance);
   require_kept(options.data, options.output, "data");
   require_kept(options.instrument, options.output, "instrument");
 }
@@ -50,27 +48,18 @@ void sign(Model& model, const Options& options, long rows, const CommandLine& li
   model.provenance["command"] = line.text({options.data, options.output, options.instrument});
   model.provenance["software"] = software();
   model.provenance["weights"] = to_string(options.weights);
-  if (options.fit.covariance == Covariance::sandwich) {
-    model.provenance["covariance"] = "sandwich";
-  }
-  if (!options.attribution.empty()) {
-    model.provenance["attribution"] = options.attribution;
-  }
+  if (options.fit.covariance == Covariance::sandwich) model.provenance["covariance"] = "sandwich";
+  if (!options.attribution.empty()) model.provenance["attribution"] = options.attribution;
 }
 
 void save_or_warn(const Model& model, const Options& options) {
   if (options.output.empty()) {
-    for (const auto& [text, name] : {std::pair(options.name, "--name"), {options.attribution, "--attribution"}}) {
-      if (!text.empty()) {
-        warn(std::string(name) + " is not used without --output");
-      }
-    }
+    for (const auto& [text, name] : {std::pair(options.name, "--name"), {options.attribution, "--attribution"}})
+      if (!text.empty()) warn(std::string(name) + " is not used without --output");
     return;
   }
   save(model, options.output);
-  if (is_csv(options.output)) {
-    warn_of_what_is_left_out(model, options.output, !options.name.empty());
-  }
+  if (is_csv(options.output)) warn_of_what_is_left_out(model, options.output, !options.name.empty());
 }
 
 void note_free_combinations(const FitResult& result) {
@@ -114,9 +103,7 @@ void add_instrument(FitResult& result, std::span<const Sample> samples, const Op
   const Calibration instrument = load_instrument(options.instrument);
   const std::string name = base_name(options.instrument);
   judge(instrument, name);
-  if (instrument.covariance.empty()) {
-    throw std::runtime_error(name + ": a linear calibration, without a covariance");
-  }
+  if (instrument.covariance.empty()) throw std::runtime_error(name + ": a linear calibration, without a covariance");
   for (const Sample& sample : samples) {
     if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution) {
       throw std::runtime_error(name + ": of " + brief(nanometres(instrument.wavelength)) +
@@ -136,20 +123,15 @@ FitResult fitted(const Options& options, long& rows) {
   std::vector<Sample> all;
   read_samples_at(options.data, options.wavelengths_nm, [&](std::span<const Sample> samples) {
     rows += static_cast<long>(samples.size());
-    if (streams(options)) {
+    if (streams(options))
       accumulator.add(samples);
-    } else {
+    else
       all.insert(all.end(), samples.begin(), samples.end());
-    }
   });
   try {
-    if (streams(options)) {
-      return accumulator.solve(options.fit);
-    }
+    if (streams(options)) return accumulator.solve(options.fit);
     FitResult result = fit(all, options.basis, options.fit, options.weights);
-    if (!options.instrument.empty()) {
-      add_instrument(result, all, options);
-    }
+    if (!options.instrument.empty()) add_instrument(result, all, options);
     return result;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(options.data) + ": " + plain_message(error));
@@ -159,12 +141,8 @@ FitResult fitted(const Options& options, long& rows) {
 /// Keeps the laws from which the weights are.
 void record_noise(Model& model, const FitResult& result) {
   std::string text;
-  for (std::size_t i = 0; i < result.noise.size(); ++i) {
-    text += (i > 0 ? "; " : "") + noise_line(result, i);
-  }
-  if (!text.empty()) {
-    model.provenance["noise"] = text;
-  }
+  for (std::size_t i = 0; i < result.noise.size(); ++i) text += (i > 0 ? "; " : "") + noise_line(result, i);
+  if (!text.empty()) model.provenance["noise"] = text;
 }
 
 void fit_data(const Options& options, const CommandLine& line) {

@@ -20,9 +20,7 @@ std::size_t block_of(const Model& model, std::size_t element) {
   std::size_t block = 0;
   for (; block < model.blocks.size(); ++block) {
     const auto& elements = model.blocks[block].block.elements;
-    if (std::find(elements.begin(), elements.end(), wanted) != elements.end()) {
-      break;
-    }
+    if (std::find(elements.begin(), elements.end(), wanted) != elements.end()) break;
   }
   return block;
 }
@@ -30,9 +28,7 @@ std::size_t block_of(const Model& model, std::size_t element) {
 /// Rows of the 15 normalised elements.
 long polarization_rows(const FitResult& result) {
   long rows = 0;
-  for (std::size_t element = 1; element < 16; ++element) {
-    rows += result.elements[element].rows;
-  }
+  for (std::size_t element = 1; element < 16; ++element) rows += result.elements[element].rows;
   return rows;
 }
 
@@ -132,9 +128,7 @@ void print_json(const FitReport& report) {
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);
   json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);
-  if (!report.result.noise.empty()) {
-    json["noise"] = noise_json(report.result);
-  }
+  if (!report.result.noise.empty()) json["noise"] = noise_json(report.result);
   print(json);
 }
 

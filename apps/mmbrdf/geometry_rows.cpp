@@ -40,9 +40,7 @@ class Lines {
     in_.read(&piece.bytes[kept], static_cast<std::streamsize>(bytes_at_once));
     piece.bytes.resize(kept + static_cast<std::size_t>(in_.gcount()));
     before_ += std::count(piece.bytes.begin() + static_cast<std::ptrdiff_t>(kept), piece.bytes.end(), '\n');
-    if (in_.bad()) {
-      throw std::runtime_error(name_ + ": read error after line " + std::to_string(before_));
-    }
+    if (in_.bad()) throw std::runtime_error(name_ + ": read error after line " + std::to_string(before_));
     if (!in_.eof()) {  // a line without end, longer than any may be, goes on as it is and is refused there
       if (const std::size_t end = piece.bytes.rfind('\n'); end != std::string::npos) {
         rest_ = piece.bytes.substr(end + 1);
@@ -117,9 +115,7 @@ class NpyRows {
     const std::vector<std::size_t> shape = read_npy_header(in_, name_);
     if (shape.size() != 2 || shape[1] != npy_columns.size()) {
       std::string text;
-      for (const std::size_t length : shape) {
-        text += (text.empty() ? "" : ", ") + std::to_string(length);
-      }
+      for (const std::size_t length : shape) text += (text.empty() ? "" : ", ") + std::to_string(length);
       throw npy_error(name_, 0, "shape (" + text + "), expected (rows, 5): " + joined(npy_columns));
     }
     count_ = shape[0];
@@ -134,12 +130,10 @@ class NpyRows {
     const std::size_t there = static_cast<std::size_t>(in_.gcount()) / width;
     piece.bytes.resize(there * width);
     read_ += there;
-    if (there == 0 && count > 0) {
+    if (there == 0 && count > 0)
       throw npy_error(name_, 0, "ends after " + std::to_string(read_) + " of " + std::to_string(count_) + " rows");
-    }
-    if (count == 0 && in_.peek() != std::istream::traits_type::eof()) {
+    if (count == 0 && in_.peek() != std::istream::traits_type::eof())
       throw npy_error(name_, 0, "goes on behind its " + std::to_string(count_) + " rows");
-    }
     return count > 0;
   }
 
@@ -151,9 +145,8 @@ class NpyRows {
 
 double wavelength_of(double nanometres, long number, const std::string& name) {
   const double wavelength = nanometres / 1000;
-  if (!(wavelength > 0) || !std::isfinite(wavelength)) {
+  if (!(wavelength > 0) || !std::isfinite(wavelength))
     throw npy_error(name, number, "wavelength_nm: " + shortest(nanometres) + ": a wavelength must be positive");
-  }
   return wavelength;
 }
 
@@ -162,9 +155,7 @@ Direction direction_of(double theta, double phi, const char* column, long number
     throw npy_error(name, number,
                     std::string(column) + ": " + shortest(theta) + " degrees; a polar angle is at most 90");
   }
-  if (!std::isfinite(phi)) {
-    throw npy_error(name, number, shortest(phi) + " is not a finite azimuth");
-  }
+  if (!std::isfinite(phi)) throw npy_error(name, number, shortest(phi) + " is not a finite azimuth");
   return direction_from_degrees(theta, phi);
 }
 
@@ -195,9 +186,8 @@ Rows rows_of_npy(const std::string& name, const Piece& piece) {
 void add_text(Rows& rows, const Piece& piece) {
   const char* next = piece.bytes.data();
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    for (std::size_t column = 0; column < npy_columns.size(); ++column, next += 8) {
+    for (std::size_t column = 0; column < npy_columns.size(); ++column, next += 8)
       rows.all_text += (column > 0 ? "," : "") + shortest(from_npy(next));
-    }
     rows.text_ends.push_back(rows.all_text.size());
   }
 }
@@ -210,9 +200,7 @@ GeometrySource npy_source(std::istream& in, const std::string& name, bool with_t
           .rows =
               [name, with_text](const Piece& piece) {
                 Rows rows = rows_of_npy(name, piece);
-                if (with_text) {
-                  add_text(rows, piece);
-                }
+                if (with_text) add_text(rows, piece);
                 return rows;
               },
           .error = [name](long number, const std::string& text) { return npy_error(name, number, text); }};

@@ -42,9 +42,7 @@ class Line {
   }
 
   void throw_error() const {
-    if (error_) {
-      std::rethrow_exception(error_);
-    }
+    if (error_) std::rethrow_exception(error_);
   }
 
  private:
@@ -57,9 +55,7 @@ class Line {
       const long number = next(piece, there, error);
       try {
         if (there && !stopped_) {
-          if (!compute) {
-            compute = stages_.worker();
-          }
+          if (!compute) compute = stages_.worker();
           compute(piece);
         }
       } catch (...) {
@@ -76,9 +72,7 @@ class Line {
     } catch (...) {
       error = std::current_exception();
     }
-    if (there && more_threads_ > 0 && !stopped_) {
-      add_thread();
-    }
+    if (there && more_threads_ > 0 && !stopped_) add_thread();
     return next_++;
   }
 
@@ -96,13 +90,9 @@ class Line {
   void finish(long number, Piece& piece, bool there, const std::exception_ptr& error) {
     std::unique_lock lock(writing_);
     turn_.wait(lock, [&] { return stopped_ || written_ == number; });
-    if (stopped_) {
-      return;
-    }
+    if (stopped_) return;
     try {
-      if (error) {
-        std::rethrow_exception(error);
-      }
+      if (error) std::rethrow_exception(error);
       stopped_ = !there || !stages_.write(piece);
     } catch (...) {
       error_ = std::current_exception();
@@ -110,9 +100,7 @@ class Line {
     }
     ++written_;
     turn_.notify_all();
-    if (stopped_ && stages_.end_input) {
-      stages_.end_input();
-    }
+    if (stopped_ && stages_.end_input) stages_.end_input();
   }
 
   const Stages<Piece>& stages_;

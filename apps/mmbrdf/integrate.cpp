@@ -31,21 +31,15 @@ struct Polarization {
 };
 
 Polarization polarization_from(const std::string& text) {
-  if (text == "unpolarized") {
-    return {};
-  }
-  if (text == "s" || text == "p") {
-    return {text, {1, text == "s" ? 1.0 : -1.0, 0, 0}};
-  }
+  if (text == "unpolarized") return {};
+  if (text == "s" || text == "p") return {text, {1, text == "s" ? 1.0 : -1.0, 0, 0}};
   std::vector<double> s;
   try {
     s = numbers(text);
   } catch (const std::invalid_argument&) {
     s.clear();
   }
-  if (s.size() != 4) {
-    throw std::invalid_argument("\"" + text + "\": expected unpolarized, s, p or S1,S2,S3,S4");
-  }
+  if (s.size() != 4) throw std::invalid_argument("\"" + text + "\": expected unpolarized, s, p or S1,S2,S3,S4");
   return {text, {s[0], s[1], s[2], s[3]}};
 }
 
@@ -95,9 +89,7 @@ IntegratedRow bihemispherical_row(const AtWavelength& at) {
   IntegratedRow row;
   row.outside = outside(at.model.validity, at.wavelength, {});
   row.values = {bihemispherical_reflectance(at.model, at.wavelength)};
-  if (at.uncertainty) {
-    row.uncertainties = {bihemispherical_uncertainty(at.model, *at.uncertainty)};
-  }
+  if (at.uncertainty) row.uncertainties = {bihemispherical_uncertainty(at.model, *at.uncertainty)};
   return row;
 }
 
@@ -108,9 +100,8 @@ double factor_of(Quantity quantity, const Aperture& receiver) {
     case Quantity::radiance_factor:
       return std::numbers::pi;
     case Quantity::reflectance:
-      if (receiver.projected_solid_angle() == 0) {
+      if (receiver.projected_solid_angle() == 0)
         throw std::invalid_argument("reflectance: the receiver has no solid angle");
-      }
       return receiver.projected_solid_angle();
     default:
       return 1;
@@ -130,9 +121,7 @@ IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides
   if (!mean.converged) {
     const std::string message =
         format("the quadrature stopped at an error of %.1e of f11", mean.error / mean.mueller(0, 0));
-    if (options.strict) {
-      throw std::runtime_error(message);
-    }
+    if (options.strict) throw std::runtime_error(message);
     warn(message);
   }
   IntegratedRow row;
@@ -140,15 +129,11 @@ IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides
   row.quadrature_error = factor * mean.error;
   row.geometries = mean.geometries;
   const std::size_t elements = quantity == Quantity::mueller ? 16 : 1;
-  for (std::size_t e = 0; e < elements; ++e) {
-    row.values.push_back(factor * mean.mueller.elements[e]);
-  }
+  for (std::size_t e = 0; e < elements; ++e) row.values.push_back(factor * mean.mueller.elements[e]);
   if (at.uncertainty) {
     const int few = average(model, source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
     const Mueller u = standard_uncertainty(average_covariance(*at.uncertainty, source, receiver, few));
-    for (std::size_t e = 0; e < elements; ++e) {
-      row.uncertainties.push_back(factor * u.elements[e]);
-    }
+    for (std::size_t e = 0; e < elements; ++e) row.uncertainties.push_back(factor * u.elements[e]);
   }
   return row;
 }
@@ -159,44 +144,31 @@ std::optional<double> extrapolated_share(const Validity& validity, bool source, 
   double within = 1;
   for (const auto& [used, limit] :
        {std::pair(source, validity.theta_i_max), std::pair(receiver, validity.theta_r_max)}) {
-    if (used && !limit) {
-      return {};
-    }
+    if (used && !limit) return {};
     within *= used ? std::pow(std::sin(*limit), 2) : 1;
   }
   return source || receiver ? std::optional(1 - within) : std::nullopt;
 }
 
 std::vector<IntegratedRow> rows_of(const AtWavelength& at, Quantity quantity, const Options& options) {
-  if (needs_geometry(quantity)) {
-    return {average_row(at, quantity, *options.geometry, options)};
-  }
-  if (quantity == Quantity::bhr) {
-    return {bihemispherical_row(at)};
-  }
+  if (needs_geometry(quantity)) return {average_row(at, quantity, *options.geometry, options)};
+  if (quantity == Quantity::bhr) return {bihemispherical_row(at)};
   std::vector<IntegratedRow> rows;
-  for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0})) {
+  for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0}))
     rows.push_back(hemispherical_row(at, quantity, theta_deg, options.polarization.value_or(Polarization{})));
-  }
   return rows;
 }
 
 /// Throws where an option does not belong to the quantity.
 Quantity checked_quantity(const Options& options) {
-  if (!options.quantity && !options.geometry) {
-    throw CLI::RequiredError("--quantity (or --geometry)");
-  }
+  if (!options.quantity && !options.geometry) throw CLI::RequiredError("--quantity (or --geometry)");
   const Quantity quantity = options.quantity.value_or(Quantity::reflectance_factor);
   const std::string name = "of --quantity " + to_string(quantity);
   const bool of_beam = quantity == Quantity::dhr || quantity == Quantity::hdr;
   const auto forbid = [&](bool given, const std::string& option) {
-    if (given) {
-      throw CLI::ValidationError(option, "is no option " + name);
-    }
+    if (given) throw CLI::ValidationError(option, "is no option " + name);
   };
-  if (needs_geometry(quantity) && !options.geometry) {
-    throw CLI::RequiredError("--geometry " + name);
-  }
+  if (needs_geometry(quantity) && !options.geometry) throw CLI::RequiredError("--geometry " + name);
   forbid(!needs_geometry(quantity) && options.geometry, "--geometry");
   forbid(!needs_geometry(quantity) && options.tolerance, "--tolerance");
   forbid(!of_beam && options.thetas_deg, "--theta");
@@ -211,21 +183,15 @@ std::vector<double> wavelengths_of(const Model& model, const Options& options) {
 /// Warns of rows outside the fitted range, or refuses them.
 void check_range(const Integrated& result, const Validity& validity, bool strict) {
   unsigned all = inside;
-  for (const IntegratedRow& row : result.rows) {
-    all |= row.outside;
-  }
+  for (const IntegratedRow& row : result.rows) all |= row.outside;
   const auto outside = static_cast<Outside>(all);
   if (leaves_known_range(outside)) {
     const std::string message =
         "outside the fitted range (" + to_string(outside) + "): fitted are " + fitted_range(validity);
-    if (strict) {
-      throw std::runtime_error(message);
-    }
+    if (strict) throw std::runtime_error(message);
     warn(message);
   }
-  if (outside & unknown_range) {
-    warn(unknown_range_line(result.model, validity));
-  }
+  if (outside & unknown_range) warn(unknown_range_line(result.model, validity));
 }
 
 Integrated integrated(const Model& model, Quantity quantity, const Options& options) {
@@ -244,9 +210,7 @@ Integrated integrated(const Model& model, Quantity quantity, const Options& opti
   result.several_wavelengths = wavelengths.size() > 1;
   for (const double wavelength : wavelengths) {
     for (IntegratedRow& row : rows_of({model, wavelength, uncertainty_of(model, wavelength)}, quantity, options)) {
-      if (options.wavelengths_nm || knows_wavelength(model)) {
-        row.wavelength_nm = nanometres(wavelength);
-      }
+      if (options.wavelengths_nm || knows_wavelength(model)) row.wavelength_nm = nanometres(wavelength);
       result.rows.push_back(std::move(row));
     }
   }
@@ -262,9 +226,8 @@ bool determined(const Model& model, Quantity quantity, const Options& options) {
   } else if (quantity == Quantity::bhr) {
     pairs.emplace_back(Aperture::hemisphere(), Aperture::hemisphere());
   } else {
-    for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0})) {
+    for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0}))
       pairs.emplace_back(Aperture::direction({radians(std::abs(theta_deg)), 0}), Aperture::hemisphere());
-    }
   }
   const double wavelength = wavelengths_of(model, options).front();  // the rank of a fit is one for all
   const std::optional<PreparedUncertainty> prepared = uncertainty_of(model, wavelength);
@@ -277,15 +240,11 @@ bool determined(const Model& model, Quantity quantity, const Options& options) {
 }
 
 void check_determined(const Model& model, Quantity quantity, const Options& options) {
-  if (determined(model, quantity, options)) {
-    return;
-  }
+  if (determined(model, quantity, options)) return;
   const std::string message =
       "the data of the fit do not determine the model in these directions: values are those of its smallest solution, "
       "and uncertainties are too small";
-  if (options.strict) {
-    throw std::runtime_error(message);
-  }
+  if (options.strict) throw std::runtime_error(message);
   warn(message);
 }
 
@@ -296,9 +255,7 @@ void integrate(const Options& options) {
   const Integrated result = integrated(model, quantity, options);
   check_range(result, model.validity, options.strict);
   check_determined(model, quantity, options);
-  if (!knows_uncertainty(model)) {
-    warn(result.model + " has no covariance: uncertainties are not known");
-  }
+  if (!knows_uncertainty(model)) warn(result.model + " has no covariance: uncertainties are not known");
   write_text(options.output, written(result, options.format));
 }
 

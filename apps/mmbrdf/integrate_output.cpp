@@ -41,13 +41,9 @@ std::string theta_column(Quantity quantity) {
 }
 
 std::vector<std::string> value_columns(Quantity quantity) {
-  if (quantity != Quantity::mueller) {
-    return {to_string(quantity)};
-  }
+  if (quantity != Quantity::mueller) return {to_string(quantity)};
   std::vector<std::string> names;
-  for (std::size_t element = 0; element < 16; ++element) {
-    names.push_back("f" + element_name(element));
-  }
+  for (std::size_t element = 0; element < 16; ++element) names.push_back("f" + element_name(element));
   return names;
 }
 
@@ -65,12 +61,9 @@ std::string csv(const Integrated& result) {
   for (const IntegratedRow& row : result.rows) {
     text += result.several_wavelengths ? shortest(*row.wavelength_nm) + "," : "";
     text += row.theta_deg ? shortest(*row.theta_deg) + "," : "";
-    for (std::size_t i = 0; i < row.values.size(); ++i) {
-      text += (i > 0 ? "," : "") + exact(row.values[i]);
-    }
-    for (std::size_t i = 0; i < row.values.size(); ++i) {
+    for (std::size_t i = 0; i < row.values.size(); ++i) text += (i > 0 ? "," : "") + exact(row.values[i]);
+    for (std::size_t i = 0; i < row.values.size(); ++i)
       text += "," + (row.uncertainties.empty() ? "" : exact(row.uncertainties[i]));
-    }
     text += geometry ? "," + format("%.1e", row.quadrature_error) + "," + to_string(row.outside) + "\n" : "\n";
   }
   return text;
@@ -80,9 +73,8 @@ std::string csv(const Integrated& result) {
 
 nlohmann::ordered_json square(const std::vector<double>& elements) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (std::size_t row = 0; row < 4 && !elements.empty(); ++row) {
+  for (std::size_t row = 0; row < 4 && !elements.empty(); ++row)
     json.push_back(std::vector<double>(&elements[4 * row], &elements[4 * row] + 4));
-  }
   return elements.empty() ? nullptr : json;
 }
 
@@ -90,9 +82,7 @@ nlohmann::ordered_json row_json(const Integrated& result, const IntegratedRow& r
   const std::string name = to_string(result.quantity), theta = theta_column(result.quantity);
   nlohmann::ordered_json json;
   json["wavelength_nm"] = row.wavelength_nm ? nlohmann::ordered_json(*row.wavelength_nm) : nullptr;
-  if (row.theta_deg) {
-    json[theta] = *row.theta_deg;
-  }
+  if (row.theta_deg) json[theta] = *row.theta_deg;
   if (result.quantity == Quantity::mueller) {
     json[name] = square(row.values);
     json["u_" + name] = square(row.uncertainties);
@@ -120,21 +110,15 @@ nlohmann::ordered_json json_of(const Integrated& result) {
   } else if (result.quantity != Quantity::bhr) {
     json["polarization"] = result.polarization;
   }
-  if (result.extrapolated) {
-    json["extrapolated_share_of_hemisphere"] = *result.extrapolated;
-  }
-  for (const IntegratedRow& row : result.rows) {
-    json["rows"].push_back(row_json(result, row));
-  }
+  if (result.extrapolated) json["extrapolated_share_of_hemisphere"] = *result.extrapolated;
+  for (const IntegratedRow& row : result.rows) json["rows"].push_back(row_json(result, row));
   return json;
 }
 
 // ---- text
 
 std::string uncertainty_text(const IntegratedRow& row, std::size_t i) {
-  if (row.uncertainties.empty()) {
-    return "not known";
-  }
+  if (row.uncertainties.empty()) return "not known";
   const double u = row.uncertainties[i];
   return format("%.2g", u < 1e-15 ? 0 : u);  // of elements that are 0 by symmetry, rounding is left
 }
@@ -163,9 +147,8 @@ std::string matrices(const Integrated& result) {
       text += format("%14.8f", value) + (e % 4 == 3 ? "\n" : "");
     }
     text += "standard uncertainties";
-    for (std::size_t e = 0; e < 16 && !row.uncertainties.empty(); ++e) {
+    for (std::size_t e = 0; e < 16 && !row.uncertainties.empty(); ++e)
       text += (e % 4 == 0 ? "\n" : "") + format("%14s", uncertainty_text(row, e).c_str());
-    }
     text += row.uncertainties.empty() ? " not known\n" : "\n";
   }
   return text;
@@ -176,11 +159,10 @@ std::string text_of(const Integrated& result) {
   std::string text = result.model + ": " + named(result.quantity).meaning;
   const std::string unit = named(result.quantity).unit;
   text += unit == "1" ? "" : " in " + unit;
-  if (geometry) {
+  if (geometry)
     text += "\nsource      " + result.source + "\nreceiver    " + result.receiver + "\n";
-  } else {
+  else
     text += (result.quantity == Quantity::bhr ? "" : ", polarization " + result.polarization) + "\n";
-  }
   text += result.quantity == Quantity::mueller ? matrices(result) : table(result);
   if (geometry) {
     double error = 0;
@@ -192,9 +174,8 @@ std::string text_of(const Integrated& result) {
     text += "quadrature: " + (geometries == 1 ? "1 geometry" : std::to_string(geometries) + " geometries") +
             format(", error below %.1e\n", error);
   }
-  if (std::any_of(result.rows.begin(), result.rows.end(), [](const auto& row) { return !row.uncertainties.empty(); })) {
+  if (std::any_of(result.rows.begin(), result.rows.end(), [](const auto& row) { return !row.uncertainties.empty(); }))
     text += "u: standard uncertainty of the fit alone; scale, angles and sample are not in it\n";
-  }
   if (result.extrapolated) {
     text += format("extrapolated: %.1f %% of the hemisphere's projected solid angle lies beyond the fitted angles\n",
                    100 * *result.extrapolated);
@@ -207,9 +188,7 @@ std::string text_of(const Integrated& result) {
 Quantity quantity_from(const std::string& name) {
   std::vector<std::string> names;
   for (const Named& q : quantities) {
-    if (q.name == name) {
-      return q.quantity;
-    }
+    if (q.name == name) return q.quantity;
     names.emplace_back(q.name);
   }
   throw std::invalid_argument("\"" + name + "\": expected one of " + joined(names));

@@ -53,9 +53,7 @@ constexpr const char* footer =
 
 int wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
   std::string command = "mmbrdf";
-  for (const CLI::App* chosen : app.get_subcommands()) {
-    command += " " + chosen->get_name();
-  }
+  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
   std::cerr << "mmbrdf: " << error.what() << "\nsee " << command << " --help\n";
   return 2;
 }
@@ -106,13 +104,9 @@ int run(int argc, char** argv) {
 
 std::string shell_quoted(const std::string& word) {
   const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,=+@%-";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
-    return word;
-  }
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
   std::string result = "'";
-  for (const char c : word) {
-    result += c == '\'' ? "'\\''" : std::string(1, c);
-  }
+  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
   return result + "'";
 }
 

@@ -31,13 +31,10 @@ constexpr const char* unit_line = "f11 in sr^-1; inside, angles in radians and w
 /// "u 8, v 22"
 std::string functions_line(const Block& block) {
   std::map<Function, int> counts;
-  for (const Mode& mode : block.modes) {
-    ++counts[mode.function];
-  }
+  for (const Mode& mode : block.modes) ++counts[mode.function];
   std::string text;
-  for (const auto& [function, count] : counts) {
+  for (const auto& [function, count] : counts)
     text += (text.empty() ? "" : ", ") + to_string(function) + " " + std::to_string(count);
-  }
   return text;
 }
 
@@ -71,9 +68,7 @@ void print_text(const Model& model) {
   print_line("units", unit_line);
   print_blocks(model);
   std::cout << (model.provenance.empty() ? "" : "\n");
-  for (const auto& [key, value] : model.provenance) {
-    print_line(key, value);
-  }
+  for (const auto& [key, value] : model.provenance) print_line(key, value);
 }
 
 nlohmann::ordered_json blocks_json(const Model& model) {
@@ -118,9 +113,7 @@ void info(const Options& options) {
 
 Format text_or_json(const std::string& name) {
   const Format format = format_from(name);
-  if (format == Format::csv) {
-    throw std::invalid_argument("\"csv\": expected text or json");
-  }
+  if (format == Format::csv) throw std::invalid_argument("\"csv\": expected text or json");
   return format;
 }
 

@@ -30,9 +30,8 @@ std::string format(const char* pattern, ...) {
   va_start(values, pattern);
   const int size = std::vsnprintf(buffer.data(), buffer.size(), pattern, values);
   va_end(values);
-  if (size < 0 || static_cast<std::size_t>(size) >= buffer.size()) {
+  if (size < 0 || static_cast<std::size_t>(size) >= buffer.size())
     throw std::logic_error(std::string("format: the text is too long for ") + pattern);
-  }
   return std::string(buffer.data(), static_cast<std::size_t>(size));
 }
 
@@ -51,9 +50,7 @@ std::string brief(double value) { return format("%.10g", value); }
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : ", ") + word;
-  }
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
 }
 
@@ -62,18 +59,15 @@ std::string plain_message(const std::exception& error) {
   for (const std::string name :
        {"fit", "simulate", "compare", "subsets", "evaluate", "normalized", "degree_of_polarization", "budget",
         "to_coefficients_csv", "to_json", "reduced", "common errors", "goniometer"}) {
-    if (text.starts_with(name + ": ")) {
-      return text.substr(name.size() + 2);
-    }
+    if (text.starts_with(name + ": ")) return text.substr(name.size() + 2);
   }
   return text;
 }
 
 std::string element_columns(bool normalized) {
   std::string text;
-  for (std::size_t element = 0; element < 16; ++element) {
+  for (std::size_t element = 0; element < 16; ++element)
     text += (normalized && element > 0 ? ",m" : ",f") + element_name(element);
-  }
   return text;
 }
 

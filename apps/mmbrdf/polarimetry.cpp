@@ -25,9 +25,7 @@ void print_states(const std::string& title, const std::vector<Stokes>& states, s
             << (covariance.empty() ? "\n" : "     u(S1)     u(S2)     u(S3)     u(S4)\n");
   for (std::size_t s = 0; s < states.size(); ++s) {
     std::cout << format("%-10zu", s + 1);
-    for (const double component : states[s]) {
-      std::cout << format("%10.6f", component);
-    }
+    for (const double component : states[s]) std::cout << format("%10.6f", component);
     for (std::size_t k = 0; k < 4 && !covariance.empty(); ++k) {
       const std::size_t i = first + 4 * s + k;
       std::cout << format("%10.6f", std::sqrt(std::max(covariance[i * parameters + i], 0.0)));
@@ -58,9 +56,8 @@ void print_quality(const Calibration& c) {
                               ? format("%.3f, %ld degrees of freedom",
                                        c.chi_squared / static_cast<double>(c.degrees_of_freedom), c.degrees_of_freedom)
                               : "not refined");
-  if (c.scale_uncertainty > 0) {
+  if (c.scale_uncertainty > 0)
     print_line("scale", format("known to %.2e, from the scatter of the empty references", c.scale_uncertainty));
-  }
   print_line("polarizer", format("offset %.4f degrees, extinction %.2e, phase %.3f degrees",
                                  degrees(c.polarizer_offset), c.extinction, degrees(c.polarizer_phase)));
   if (c.film_thickness > 0) {
@@ -73,9 +70,7 @@ void print_quality(const Calibration& c) {
 
 Film film_from(const std::string& text) {
   const std::vector<double> n = numbers(text);
-  if (n.size() != 4) {
-    throw std::invalid_argument("\"" + text + "\": expected N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE");
-  }
+  if (n.size() != 4) throw std::invalid_argument("\"" + text + "\": expected N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE");
   return {n[0], n[1], {n[2], n[3]}};
 }
 
@@ -89,13 +84,9 @@ ReadingNoise noise_from(const std::string& text) {
     const std::size_t end = std::min(text.find(',', begin), text.size()), colon = text.find(':', begin);
     const std::string part = text.substr(begin, end - begin);
     const auto term = terms.find(text.substr(begin, std::min(colon, end) - begin));
-    if (colon >= end || term == terms.end()) {
-      throw wrong(part);
-    }
+    if (colon >= end || term == terms.end()) throw wrong(part);
     *term->second = number(text.substr(colon + 1, end - colon - 1));
-    if (*term->second < 0) {
-      throw wrong(part);
-    }
+    if (*term->second < 0) throw wrong(part);
     terms.erase(term);  // a second one is wrong
     begin = end + 1;
   }
@@ -104,9 +95,7 @@ ReadingNoise noise_from(const std::string& text) {
 
 double positive_number(const std::string& text) {
   const double value = number(text);
-  if (!(value > 0)) {
-    throw std::invalid_argument("\"" + text + "\": expected a positive number");
-  }
+  if (!(value > 0)) throw std::invalid_argument("\"" + text + "\": expected a positive number");
   return value;
 }
 
@@ -134,12 +123,8 @@ void judge(const Calibration& calibration, const std::string& name) {
            format("figure of merit %.2g, more than %g: are states or references mixed up, or angles wrong?", merit,
                   limit);
   };
-  if (merit > worst_merit) {
-    throw std::runtime_error(complaint(worst_merit));
-  }
-  if (merit > doubtful_merit) {
-    warn(complaint(doubtful_merit));
-  }
+  if (merit > worst_merit) throw std::runtime_error(complaint(worst_merit));
+  if (merit > doubtful_merit) warn(complaint(doubtful_merit));
 }
 
 void print_instrument(const Calibration& c) {
@@ -149,9 +134,7 @@ void print_instrument(const Calibration& c) {
   print_states("generator", c.polarimeter.generator, c.covariance, parameters, 0);
   print_states("analyzer", c.polarimeter.analyzer, c.covariance, parameters, 4 * generators);
   std::cout << (c.provenance.empty() ? "" : "\n");
-  for (const auto& [key, value] : c.provenance) {
-    print_line(key, value);
-  }
+  for (const auto& [key, value] : c.provenance) print_line(key, value);
 }
 
 }  // namespace mmbrdf::program

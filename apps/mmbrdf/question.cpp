@@ -35,18 +35,14 @@ void add_as_printed(CLI::App& app, Question& question) {
 
 Model model_of(const Question& question) {
   Model model = open_model(question.model);
-  if (question.as_printed) {
-    note_unless_printed(model, base_name(question.model));
-  }
+  if (question.as_printed) note_unless_printed(model, base_name(question.model));
   return model;
 }
 
 void require_directions(const Question& question, const std::string& or_else) {
   for (const auto& [given, name] : {std::pair(question.incident.has_value(), "--incident"),
                                     std::pair(question.reflected.has_value(), "--reflected")}) {
-    if (!given) {
-      throw CLI::RequiredError(std::string(name) + " (or " + or_else + ")");
-    }
+    if (!given) throw CLI::RequiredError(std::string(name) + " (or " + or_else + ")");
   }
 }
 
@@ -82,9 +78,8 @@ std::string heading(const Place& place) {
 
 std::string fields(const Place& place) {
   std::string text = place.wavelength_nm ? shortest(*place.wavelength_nm) : "";
-  for (const double angle : {place.incident.theta, place.incident.phi, place.reflected.theta, place.reflected.phi}) {
+  for (const double angle : {place.incident.theta, place.incident.phi, place.reflected.theta, place.reflected.phi})
     text += "," + shortest(angle);
-  }
   return text;
 }
 
@@ -112,12 +107,9 @@ std::string convention_note(Frame frame) {
 }
 
 void warn_if_outside(const std::string& model, Outside outside, const Validity& validity) {
-  if (leaves_known_range(outside)) {
+  if (leaves_known_range(outside))
     warn("outside the fitted range (" + to_string(outside) + "): fitted are " + fitted_range(validity));
-  }
-  if (outside & unknown_range) {
-    warn(unknown_range_line(model, validity));
-  }
+  if (outside & unknown_range) warn(unknown_range_line(model, validity));
 }
 
 }  // namespace mmbrdf::program

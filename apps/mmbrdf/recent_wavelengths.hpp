@@ -23,9 +23,7 @@ class RecentWavelengths {
       const auto known =
           std::find_if(entries_.begin(), entries_.end(), [=](const auto& entry) { return entry.first == wavelength; });
       last_ = static_cast<std::size_t>(known - entries_.begin());
-      if (known == entries_.end()) {
-        add(wavelength);
-      }
+      if (known == entries_.end()) add(wavelength);
     }
     return entries_[last_].second;
   }

@@ -33,9 +33,7 @@ struct Options {
 
 double solid_angle_from(const std::string& text) {
   const double value = positive_number(text);
-  if (value > 2 * std::numbers::pi) {
-    throw std::invalid_argument("\"" + text + "\": expected at most 2 pi sr");
-  }
+  if (value > 2 * std::numbers::pi) throw std::invalid_argument("\"" + text + "\": expected at most 2 pi sr");
   return value;
 }
 
@@ -63,18 +61,13 @@ std::vector<Sample> reduced_file(const Calibration& instrument, const Options& o
 /// Warns of matrices that nothing can have, or refuses them.
 void check_possible(const std::vector<Sample>& samples, const Options& options) {
   long impossible = 0;
-  for (const Sample& sample : samples) {
+  for (const Sample& sample : samples)
     impossible += coherency_eigenvalues(sample.normalized)[0] < impossible_eigenvalue ? 1 : 0;
-  }
-  if (impossible == 0) {
-    return;
-  }
+  if (impossible == 0) return;
   const std::string message =
       data_name(options.raw) + ": " + std::to_string(impossible) + " of " + std::to_string(samples.size()) +
       " matrices cannot be physical: are generator and analyzer states exchanged, or is it another instrument?";
-  if (options.strict) {
-    throw std::runtime_error(message);
-  }
+  if (options.strict) throw std::runtime_error(message);
   warn(message);
 }
 
@@ -85,11 +78,10 @@ void reduce(const Options& options) {
   judge(instrument, base_name(options.instrument));
   const std::vector<Sample> samples = reduced_file(instrument, options);
   check_possible(samples, options);
-  if (is_standard_output(options.output)) {
+  if (is_standard_output(options.output))
     write_samples(std::cout, samples);
-  } else {
+  else
     write_samples(options.output, samples);
-  }
 }
 
 constexpr const char* footer =

@@ -26,38 +26,25 @@ struct Options {
 };
 
 Format report_format_from(const std::string& name) {
-  if (name == "markdown") {
-    return Format::text;
-  }
-  if (name == "json") {
-    return Format::json;
-  }
+  if (name == "markdown") return Format::text;
+  if (name == "json") return Format::json;
   throw std::invalid_argument("\"" + name + "\": expected markdown or json");
 }
 
 /// A cell of a table: | would end it, and a line end would end the row.
 std::string cell(const Json& value) {
-  if (value.is_null()) {
-    return "not known";
-  }
-  if (value.is_boolean()) {
-    return value.get<bool>() ? "yes" : "no";
-  }
-  if (value.is_number_float()) {
-    return format("%.6g", value.get<double>());
-  }
+  if (value.is_null()) return "not known";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number_float()) return format("%.6g", value.get<double>());
   std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  for (std::size_t at = 0; (at = text.find_first_of("|\n", at)) != std::string::npos; at += 2) {
+  for (std::size_t at = 0; (at = text.find_first_of("|\n", at)) != std::string::npos; at += 2)
     text.replace(at, 1, text[at] == '|' ? "\\|" : "  ");
-  }
   return text;
 }
 
 std::string row(const std::vector<std::string>& cells) {
   std::string text = "|";
-  for (const std::string& one : cells) {
-    text += " " + one + " |";
-  }
+  for (const std::string& one : cells) text += " " + one + " |";
   return text + "\n";
 }
 
@@ -71,9 +58,7 @@ std::string table(const Json& rows) {
   std::string text = row(names) + row(line);
   for (const Json& object : rows) {
     std::vector<std::string> cells;
-    for (const auto& [name, value] : object.items()) {
-      cells.push_back(cell(value));
-    }
+    for (const auto& [name, value] : object.items()) cells.push_back(cell(value));
     text += row(cells);
   }
   return text;
@@ -81,26 +66,16 @@ std::string table(const Json& rows) {
 
 /// A field of the report: prose, a list of lines, a table of names and values, or a table.
 std::string section(const Json& value) {
-  if (value.is_string()) {
-    return value.get<std::string>() + "\n";
-  }
-  if (value.empty()) {
-    return "none\n";
-  }
+  if (value.is_string()) return value.get<std::string>() + "\n";
+  if (value.empty()) return "none\n";
   std::string text;
   if (value.is_object()) {
     text = row({"", ""}) + row({"---", "---"});
-    for (const auto& [name, field] : value.items()) {
-      text += row({name, cell(field)});
-    }
+    for (const auto& [name, field] : value.items()) text += row({name, cell(field)});
     return text;
   }
-  if (value.front().is_object()) {
-    return table(value);
-  }
-  for (const Json& line : value) {
-    text += "- " + line.get<std::string>() + "\n";
-  }
+  if (value.front().is_object()) return table(value);
+  for (const Json& line : value) text += "- " + line.get<std::string>() + "\n";
   return text;
 }
 
@@ -113,11 +88,8 @@ std::string heading(std::string name) {
 
 std::string markdown(const Json& report) {
   std::string text = "# " + report["title"].get<std::string>() + "\n";
-  for (const auto& [name, value] : report.items()) {
-    if (name != "title") {
-      text += "\n## " + heading(name) + "\n\n" + section(value);
-    }
-  }
+  for (const auto& [name, value] : report.items())
+    if (name != "title") text += "\n## " + heading(name) + "\n\n" + section(value);
   return text;
 }
 
@@ -126,9 +98,8 @@ void report(const Options& options) {
   require_kept(options.data, options.output, "data");
   const Model model = open_model(options.model);
   const std::string name = base_name(options.model);
-  if (!options.wavelengths_nm && known_wavelengths(model).empty()) {
+  if (!options.wavelengths_nm && known_wavelengths(model).empty())
     throw CLI::ValidationError("--wavelength is required", name + " does not say to which wavelengths it was fitted");
-  }
   const std::vector<double> wavelengths = micrometres(options.wavelengths_nm.value_or(std::vector<double>{}));
   std::vector<Sample> samples;
   std::optional<ReportedSamples> data;
@@ -137,9 +108,7 @@ void report(const Options& options) {
     data = {data_name(options.data), samples};
   }
   const Json facts = Json::parse(report_json(model, name, wavelengths, data));
-  if (options.format == Format::text) {
-    return write_text(options.output, markdown(facts));
-  }
+  if (options.format == Format::text) return write_text(options.output, markdown(facts));
   write_text(options.output, printed(facts));
 }
 

@@ -24,9 +24,8 @@ void set(Question& question, const std::string& variable, double value) {
   }
   const bool incident = variable.ends_with("_i");
   std::optional<DirectionDegrees>& direction = incident ? question.incident : question.reflected;
-  if (!direction) {  // theta_r alone runs in the plane of incidence, forward where it is positive
+  if (!direction)  // theta_r alone runs in the plane of incidence, forward where it is positive
     direction = DirectionDegrees{0, incident ? 0 : question.incident.value_or(DirectionDegrees{}).phi + 180};
-  }
   (variable.starts_with("theta") ? direction->theta : direction->phi) = value;
 }
 
@@ -36,9 +35,8 @@ long steps_between(const std::string& text, double from, double to, double step)
                                 " to " + shortest(to));
   }
   const double steps = (to - from) / step + 1e-9;  // the last one may be rounded
-  if (!(steps < static_cast<double>(max_scan_rows))) {
+  if (!(steps < static_cast<double>(max_scan_rows)))
     throw std::invalid_argument("\"" + text + "\": more than " + std::to_string(max_scan_rows) + " values");
-  }
   return static_cast<long>(steps);
 }
 
@@ -49,44 +47,32 @@ double Scan::value(long i) const { return std::round((from + static_cast<double>
 
 Scan scan_from(const std::string& text) {
   const std::size_t equals = text.find('='), first = text.find(':', equals), second = text.find(':', first + 1);
-  if (equals == std::string::npos || first == std::string::npos || second == std::string::npos) {
+  if (equals == std::string::npos || first == std::string::npos || second == std::string::npos)
     throw std::invalid_argument("\"" + text + "\": expected " + form);
-  }
   const std::string variable = text.substr(0, equals);
-  if (std::find(std::begin(variables), std::end(variables), variable) == std::end(variables)) {
+  if (std::find(std::begin(variables), std::end(variables), variable) == std::end(variables))
     throw std::invalid_argument("\"" + variable + "\": expected theta_i, phi_i, theta_r, phi_r or wavelength");
-  }
   const double from = number(text.substr(equals + 1, first - equals - 1));
   const double to = number(text.substr(first + 1, second - first - 1)), step = number(text.substr(second + 1));
   return {variable, from, step, steps_between(text, from, to, step) + 1};
 }
 
 void require_complete(const std::vector<Scan>& scans, const Question& question) {
-  for (const Scan& scan : scans) {
-    if (std::count_if(scans.begin(), scans.end(), [&](const Scan& s) { return s.variable == scan.variable; }) > 1) {
+  for (const Scan& scan : scans)
+    if (std::count_if(scans.begin(), scans.end(), [&](const Scan& s) { return s.variable == scan.variable; }) > 1)
       throw CLI::ValidationError("--scan", scan.variable + " is scanned twice");
-    }
-  }
-  if (!question.incident && !scanned(scans, "theta_i")) {
-    throw CLI::RequiredError("--incident (or --scan theta_i=...)");
-  }
-  if (!question.reflected && !scanned(scans, "theta_r")) {
+  if (!question.incident && !scanned(scans, "theta_i")) throw CLI::RequiredError("--incident (or --scan theta_i=...)");
+  if (!question.reflected && !scanned(scans, "theta_r"))
     throw CLI::RequiredError("--reflected (or --scan theta_r=...)");
-  }
   double rows = 1;
-  for (const Scan& scan : scans) {
-    rows *= static_cast<double>(scan.count);
-  }
-  if (rows > static_cast<double>(max_scan_rows)) {
+  for (const Scan& scan : scans) rows *= static_cast<double>(scan.count);
+  if (rows > static_cast<double>(max_scan_rows))
     throw CLI::ValidationError("--scan", "more than " + std::to_string(max_scan_rows) + " rows");
-  }
 }
 
 long row_count(const std::vector<Scan>& scans) {
   long rows = 1;
-  for (const Scan& scan : scans) {
-    rows *= scan.count;
-  }
+  for (const Scan& scan : scans) rows *= scan.count;
   return rows;
 }
 

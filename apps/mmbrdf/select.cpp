@@ -41,18 +41,10 @@ Range orders_range(const std::string& text) {
 }
 
 LeaveOut leave_out_from(const std::string& name) {
-  if (name == "angle") {
-    return LeaveOut::angle;
-  }
-  if (name == "wavelength") {
-    return LeaveOut::wavelength;
-  }
-  if (name == "angle,wavelength") {
-    return LeaveOut::both;
-  }
-  if (name == "none") {
-    return LeaveOut::none;
-  }
+  if (name == "angle") return LeaveOut::angle;
+  if (name == "wavelength") return LeaveOut::wavelength;
+  if (name == "angle,wavelength") return LeaveOut::both;
+  if (name == "none") return LeaveOut::none;
   throw std::invalid_argument("\"" + name + "\": expected angle, wavelength, angle,wavelength or none");
 }
 
@@ -60,12 +52,8 @@ std::vector<Partition> partitions_of(const Options& options, std::span<const Sam
   std::vector<Partition> result{options.random ? random_folds(samples.size(), options.folds, options.seed)
                                                : folds_by_row(samples.size(), options.folds)};
   const LeaveOut what = options.leave_out;
-  if (what == LeaveOut::angle || what == LeaveOut::both) {
-    result.push_back(folds_by_incident_angle(samples));
-  }
-  if (what == LeaveOut::wavelength || what == LeaveOut::both) {
-    result.push_back(folds_by_wavelength(samples));
-  }
+  if (what == LeaveOut::angle || what == LeaveOut::both) result.push_back(folds_by_incident_angle(samples));
+  if (what == LeaveOut::wavelength || what == LeaveOut::both) result.push_back(folds_by_wavelength(samples));
   if (what == LeaveOut::what_can_be) {
     try {
       result.push_back(folds_by_incident_angle(samples));
@@ -73,9 +61,7 @@ std::vector<Partition> partitions_of(const Options& options, std::span<const Sam
       note(plain_message(error) + "; folds alone decide, and see nothing between the angles measured");
     }
     // Without one of two wavelengths no power could be tested.
-    if (wavelengths(samples).size() > 2) {
-      result.push_back(folds_by_wavelength(samples));
-    }
+    if (wavelengths(samples).size() > 2) result.push_back(folds_by_wavelength(samples));
   }
   return result;
 }

@@ -52,16 +52,14 @@ std::string recommended_options(const SelectReport& report) {
 
 void print_table(const SelectReport& report, const PartSelection& part) {
   std::cout << "order powers coefficients   rank  condition        rms        AIC        BIC";
-  for (const Partition& partition : report.partitions) {
+  for (const Partition& partition : report.partitions)
     std::cout << format(" %13s", ("CV " + to_string(partition.kind)).c_str());
-  }
   std::cout << '\n';
   for (const Candidate& one : part.candidates) {
     std::cout << format("%5d %6d %12d %6d %10.4g %10.4g %10.1f %10.1f", one.order, one.powers, one.coefficients,
                         one.rank, one.condition, one.rms, one.aic, one.bic);
-    for (const HeldOut& held_out : one.held_out) {
+    for (const HeldOut& held_out : one.held_out)
       std::cout << (held_out.undetermined.empty() ? format(" %13.4g", held_out.rms) : format(" %13s", "-"));
-    }
     const std::string how = status(part, one);
     std::cout << (how.empty() ? "" : "  " + how) << '\n';
   }
@@ -90,20 +88,14 @@ void print_text(const SelectReport& report) {
 
 /// Without commas: a field of a CSV file.
 std::string field(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == ',') {
-      text[i] = i + 1 < text.size() && text[i + 1] == ' ' ? ';' : ' ';
-    }
-  }
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == ',') text[i] = i + 1 < text.size() && text[i + 1] == ' ' ? ';' : ' ';
   return text;
 }
 
 const HeldOut* of_kind(const SelectReport& report, const Candidate& candidate, Kind kind) {
-  for (std::size_t p = 0; p < report.partitions.size(); ++p) {
-    if (report.partitions[p].kind == kind) {
-      return &candidate.held_out[p];
-    }
-  }
+  for (std::size_t p = 0; p < report.partitions.size(); ++p)
+    if (report.partitions[p].kind == kind) return &candidate.held_out[p];
   return nullptr;
 }
 
@@ -111,9 +103,7 @@ constexpr std::array kinds{Kind::rows, Kind::random, Kind::angle, Kind::waveleng
 
 void print_csv(const SelectReport& report) {
   std::cout << "part,order,powers,coefficients,rank,condition,rms,aic,bic";
-  for (const Kind kind : kinds) {
-    std::cout << ",cv_" << to_string(kind);
-  }
+  for (const Kind kind : kinds) std::cout << ",cv_" << to_string(kind);
   std::cout << ",status,reason\n";
   for (const auto& [name, part] : parts(report.selection)) {
     for (const Candidate& one : part->candidates) {
@@ -164,16 +154,12 @@ Json part_json(const SelectReport& report, const PartSelection& part) {
 void print_json(const SelectReport& report) {
   Json json{{"data", report.data}, {"rows", report.rows}, {"weights", report.weights}};
   json["wavelengths_nm"] = Json::array();
-  for (const double wavelength : report.wavelengths) {
-    json["wavelengths_nm"].push_back(nanometres(wavelength));
-  }
+  for (const double wavelength : report.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
   json["basis"] = to_string(report.options.family);
   json["mapping"] = to_string(report.options.mapping);
   json["left_out"] = left_out(report.partitions);
   const Selection& selection = report.selection;
-  for (const auto& [name, part] : parts(selection)) {
-    json[name] = part_json(report, *part);
-  }
+  for (const auto& [name, part] : parts(selection)) json[name] = part_json(report, *part);
   json["recommended_orders"] = selection.orders ? Json{selection.orders->f11, selection.orders->other} : Json();
   json["recommended_powers"] = selection.orders ? Json(selection.powers) : Json();
   json["reason_f11"] = selection.f11.reason;

@@ -28,26 +28,17 @@ struct Options {
 
 double speckle_from(const std::string& text) {
   const std::string prefix = "speckle:";
-  if (text == "none") {
-    return 0;
-  }
-  if (!text.starts_with(prefix)) {
-    throw std::invalid_argument("\"" + text + "\": expected speckle:C or none");
-  }
+  if (text == "none") return 0;
+  if (!text.starts_with(prefix)) throw std::invalid_argument("\"" + text + "\": expected speckle:C or none");
   const double value = number(text.substr(prefix.size()));
-  if (value < 0) {
-    throw std::invalid_argument("\"" + text + "\": expected 0 or more");
-  }
+  if (value < 0) throw std::invalid_argument("\"" + text + "\": expected 0 or more");
   return value;
 }
 
 std::vector<double> wavelengths_of(const Model& model, const Options& options) {
-  if (options.wavelengths_nm) {
-    return micrometres(*options.wavelengths_nm);
-  }
-  if (model.validity.wavelengths.empty()) {
+  if (options.wavelengths_nm) return micrometres(*options.wavelengths_nm);
+  if (model.validity.wavelengths.empty())
     throw CLI::ValidationError("--wavelength is required", options.model + " does not say to which it was fitted");
-  }
   return model.validity.wavelengths;
 }
 
@@ -61,9 +52,7 @@ std::vector<Sample> simulated(const Model& model, const std::vector<double>& wav
 
 double relative_noise_from(const std::string& text) {
   const ReadingNoise noise = noise_from(text);
-  if (noise.dark > 0 || noise.shot > 0) {
-    throw std::invalid_argument("\"" + text + "\": expected relative:Z");
-  }
+  if (noise.dark > 0 || noise.shot > 0) throw std::invalid_argument("\"" + text + "\": expected relative:Z");
   return noise.relative;
 }
 
@@ -78,18 +67,16 @@ void require_possible(double noise, const std::string& option, const std::string
 void simulate_readings(const Options& options) {
   const Model model = open_model(options.model);
   const std::vector<double> wavelengths = wavelengths_of(model, options);
-  if (wavelengths.size() != 1) {
+  if (wavelengths.size() != 1)
     throw CLI::ValidationError("--raw", "an instrument is of one wavelength: give one with --wavelength");
-  }
   RawSimulation raw{options.raw, RawSimulation{}.reading_noise, options.speckle, options.seed};
   raw.reading_noise = options.reading_noise.value_or(raw.reading_noise);
   require_possible(raw.speckle, "--noise", "speckle");
   require_possible(raw.reading_noise, "--reading-noise", "relative");
   require_kept(options.model, raw);
   std::vector<Sample> measured;
-  for (const Geometry& geometry : geometries(options.grid, options.seed)) {
+  for (const Geometry& geometry : geometries(options.grid, options.seed))
     measured.push_back({wavelengths[0], geometry, 1, identity()});
-  }
   try {
     simulate_raw(model, wavelengths[0], geometries(options.grid, options.seed), raw);
   } catch (const std::invalid_argument& error) {
@@ -102,11 +89,10 @@ void simulate_data(const Options& options) {
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   const std::vector<Sample> samples = simulated(model, wavelengths_of(model, options), options);
-  if (is_standard_output(options.output)) {
+  if (is_standard_output(options.output))
     write_samples(std::cout, samples);
-  } else {
+  else
     write_samples(options.output, samples);
-  }
   warn_if_outside(model, samples, base_name(options.model));
 }
 

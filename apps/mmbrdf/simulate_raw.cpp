@@ -29,18 +29,15 @@ std::vector<RawMeasurement> measurements(const Goniometer& goniometer, const Mod
                                          std::span<const Geometry> geometries, unsigned long seed) {
   const auto readings = goniometer.readings(prepare(model, wavelength), geometries, seed);
   std::vector<RawMeasurement> result;
-  for (std::size_t i = 0; i < geometries.size(); ++i) {
-    result.push_back({wavelength, geometries[i], readings[i]});
-  }
+  for (std::size_t i = 0; i < geometries.size(); ++i) result.push_back({wavelength, geometries[i], readings[i]});
   return result;
 }
 
 }  // namespace
 
 void require_kept(const std::string& model, const RawSimulation& options) {
-  for (const char* const file : {references_file, raw_file}) {
+  for (const char* const file : {references_file, raw_file})
     require_model_kept(model, (std::filesystem::path(options.folder) / file).string());
-  }
 }
 
 void simulate_raw(const Model& model, double wavelength, std::span<const Geometry> geometries,
@@ -54,9 +51,7 @@ void simulate_raw(const Model& model, double wavelength, std::span<const Geometr
   const std::filesystem::path folder = options.folder;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw std::runtime_error(options.folder + ": cannot be made: " + error.message());
-  }
+  if (error) throw std::runtime_error(options.folder + ": cannot be made: " + error.message());
   write_references((folder / references_file).string(), references);
   write_raw((folder / raw_file).string(), states, raw);
   const Film& film = goniometer.options().film;

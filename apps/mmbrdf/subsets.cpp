@@ -56,17 +56,13 @@ Split split(const Question& q, const Options& o, unsigned long seed) {
                                                                 : folds_by_row(q.samples.size(), o.parts)),
                                     o.basis, o.fit, o.weights);
   Split result;
-  for (const Model& part : fits.parts) {
+  for (const Model& part : fits.parts)
     result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries, rotation));
-  }
   result.reference = q.reference ? polarized_curve(*q.reference, q.wavelength, q.geometries)
                                  : polarized_curve(fits.whole, q.wavelength, q.geometries, rotation);
   result.uncertainty = polarized_uncertainty(fits.whole, q.wavelength, q.geometries, rotation);
-  for (PolarizedBrdf& u : result.uncertainty) {
-    for (double* part : {&u.ss, &u.sp, &u.ps, &u.pp}) {
-      *part *= std::sqrt(o.parts);
-    }
-  }
+  for (PolarizedBrdf& u : result.uncertainty)
+    for (double* part : {&u.ss, &u.sp, &u.ps, &u.pp}) *part *= std::sqrt(o.parts);
   result.statistics = subset_statistics(result.curves, result.reference);
   result.predicted = relative_rms(result.uncertainty, result.reference);
   return result;
@@ -75,9 +71,7 @@ Split split(const Question& q, const Options& o, unsigned long seed) {
 /// Root mean square over splits.
 double observed(const std::vector<Split>& splits) {
   double squares = 0;
-  for (const Split& s : splits) {
-    squares += s.statistics.root_mean_variance * s.statistics.root_mean_variance;
-  }
+  for (const Split& s : splits) squares += s.statistics.root_mean_variance * s.statistics.root_mean_variance;
   return std::sqrt(squares / static_cast<double>(splits.size()));
 }
 
@@ -117,9 +111,7 @@ std::string text(const Question& q, const Options& o, const std::vector<Split>& 
   const double predicted = splits.front().predicted;
   text += percent("standard deviation, root mean square", observed(splits));
   text += percent("the same as the covariance of one fit predicts it", predicted);
-  if (predicted > 0) {
-    text += format("%-52s %8.4f\n", "observed / predicted", observed(splits) / predicted);
-  }
+  if (predicted > 0) text += format("%-52s %8.4f\n", "observed / predicted", observed(splits) / predicted);
   return text;
 }
 
@@ -130,17 +122,13 @@ constexpr std::array members{&PolarizedBrdf::ss, &PolarizedBrdf::sp, &PolarizedB
 std::string curves_csv(const Options& o, const Split& split) {
   std::string text = "theta_r_deg";
   for (const std::string name : names) {
-    for (std::size_t k = 1; k <= split.curves.size(); ++k) {
-      text += "," + name + "_" + std::to_string(k);
-    }
+    for (std::size_t k = 1; k <= split.curves.size(); ++k) text += "," + name + "_" + std::to_string(k);
     text += "," + name + "_mean,s_" + name + ",u_" + name + "," + name + "_reference";
   }
   for (std::size_t g = 0; g < split.reference.size(); ++g) {
     text += "\n" + shortest(o.theta_r_deg[g]);
     for (const auto member : members) {
-      for (const PolarizedCurve& curve : split.curves) {
-        text += "," + exact(curve[g].*member);
-      }
+      for (const PolarizedCurve& curve : split.curves) text += "," + exact(curve[g].*member);
       for (const PolarizedCurve* curve :
            {&split.statistics.mean, &split.statistics.deviation, &split.uncertainty, &split.reference}) {
         text += "," + exact((*curve)[g].*member);
@@ -197,26 +185,17 @@ std::string json(const Question& q, const Options& o, const std::vector<Split>& 
 }
 
 void require_valid(const Options& o) {
-  if (o.theta_i_deg < 0 || o.theta_i_deg > 90) {
+  if (o.theta_i_deg < 0 || o.theta_i_deg > 90)
     throw std::invalid_argument("--theta-i " + shortest(o.theta_i_deg) + ": is not in [0, 90] degrees");
-  }
-  for (const double theta : {o.theta_r_deg.front(), o.theta_r_deg.back()}) {
-    if (std::abs(theta) > 90) {
+  for (const double theta : {o.theta_r_deg.front(), o.theta_r_deg.back()})
+    if (std::abs(theta) > 90)
       throw std::invalid_argument("--range: " + shortest(theta) + " is not in [-90, 90] degrees");
-    }
-  }
-  if (o.as_printed && o.basis.family != Family::germer2017) {
+  if (o.as_printed && o.basis.family != Family::germer2017)
     throw CLI::ValidationError("--as-printed", "goes with --basis germer2017");
-  }
-  if (o.parts < 2 || o.parts > max_folds) {
+  if (o.parts < 2 || o.parts > max_folds)
     throw std::invalid_argument("--k " + std::to_string(o.parts) + ": is not in 2..." + std::to_string(max_folds));
-  }
-  if (o.splits < 1) {
-    throw std::invalid_argument("--splits 0: must be at least 1");
-  }
-  if (o.splits > 10000) {
-    throw std::invalid_argument("--splits " + std::to_string(o.splits) + ": at most 10000");
-  }
+  if (o.splits < 1) throw std::invalid_argument("--splits 0: must be at least 1");
+  if (o.splits > 10000) throw std::invalid_argument("--splits " + std::to_string(o.splits) + ": at most 10000");
   require_kept(o.data, o.output, "data");
   require_kept(o.reference, o.output, "reference");
 }
@@ -224,37 +203,27 @@ void require_valid(const Options& o) {
 /// Of the directions of the curves, by what the fit to all samples and the reference were fitted to.
 void warn_of_directions(const Model& model, const Question& q, const std::string& name) {
   std::vector<Sample> asked;
-  for (const Geometry& geometry : q.geometries) {
-    asked.push_back({q.wavelength, geometry, 1, identity()});
-  }
+  for (const Geometry& geometry : q.geometries) asked.push_back({q.wavelength, geometry, 1, identity()});
   warn_if_outside(model, asked, name);
 }
 
 /// The wavelength at which the fits are compared: the only one, or the one asked for.
 double wavelength_of(const std::vector<Sample>& samples, const Options& o) {
   const std::vector<double> present = wavelengths(samples);
-  if (present.size() == 1) {
-    return present.front();
-  }
+  if (present.size() == 1) return present.front();
   throw CLI::ValidationError("--wavelength is required",
                              data_name(o.data) + " has samples at " + nanometre_list(present));
 }
 
 Question question(const Options& o) {
   std::optional<std::vector<double>> wavelengths_nm;
-  if (o.wavelength_nm) {
-    wavelengths_nm = {*o.wavelength_nm};
-  }
+  if (o.wavelength_nm) wavelengths_nm = {*o.wavelength_nm};
   Question q{samples_at(o.data, wavelengths_nm), 0, {}, {}};
   q.wavelength = wavelength_of(q.samples, o);
   std::vector<double> theta_r;
-  for (const double theta : o.theta_r_deg) {
-    theta_r.push_back(radians(theta));
-  }
+  for (const double theta : o.theta_r_deg) theta_r.push_back(radians(theta));
   q.geometries = in_plane(radians(o.theta_i_deg), theta_r);
-  if (!o.reference.empty()) {
-    q.reference = open_model(o.reference);
-  }
+  if (!o.reference.empty()) q.reference = open_model(o.reference);
   return q;
 }
 
@@ -264,9 +233,7 @@ void study(Options o) {
   const Question q = question(o);
   std::vector<Split> splits;
   try {
-    for (int i = 0; i < o.splits; ++i) {
-      splits.push_back(split(q, o, o.seed + static_cast<unsigned long>(i)));
-    }
+    for (int i = 0; i < o.splits; ++i) splits.push_back(split(q, o, o.seed + static_cast<unsigned long>(i)));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(o.data) + ": " + plain_message(error));
   }
@@ -277,9 +244,7 @@ void study(Options o) {
     range.validity.theta_r_max = std::max(range.validity.theta_r_max.value_or(0), s.geometry.reflected.theta);
   }
   warn_of_directions(range, q, data_name(o.data));
-  if (q.reference) {
-    warn_of_directions(*q.reference, q, base_name(o.reference));
-  }
+  if (q.reference) warn_of_directions(*q.reference, q, base_name(o.reference));
   write_text(o.output, (o.format == Format::text ? text : o.format == Format::csv ? csv : json)(q, o, splits));
 }
 

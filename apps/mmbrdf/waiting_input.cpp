@@ -29,34 +29,24 @@ bool may_wait(const std::string& path) {
 
 WaitingInput::WaitingInput(const std::string& path)
     : number_(is_standard_input(path) ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (number_ < 0) {
-    throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
-  }
+  if (number_ < 0) throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
 }
 
 WaitingInput::~WaitingInput() {
-  if (number_ != STDIN_FILENO) {
-    ::close(number_);
-  }
+  if (number_ != STDIN_FILENO) ::close(number_);
 }
 
 WaitingInput::int_type WaitingInput::underflow() {
   while (!ended_) {
     pollfd one{.fd = number_, .events = POLLIN, .revents = 0};
-    if (::poll(&one, 1, look_up_ms) == 0) {
-      continue;
-    }
+    if (::poll(&one, 1, look_up_ms) == 0) continue;
     const ssize_t count = ::read(number_, buffer_.data(), buffer_.size());
     if (count > 0) {
       setg(buffer_.data(), buffer_.data(), buffer_.data() + count);
       return traits_type::to_int_type(buffer_.front());
     }
-    if (count == 0) {
-      break;
-    }
-    if (errno != EINTR && errno != EAGAIN) {
-      throw std::system_error(errno, std::generic_category());
-    }
+    if (count == 0) break;
+    if (errno != EINTR && errno != EAGAIN) throw std::system_error(errno, std::generic_category());
   }
   return traits_type::eof();
 }

@@ -57,13 +57,12 @@ double loaded(const char* data) {
 
 /// `count` numbers at this distance; returns where the next goes.
 double* gather_numbers(const char* data, py::ssize_t stride, std::size_t count, double* out) {
-  if (stride == static_cast<py::ssize_t>(sizeof(double))) {
+  if (stride == static_cast<py::ssize_t>(sizeof(double)))
     std::memcpy(out, data, count * sizeof(double));
-  } else if (stride == 0) {
+  else if (stride == 0)
     std::fill_n(out, count, loaded(data));
-  } else {
+  else
     for (std::size_t i = 0; i < count; ++i, data += stride) out[i] = loaded(data);
-  }
   return out + count;
 }
 

@@ -116,11 +116,10 @@ class Question {
     std::vector<Geometry> geometries(std::min(most, end - begin));
     for (; begin < end; begin += geometries.size()) {
       const std::size_t count = std::min(geometries.size(), end - begin);
-      if (order == nullptr) {
+      if (order == nullptr)
         gather(broadcast_, 1, begin, begin + count, geometries.data());
-      } else {
+      else
         for (std::size_t i = 0; i < count; ++i) geometries[i] = geometry(broadcast_, 1, order[begin + i]);
-      }
       use(prepared, Some{{geometries.data(), count}, order ? order + begin : nullptr, begin});
     }
   }
