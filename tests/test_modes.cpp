@@ -537,8 +537,8 @@ TEST(Modes, AreNotValidTogetherWithTheirTwins) {
     // Z(r,i) of v enters conjugated, which turns the signs of k and l as well.
     const Mode twin = mode.function == v ? Mode{v, mode.m, mode.n, -mode.l, -mode.k}
                                          : Mode{mode.function, mode.m, mode.n, mode.l, mode.k};
-    if (mode.function == u || mode.function == v)
-      EXPECT_EQ(refusal(twin, Family::isotropic) == "nothing was thrown", twin == mode) << to_string(twin);
+    if (mode.function != u && mode.function != v) continue;
+    EXPECT_EQ(refusal(twin, Family::isotropic) == "nothing was thrown", twin == mode) << to_string(twin);
   }
 }
 
