@@ -1,4 +1,4 @@
-# Writes OUTPUT, a C++ file that holds the text of each of FILES: see src/embedded_materials.hpp.
+# Writes OUTPUT, a C++ file that holds the text of each of FILES: see src/files/embedded_materials.hpp.
 #   cmake -DOUTPUT=embedded_materials.cpp "-DFILES=a.json;b.json" -P embed_materials.cmake
 
 # Compilers limit a single literal to 65536 bytes; adjacent literals are joined by the compiler.
@@ -35,7 +35,7 @@ else()
 endif()
 
 file(WRITE "${OUTPUT}" "// Written by cmake/embed_materials.cmake from materials/*.json.
-#include \"embedded_materials.hpp\"
+#include \"files/embedded_materials.hpp\"
 
 #pragma GCC diagnostic ignored \"-Woverlength-strings\"   // the joined literals, under -Wpedantic
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Evaluates a built-in material: the BRDF of sintered PTFE at 532 nm for light that arrives at 45 degrees.
 
-#include <mmbrdf/geometry.hpp>
-#include <mmbrdf/materials.hpp>
-#include <mmbrdf/model.hpp>
+#include <mmbrdf/files/materials.hpp>
+#include <mmbrdf/geometry/geometry.hpp>
+#include <mmbrdf/model/model.hpp>
 
 #include <cstdio>
 

@@ -3,9 +3,9 @@
 #include <thread>
 
 #include "bench.hpp"
-#include "mmbrdf/batch.hpp"
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/materials.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/batch.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels.hpp"
+#include "model/kernel/kernels.hpp"
 
 namespace mmbrdf::bench {
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "bench.hpp"
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/materials.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/samples/samples.hpp"
 #include "models.hpp"
 
 namespace mmbrdf::bench {

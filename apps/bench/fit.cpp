@@ -4,10 +4,10 @@
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
-#include <mmbrdf/dataset.hpp>
-#include <mmbrdf/fit.hpp>
-#include <mmbrdf/materials.hpp>
-#include <mmbrdf/simulation.hpp>
+#include <mmbrdf/files/materials.hpp>
+#include <mmbrdf/fitting/fit.hpp>
+#include <mmbrdf/samples/samples.hpp>
+#include <mmbrdf/samples/simulation.hpp>
 
 #include <cstdint>
 #include <string>

@@ -2,7 +2,7 @@
 /// Models with every mode of their orders. The time does not depend on the coefficients.
 #pragma once
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf::bench {
 

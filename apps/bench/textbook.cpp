@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "bench.hpp"
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/materials.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/samples/samples.hpp"
 #include "models.hpp"
 
 namespace mmbrdf::bench {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "command.hpp"
-#include "output.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What matrices say, over arrays of them.
-#include "mmbrdf/analysis.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
 
 #include <pybind11/complex.h>
 
 #include "bindings.hpp"
-#include "mmbrdf/decompositions.hpp"
-#include "mmbrdf/sensitivity.hpp"
+#include "mmbrdf/polarization/decompositions.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
 
 namespace mmbrdf::python {
 

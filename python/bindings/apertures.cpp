@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Apertures, in degrees.
-#include "mmbrdf/apertures.hpp"
+#include "mmbrdf/geometry/apertures.hpp"
 
 #include "bindings.hpp"
 

@@ -14,8 +14,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "mmbrdf/geometry.hpp"
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf::python {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf::python {
 

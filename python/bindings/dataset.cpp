@@ -10,9 +10,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "mmbrdf/subsets.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/fitting/subsets.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf::python {
 

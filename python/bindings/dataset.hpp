@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::python {
 

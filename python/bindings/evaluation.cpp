@@ -2,9 +2,9 @@
 // Models at many wavelengths and geometries.
 #include <pybind11/stl.h>
 
-#include "mmbrdf/budget.hpp"
-#include "mmbrdf/monte_carlo.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 #include "question.hpp"
 
 namespace mmbrdf::python {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From samples to a model, and how the two compare.
-#include "mmbrdf/fit.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 
 #include <pybind11/stl.h>
 
@@ -9,8 +9,8 @@
 
 #include "dataset.hpp"
 #include "instrument.hpp"
-#include "mmbrdf/common_errors.hpp"
-#include "mmbrdf/comparison.hpp"
+#include "mmbrdf/polarimetry/common_errors.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 
 namespace mmbrdf::python {
 

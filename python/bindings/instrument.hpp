@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "bindings.hpp"
-#include "mmbrdf/calibration.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 
 namespace mmbrdf::python {
 

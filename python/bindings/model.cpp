@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Models: what they are, where they come from, where they go.
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -13,10 +13,10 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "mmbrdf/conversion.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf::python {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames, conventions and optical elements.
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 #include <pybind11/stl.h>
 
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "mmbrdf/elements.hpp"
+#include "mmbrdf/polarization/elements.hpp"
 
 namespace mmbrdf::python {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Polarimeters: states, calibration, reduction, and a simulated goniometer.
-#include "mmbrdf/polarimeter.hpp"
+#include "mmbrdf/polarimetry/polarimeter.hpp"
 
 #include <pybind11/complex.h>
 #include <pybind11/stl.h>
@@ -11,10 +11,10 @@
 
 #include "dataset.hpp"
 #include "instrument.hpp"
-#include "mmbrdf/elements.hpp"
-#include "mmbrdf/goniometer.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/readings.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/polarization/elements.hpp"
 
 namespace mmbrdf::python {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reflectances, and means over apertures.
-#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 #include <pybind11/stl.h>
 
@@ -9,8 +9,8 @@
 #include <mutex>
 
 #include "dataset.hpp"
-#include "mmbrdf/reflectance_uncertainty.hpp"
-#include "mmbrdf/subsets.hpp"
+#include "mmbrdf/fitting/subsets.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "question.hpp"
 
 namespace mmbrdf::python {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Facts about models.
-#include "mmbrdf/report.hpp"
+#include "mmbrdf/quantities/report.hpp"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -9,7 +9,7 @@
 #include <ostream>
 
 #include "dataset.hpp"
-#include "mmbrdf/io.hpp"
+#include "mmbrdf/files/io.hpp"
 
 namespace mmbrdf::python {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/zernike.hpp"
+#include "mmbrdf/basis/zernike.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "numbers.hpp"
+#include "text/names.hpp"
+#include "text/numbers.hpp"
 
 // With w = x + iy = ρ e^{iφ}, the functions Z_n^k = R_n^k(ρ) e^{ikφ} obey
 //
@@ -20,6 +21,9 @@
 
 namespace mmbrdf {
 namespace {
+
+constexpr Named<DiscMapping> mapping_names[] = {{DiscMapping::lambert, "lambert"},
+                                                {DiscMapping::projected, "projected"}};
 
 constexpr std::size_t table_size = zernike_count(max_order);
 
@@ -107,5 +111,15 @@ void zernike_table(int order, const DiscPoint& point, double* values) {
   for (int n = 0; n <= order; ++n)
     for (int k = -n; k <= n; k += 2) values[at(n, k)] *= norm(n, k);
 }
+
+double projected_integral(int n, DiscMapping mapping) {
+  const double radial_integral = n == 0                                      ? std::numbers::pi
+                                 : n == 2 && mapping == DiscMapping::lambert ? -std::numbers::pi / 3
+                                                                             : 0;
+  return std::sqrt((n + 1) / (2 * std::numbers::pi)) * radial_integral;
+}
+
+std::string to_string(DiscMapping mapping) { return name_of(mapping_names, mapping); }
+DiscMapping disc_mapping_from(const std::string& name) { return value_of(mapping_names, name, "mapping"); }
 
 }  // namespace mmbrdf

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <istream>
 
-#include "mmbrdf/io.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

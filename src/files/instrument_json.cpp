@@ -4,10 +4,10 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "json_field.hpp"
-#include "json_text.hpp"
-#include "mmbrdf/readings.hpp"
-#include "numbers.hpp"
+#include "files/json_field.hpp"
+#include "mmbrdf/files/readings.hpp"
+#include "text/json_text.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

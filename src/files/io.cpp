@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/io.hpp"
+#include "mmbrdf/files/io.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -12,8 +12,8 @@
 #include <sstream>
 #include <tuple>
 
-#include "mmbrdf/conversion.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/fitting/projection.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

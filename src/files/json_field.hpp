@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mmbrdf/io.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/materials.hpp"
+#include "mmbrdf/files/materials.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-#include "embedded_materials.hpp"
-#include "mmbrdf/io.hpp"
+#include "files/embedded_materials.hpp"
+#include "mmbrdf/files/io.hpp"
 
 namespace mmbrdf {
 

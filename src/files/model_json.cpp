@@ -3,10 +3,10 @@
 #include <cmath>
 #include <optional>
 
-#include "json_field.hpp"
-#include "json_text.hpp"
-#include "mmbrdf/io.hpp"
-#include "numbers.hpp"
+#include "files/json_field.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "text/json_text.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/readings.hpp"
+#include "mmbrdf/files/readings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -11,7 +11,7 @@
 #include <streambuf>
 #include <system_error>
 
-#include "mmbrdf/io.hpp"
+#include "mmbrdf/files/io.hpp"
 
 namespace mmbrdf {
 namespace {

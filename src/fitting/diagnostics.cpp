@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/diagnostics.hpp"
+#include "mmbrdf/fitting/diagnostics.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "eigen_index.hpp"
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "numerics/eigen_index.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/fit.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "eigen_index.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "numbers.hpp"
-#include "shared_rows.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/shared_rows.hpp"
+#include "text/numbers.hpp"
 
 // For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit
 // of a block over all wavelengths, with any powers and any reflectance table, is put together from them: a coefficient

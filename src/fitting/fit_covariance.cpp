@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "eigen_index.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "shared_rows.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/shared_rows.hpp"
 
 // Covariances of a fit that are not s² (XᵀWX)⁺.
 //

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/fit.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 
 namespace mmbrdf {
 

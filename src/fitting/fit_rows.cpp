@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "mmbrdf/fit.hpp"
-#include "numbers.hpp"
-#include "shared_rows.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "numerics/shared_rows.hpp"
+#include "text/numbers.hpp"
 
 // Rows cost the square of their length, values only the length. So what has the same rows is folded together: elements
 // with the same modes, and wavelengths that were measured at the same geometries in the same order. Each of them then

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/partition.hpp"
+#include "mmbrdf/fitting/partition.hpp"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

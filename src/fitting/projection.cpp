@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/conversion.hpp"
+#include "mmbrdf/fitting/projection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/quadrature.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
 
 namespace mmbrdf {
 

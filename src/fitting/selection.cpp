@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/selection.hpp"
+#include "mmbrdf/fitting/selection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 // Every fold is folded into triangles once, at the highest orders. All the rest comes from those: the training set of a
 // fold is the merged others, lower orders are some of the columns, and the error of a fold is the norm of its own

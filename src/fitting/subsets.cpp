@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/subsets.hpp"
+#include "mmbrdf/fitting/subsets.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/sensitivity.hpp"
-#include "mmbrdf/uncertainty.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <unsupported/Eigen/SpecialFunctions>
 
-#include "mmbrdf/diagnostics.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/fitting/diagnostics.hpp"
+#include "text/numbers.hpp"
 
 // Functions that break a symmetry are the terms of modes, with other signs or in other elements. With Z(i,r) =
 // V_n^k(i) V_m^l(r), as in modes.cpp:

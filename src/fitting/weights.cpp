@@ -3,32 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "mmbrdf/fit.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/at_wavelengths.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "text/names.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-/// A model prepared at the wavelengths that were asked for so far.
-class PreparedAt {
- public:
-  PreparedAt(const Model& model, Rotation rotation) : model_(model), rotation_(rotation) {}
-  const PreparedModel& operator()(double wavelength) {
-    const auto at = prepared_.find(wavelength);
-    return at != prepared_.end() ? at->second
-                                 : prepared_.emplace(wavelength, prepare(model_, wavelength, rotation_)).first->second;
-  }
-
- private:
-  const Model& model_;
-  Rotation rotation_;
-  std::map<double, PreparedModel> prepared_;
-};
+constexpr Named<Weights> weights_names[] = {
+    {Weights::none, "none"}, {Weights::speckle, "speckle"}, {Weights::data, "data"}, {Weights::estimated, "estimated"}};
+constexpr Named<Covariance> covariance_names[] = {{Covariance::residuals, "residuals"},
+                                                  {Covariance::sandwich, "sandwich"}};
 
 Mueller ones() {
   Mueller result;
@@ -49,7 +40,7 @@ Mueller weights_of(const Sample& sample, const NoiseLaw& law, const PreparedMode
 /// `law_at` gives the law at a wavelength.
 std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& model, const auto& law_at) {
   std::vector<Mueller> weights;
-  PreparedAt prepared(model, Rotation::covariant);
+  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength); });
   for (const auto& sample : samples) {
     const double wavelength = sample.wavelength;
     try {
@@ -159,17 +150,9 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
   return result;
 }
 
-std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation) {
-  std::vector<Mueller> result;
-  result.reserve(samples.size());
-  PreparedAt prepared(model, rotation);
-  for (const Sample& sample : samples) {
-    const Mueller predicted = prepared(sample.wavelength).evaluate(sample.geometry);
-    Mueller difference = sample.normalized - normalized(predicted);
-    difference(0, 0) = sample.f11 - predicted(0, 0);
-    result.push_back(difference);
-  }
-  return result;
-}
+std::string to_string(Weights weights) { return name_of(weights_names, weights); }
+Weights weights_from(const std::string& name) { return value_of(weights_names, name, "weights"); }
+std::string to_string(Covariance covariance) { return name_of(covariance_names, covariance); }
+Covariance covariance_from(const std::string& name) { return value_of(covariance_names, name, "covariance"); }
 
 }  // namespace mmbrdf

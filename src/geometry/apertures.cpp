@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/apertures.hpp"
+#include "mmbrdf/geometry/apertures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "golden_section.hpp"
-#include "mmbrdf/quadrature.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
+#include "numerics/golden_section.hpp"
+#include "text/numbers.hpp"
 
 //   α, ψ     angle from the axis, and azimuth about it from e1 towards e2
 //   s        1 − cos α, the versine: dΩ = ds dψ

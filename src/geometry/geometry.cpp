@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "numbers.hpp"
+#include "text/names.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
+
+constexpr Named<Frame> frame_names[] = {
+    {Frame::xy, "xy"}, {Frame::sp, "sp"}, {Frame::scattering_plane, "scattering_plane"}};
 
 /// Angles from the (s, p) axes of each beam to (⊥, ∥).
 ///
@@ -125,6 +129,15 @@ Mueller change_frame(const Mueller& m, const Geometry& geometry, Frame from, Fra
   return rotated(m, a.scattered - b.scattered, a.incident - b.incident);
 }
 
+MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to) {
+  require_valid(geometry, "change_frame");
+  const FrameAngles a = angles_to_xy(geometry, from), b = angles_to_xy(geometry, to);
+  return transformed(covariance, rotator(a.scattered - b.scattered), rotator(b.incident - a.incident));
+}
+
 Mueller turned(const Mueller& m_xy, double angle) { return rotated(m_xy, -angle, angle); }
+
+std::string to_string(Frame frame) { return name_of(frame_names, frame); }
+Frame frame_from(const std::string& name) { return value_of(frame_names, name, "frame"); }
 
 }  // namespace mmbrdf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/batch.hpp"
+#include "mmbrdf/model/batch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels.hpp"
-#include "numbers.hpp"
-#include "parts.hpp"
+#include "model/kernel/kernels.hpp"
+#include "numerics/threads.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/description.hpp"
+#include "mmbrdf/model/description.hpp"
 
 #include <cmath>
 #include <optional>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

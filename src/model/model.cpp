@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "arrangement_parts.hpp"
-#include "mmbrdf/batch.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/model/batch.hpp"
+#include "model/kernel/plan_parts.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 

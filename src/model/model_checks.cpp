@@ -6,8 +6,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "mmbrdf/model.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fold.hpp"
+#include "numerics/fold.hpp"
 
 #include <algorithm>
 #include <array>

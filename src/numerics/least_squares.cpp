@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/least_squares.hpp"
+#include "mmbrdf/numerics/least_squares.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "eigen_index.hpp"
-#include "numbers.hpp"
-#include "shared_rows.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/shared_rows.hpp"
+#include "text/numbers.hpp"
 
 // The problem [A b] is kept as the triangle T of its QR factorisation, T = [R q; 0 ρ]: R is that of A, q = Qᵀb, and |ρ|
 // is the norm of what the columns of A cannot reach.

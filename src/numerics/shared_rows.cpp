@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shared_rows.hpp"
+#include "numerics/shared_rows.hpp"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "eigen_index.hpp"
+#include "numerics/eigen_index.hpp"
 
 namespace mmbrdf {
 namespace {

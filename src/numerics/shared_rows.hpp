@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <deque>
 
-#include "fold.hpp"
-#include "mmbrdf/least_squares.hpp"
+#include "mmbrdf/numerics/least_squares.hpp"
+#include "numerics/fold.hpp"
 
 namespace mmbrdf {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/calibration.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "calibration_parts.hpp"
-#include "numbers.hpp"
+#include "polarimetry/calibration_parts.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace calibration {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "eigen_index.hpp"
-#include "mmbrdf/calibration.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
+#include "numerics/eigen_index.hpp"
 
 namespace mmbrdf::calibration {
 

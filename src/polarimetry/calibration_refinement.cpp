@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "calibration_parts.hpp"
-#include "numbers.hpp"
+#include "polarimetry/calibration_parts.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {
 namespace {

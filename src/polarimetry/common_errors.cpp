@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/common_errors.hpp"
+#include "mmbrdf/polarimetry/common_errors.hpp"
 
 #include <Eigen/QR>
 #include <array>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -12,9 +12,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "calibration_parts.hpp"
-#include "golden_section.hpp"
-#include "numbers.hpp"
+#include "numerics/golden_section.hpp"
+#include "polarimetry/calibration_parts.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/goniometer.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "numbers.hpp"
-#include "random.hpp"
+#include "numerics/random.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

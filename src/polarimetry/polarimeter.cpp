@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/polarimeter.hpp"
+#include "mmbrdf/polarimetry/polarimeter.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
@@ -9,11 +9,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "eigen_index.hpp"
-#include "mmbrdf/elements.hpp"
-#include "numbers.hpp"
-#include "random.hpp"
-#include "semidefinite.hpp"
+#include "mmbrdf/polarization/elements.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/random.hpp"
+#include "numerics/semidefinite.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -207,7 +207,7 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
     if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
       throw std::invalid_argument("instrument: the covariance is not symmetric and finite");
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverses->covariance);
-    require_semidefinite(solver.eigenvalues(), "instrument");
+    require_semidefinite(solver.eigenvalues(), "instrument", covariance_tolerance);
     const double least = 1e-14 * solver.eigenvalues()(size - 1);
     const Index none = (solver.eigenvalues().array() <= least).count();
     inverses->errors =
@@ -275,16 +275,6 @@ std::vector<Mueller> Reduction::errors(const Mueller& m) const {
   for (std::size_t k = 0; k < result.size(); ++k)
     Eigen::Map<Eigen::Matrix<double, 16, 1>>(result[k].elements.data()) = all.col(index(k));
   return result;
-}
-
-MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m) {
-  const double f = m(0, 0);
-  if (!(f > 0)) throw std::invalid_argument("normalized: M11 is " + shortest(f));
-  MatrixXd slope = MatrixXd::Identity(16, 16) / f;
-  slope(0, 0) = 1;
-  for (Index e = 1; e < 16; ++e) slope(e, 0) = -m.elements[static_cast<std::size_t>(e)] / f / f;
-  const Eigen::Map<const RowMajor> given(covariance.values.data(), 16, 16);
-  return covariance_of(slope * given * slope.transpose());
 }
 
 Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, double solid_angle) {

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "calibration_parts.hpp"
-#include "golden_section.hpp"
-#include "numbers.hpp"
+#include "numerics/golden_section.hpp"
+#include "polarimetry/calibration_parts.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/analysis.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 //   σ_i     Pauli matrices, σ_0 = 1, in the order of Stokes components
 //   T       coherency matrix ¼ Σ M_ij σ_i ⊗ conj σ_j; λ_q, v_q its eigenvalues and eigenvectors

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/decompositions.hpp"
+#include "mmbrdf/polarization/decompositions.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/analysis.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "text/numbers.hpp"
 
 //   n        M / M11, whose elements are at most 1
 //   d, p     diattenuation and polarizance vector of n

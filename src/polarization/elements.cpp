@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/elements.hpp"
+#include "mmbrdf/polarization/elements.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "numbers.hpp"
+#include "mmbrdf/text/units.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

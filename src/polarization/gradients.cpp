@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/sensitivity.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/analysis.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "text/numbers.hpp"
 
 //   m       M / M11
 //   x       a quantity that does not change with the scale of M, so that Σ M_ij ∂x/∂M_ij = 0

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

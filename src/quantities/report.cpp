@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/report.hpp"
+#include "mmbrdf/quantities/report.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/comparison.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/diagnostics.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/noise.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "mmbrdf/reflectance_uncertainty.hpp"
-#include "mmbrdf/uncertainty.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/fitting/diagnostics.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/noise.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

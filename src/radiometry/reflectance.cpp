@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mmbrdf/analysis.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -54,11 +54,6 @@ double dot(const Stokes& a, const Stokes& b) {
 }
 
 }  // namespace
-
-double projected_integral(int n, DiscMapping mapping) {
-  const double radial_integral = n == 0 ? pi : n == 2 && mapping == DiscMapping::lambert ? -pi / 3 : 0;
-  return std::sqrt((n + 1) / (2 * pi)) * radial_integral;
-}
 
 // ---- over the hemisphere --------------------------------------------------------------------------------------------
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/reflectance_uncertainty.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 namespace mmbrdf {
 namespace {

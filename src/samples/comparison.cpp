@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/comparison.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "numbers.hpp"
+#include "mmbrdf/model/at_wavelengths.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -40,18 +39,29 @@ void require_positive(double f11, const Sample& sample) {
 
 }  // namespace
 
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation) {
+  std::vector<Mueller> result;
+  result.reserve(samples.size());
+  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength, rotation); });
+  for (const Sample& sample : samples) {
+    const Mueller predicted = prepared(sample.wavelength).evaluate(sample.geometry);
+    Mueller difference = sample.normalized - normalized(predicted);
+    difference(0, 0) = sample.f11 - predicted(0, 0);
+    result.push_back(difference);
+  }
+  return result;
+}
+
 Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation) {
   if (samples.empty()) throw std::invalid_argument("compare: no samples");
   require_valid(samples);
   const std::vector<Mueller> differences = residuals(model, samples, rotation);
-  std::map<double, PreparedModel> prepared;
+  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength, rotation); });
   Comparison result;
   result.samples = static_cast<long>(samples.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Mueller& d = differences[s];
-    const double wavelength = samples[s].wavelength;
-    if (!prepared.contains(wavelength)) prepared.emplace(wavelength, prepare(model, wavelength, rotation));
-    const double f11 = prepared.at(wavelength).f11(samples[s].geometry);
+    const double f11 = prepared(samples[s].wavelength).f11(samples[s].geometry);
     require_positive(f11, samples[s]);
     add(result.f11, d(0, 0), samples[s]);
     add(result.f11_relative, d(0, 0) / f11, samples[s]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/noise.hpp"
+#include "mmbrdf/samples/noise.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 // With β = (2 ln s, a, b) and z = (1, ln cos θi, −ln cos θr), the variance of a residual r is exp(zᵀβ) and
 //

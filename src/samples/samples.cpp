@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "numbers.hpp"
-#include "random.hpp"
+#include "numerics/random.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -105,6 +105,8 @@ std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<co
   });
   return kept;
 }
+
+std::string sample_element(std::size_t element) { return (element == 0 ? "f" : "m") + element_name(element); }
 
 bool has_uncertainty(const Sample& sample) {
   const auto& all = sample.uncertainty.elements;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/simulation.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/noise.hpp"
-#include "numbers.hpp"
-#include "random.hpp"
+#include "mmbrdf/samples/noise.hpp"
+#include "numerics/random.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

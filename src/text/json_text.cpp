@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "json_text.hpp"
+#include "text/json_text.hpp"
 
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

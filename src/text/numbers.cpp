@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "numbers.hpp"
+#include "text/numbers.hpp"
 
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-
-#include "mmbrdf/geometry.hpp"
-#include "mmbrdf/mueller.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -18,22 +14,6 @@ std::string_view bare(std::string_view text) {
   text = trimmed(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   return text;
-}
-
-/// Among numbers near `approximate`, one with few digits that `hits`.
-template <class Predicate>
-double roundest(double approximate, Predicate hits) {
-  for (const int digits : {15, 16}) {
-    std::array<char, 32> text;
-    const auto end = std::to_chars(text.begin(), text.end(), approximate, std::chars_format::general, digits).ptr;
-    double rounded = approximate;
-    std::from_chars(text.begin(), end, rounded);
-    if (hits(rounded)) return rounded;
-  }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  for (const double near : {approximate, std::nextafter(approximate, -infinity), std::nextafter(approximate, infinity)})
-    if (hits(near)) return near;
-  return approximate;
 }
 
 }  // namespace
@@ -95,16 +75,6 @@ std::string rounded(double value, int digits) {
 std::string fixed(double value, int decimals) {
   std::array<char, 350> text;  // the largest double has 309 digits before the point
   return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed, decimals).ptr};
-}
-
-std::string sample_element(std::size_t element) { return (element == 0 ? "f" : "m") + element_name(element); }
-
-double in_degrees(double angle) {
-  return roundest(degrees(angle), [=](double value) { return radians(value) == angle; });
-}
-
-double in_nanometres(double wavelength) {
-  return roundest(wavelength * 1000, [=](double value) { return value / 1000 == wavelength; });
 }
 
 }  // namespace mmbrdf

@@ -30,14 +30,4 @@ std::string rounded(double value, int digits);
 /// With this many decimals, for messages.
 std::string fixed(double value, int decimals);
 
-/// What samples hold, as their columns are called: "f11", "m12" … "m44" for 0, 1 … 15.
-std::string sample_element(std::size_t element);
-
-/// Degrees with the fewest digits for which radians() gives `angle` again; where no number of degrees does, the
-/// nearest.
-double in_degrees(double angle);
-
-/// Nanometres with the fewest digits for which division by 1000 gives `wavelength` again; where none does, the nearest.
-double in_nanometres(double wavelength);
-
 }  // namespace mmbrdf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/budget.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "numbers.hpp"
-#include "random.hpp"
+#include "numerics/random.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {

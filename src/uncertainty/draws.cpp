@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/monte_carlo.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "eigen_index.hpp"
-#include "numbers.hpp"
-#include "random.hpp"
-#include "semidefinite.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/random.hpp"
+#include "numerics/semidefinite.hpp"
+#include "text/numbers.hpp"
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
 //   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
@@ -54,7 +54,7 @@ MatrixXd joint_covariance(const FittedBlock& fitted, const ReflectanceTable& tab
 MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(joint_covariance(fitted, table));
   const VectorXd& s = solver.eigenvalues();
-  require_semidefinite(s, fitted.block.name);
+  require_semidefinite(s, fitted.block.name, covariance_tolerance);
   return solver.eigenvectors() * s.cwiseMax(0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
 }
 

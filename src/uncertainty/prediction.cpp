@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "eigen_index.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "numbers.hpp"
-#include "semidefinite.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/semidefinite.hpp"
+#include "text/numbers.hpp"
 
 // Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
@@ -109,7 +108,7 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
   require_semidefinite(Eigen::SelfAdjointEigenSolver<MatrixXd>(result.covariance, Eigen::EigenvaluesOnly).eigenvalues(),
-                       fitted.block.name);
+                       fitted.block.name, covariance_tolerance);
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = std::sqrt(squares);
   result.terms.resize(fitted.block.elements.size());
@@ -122,21 +121,6 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
           result.terms[e].push_back(
               {q, static_cast<std::size_t>(term.incident), static_cast<std::size_t>(term.reflected), term.weight});
   return result;
-}
-
-/// The covariance after M → left M right, element by element of either argument.
-MuellerCovariance mapped(const MuellerCovariance& c, const Mueller& left, const Mueller& right) {
-  const auto map_rows = [&](const MuellerCovariance& from) {  // of the first argument; the result is transposed
-    MuellerCovariance to;
-    for (std::size_t other = 0; other < 16; ++other) {
-      Mueller m;
-      for (std::size_t e = 0; e < 16; ++e) m.elements[e] = from(e, other);
-      m = left * m * right;
-      for (std::size_t e = 0; e < 16; ++e) to(other, e) = m.elements[e];
-    }
-    return to;
-  };
-  return map_rows(map_rows(c));
 }
 
 }  // namespace
@@ -207,18 +191,6 @@ struct PreparedUncertainty::Slopes {
   }
 };
 
-Mueller standard_uncertainty(const MuellerCovariance& covariance) {
-  Mueller result;
-  for (std::size_t e = 0; e < 16; ++e) result.elements[e] = std::sqrt(std::max(covariance(e, e), 0.0));
-  return result;
-}
-
-MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to) {
-  require_valid(geometry, "change_frame");
-  const FrameAngles a = angles_to_xy(geometry, from), b = angles_to_xy(geometry, to);
-  return mapped(covariance, rotator(a.scattered - b.scattered), rotator(b.incident - a.incident));
-}
-
 PreparedUncertainty::PreparedUncertainty(std::shared_ptr<const Blocks> blocks) : blocks_(std::move(blocks)) {}
 
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation) {
@@ -240,7 +212,7 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, R
 MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
   const MuellerCovariance c = Slopes(*blocks_, geometry).covariance();
   const auto [left, right] = blocks_->to_frame(geometry, frame);
-  return mapped(c, left, right);
+  return transformed(c, left, right);
 }
 
 MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame frame) const {
@@ -255,7 +227,7 @@ MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame 
       result(e, other) = m.elements[e] * m.elements[other] * c(0, 0) + direct;
     }
   const auto [left, right] = blocks_->to_frame(geometry, frame);
-  return mapped(result, left, right);
+  return transformed(result, left, right);
 }
 
 std::size_t PreparedUncertainty::parameters() const { return static_cast<std::size_t>(blocks_->parameters); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/modes.hpp"
+#include "mmbrdf/basis/modes.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "cases.hpp"
-#include "published.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
 
 using namespace mmbrdf;
 using enum Function;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/zernike.hpp"
+#include "mmbrdf/basis/zernike.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "cases.hpp"
+#include "given/cases.hpp"
 
 using namespace mmbrdf;
 

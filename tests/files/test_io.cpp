@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/io.hpp"
+#include "mmbrdf/files/io.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <random>
 #include <sstream>
 
-#include "cases.hpp"
-#include "files.hpp"
-#include "mmbrdf/readings.hpp"
-#include "published.hpp"
+#include "given/cases.hpp"
+#include "given/files.hpp"
+#include "given/published.hpp"
+#include "mmbrdf/files/readings.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/materials.hpp"
+#include "mmbrdf/files/materials.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/io.hpp"
-#include "published.hpp"
+#include "given/published.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -8,8 +8,8 @@
 #include <random>
 #include <sstream>
 
-#include "files.hpp"
-#include "mmbrdf/io.hpp"
+#include "given/files.hpp"
+#include "mmbrdf/files/io.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/readings.hpp"
+#include "mmbrdf/files/readings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <random>
 #include <sstream>
 
-#include "cases.hpp"
-#include "files.hpp"
-#include "mmbrdf/goniometer.hpp"
-#include "mmbrdf/materials.hpp"
+#include "given/cases.hpp"
+#include "given/files.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -16,8 +16,8 @@
 #include <string>
 #include <thread>
 
-#include "../apps/mmbrdf/exact.hpp"
-#include "../apps/mmbrdf/in_order.hpp"
+#include "pages/exact.hpp"
+#include "streams/in_order.hpp"
 
 namespace mmbrdf::program {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/diagnostics.hpp"
+#include "mmbrdf/fitting/diagnostics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,13 +13,13 @@
 #include <random>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "published.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

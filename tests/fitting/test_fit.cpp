@@ -12,12 +12,12 @@
 #include <random>
 #include <stdexcept>
 
-#include "cases.hpp"
-#include "mmbrdf/conversion.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 // Memory that is held through operator new, and the most there ever was. Each piece is preceded by its size.
 namespace {

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 
-#include "cases.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/io.hpp"
-#include "published.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 
 namespace mmbrdf {
 namespace {

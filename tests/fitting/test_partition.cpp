@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/partition.hpp"
+#include "mmbrdf/fitting/partition.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

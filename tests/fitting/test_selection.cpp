@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/selection.hpp"
+#include "mmbrdf/fitting/selection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "published.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

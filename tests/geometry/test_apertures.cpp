@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/apertures.hpp"
+#include "mmbrdf/geometry/apertures.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/quadrature.hpp"
+#include "given/cases.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
 
 namespace mmbrdf {
 namespace {

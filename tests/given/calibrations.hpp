@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/calibration.hpp"
-#include "mmbrdf/goniometer.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
 
 namespace mmbrdf {
 

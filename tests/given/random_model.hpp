@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
 

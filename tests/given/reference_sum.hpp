@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 

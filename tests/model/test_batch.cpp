@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/batch.hpp"
+#include "mmbrdf/model/batch.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,11 +9,11 @@
 #include <limits>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/materials.hpp"
-#include "random_model.hpp"
-#include "reference_sum.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "given/reference_sum.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 using namespace mmbrdf;
 

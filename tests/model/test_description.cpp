@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/description.hpp"
+#include "mmbrdf/model/description.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <string>
 
-#include "mmbrdf/materials.hpp"
-#include "random_model.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "cases.hpp"
-#include "kernels.hpp"
-#include "mmbrdf/batch.hpp"
-#include "random_model.hpp"
-#include "reference_sum.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "given/reference_sum.hpp"
+#include "mmbrdf/model/batch.hpp"
+#include "model/kernel/kernels.hpp"
 
 using namespace mmbrdf;
 

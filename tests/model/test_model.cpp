@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -20,10 +20,10 @@
 #include <utility>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/conversion.hpp"
-#include "random_model.hpp"
-#include "reference_sum.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "given/reference_sum.hpp"
+#include "mmbrdf/fitting/projection.hpp"
 
 // Every allocation of this program is counted. Not inlined: gcc would take the pair for a mismatch of new and free().
 namespace {

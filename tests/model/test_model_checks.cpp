@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "cases.hpp"
-#include "mmbrdf/model.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 using namespace mmbrdf;
 

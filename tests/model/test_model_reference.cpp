@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/model.hpp"
-#include "published.hpp"
+#include "given/published.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/model/model.hpp"
 
 using namespace mmbrdf;
 

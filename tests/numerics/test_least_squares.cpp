@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/least_squares.hpp"
+#include "mmbrdf/numerics/least_squares.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "cases.hpp"
+#include "given/cases.hpp"
 
 using namespace mmbrdf;
 

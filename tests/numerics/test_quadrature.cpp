@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/quadrature.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Succeeds when an installed mmbrdf compiles, links and gives a plausible value: near 1/pi for sintered PTFE.
 
-#include <mmbrdf/materials.hpp>
-#include <mmbrdf/model.hpp>
+#include <mmbrdf/files/materials.hpp>
+#include <mmbrdf/model/model.hpp>
 
 int main() {
   const auto model = mmbrdf::material("ptfe");

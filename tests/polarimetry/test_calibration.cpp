@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/calibration.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "calibrations.hpp"
+#include "given/calibrations.hpp"
 
 using namespace mmbrdf;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/common_errors.hpp"
+#include "mmbrdf/polarimetry/common_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 #include <iostream>
 #include <sstream>
 
-#include "cases.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/goniometer.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "mmbrdf/simulation.hpp"
+#include "given/cases.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 using namespace mmbrdf;
 

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <numbers>
 
-#include "calibrations.hpp"
+#include "given/calibrations.hpp"
 
 using namespace mmbrdf;
 

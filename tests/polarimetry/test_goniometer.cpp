@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/goniometer.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "cases.hpp"
-#include "mmbrdf/materials.hpp"
+#include "given/cases.hpp"
+#include "mmbrdf/files/materials.hpp"
 
 using namespace mmbrdf;
 

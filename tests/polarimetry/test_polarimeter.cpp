@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/polarimeter.hpp"
+#include "mmbrdf/polarimetry/polarimeter.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/elements.hpp"
-#include "random_mueller.hpp"
+#include "given/cases.hpp"
+#include "given/random_mueller.hpp"
+#include "mmbrdf/polarization/elements.hpp"
 
 namespace mmbrdf {
 namespace {

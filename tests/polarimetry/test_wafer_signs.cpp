@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "calibrations.hpp"
+#include "given/calibrations.hpp"
 
 using namespace mmbrdf;
 

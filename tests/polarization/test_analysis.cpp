@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/analysis.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/io.hpp"
-#include "published.hpp"
-#include "random_mueller.hpp"
+#include "given/published.hpp"
+#include "given/random_mueller.hpp"
+#include "mmbrdf/files/io.hpp"
 
 using namespace mmbrdf;
 

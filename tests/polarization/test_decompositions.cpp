@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/decompositions.hpp"
+#include "mmbrdf/polarization/decompositions.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,8 +12,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/analysis.hpp"
-#include "random_mueller.hpp"
+#include "given/random_mueller.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
 
 using namespace mmbrdf;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/elements.hpp"
+#include "mmbrdf/polarization/elements.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -10,9 +10,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "cases.hpp"
-#include "mmbrdf/geometry.hpp"
-#include "random_mueller.hpp"
+#include "given/cases.hpp"
+#include "given/random_mueller.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/sensitivity.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "published.hpp"
-#include "random_mueller.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "given/random_mueller.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

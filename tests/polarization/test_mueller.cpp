@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

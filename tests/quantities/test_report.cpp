@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/report.hpp"
+#include "mmbrdf/quantities/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/comparison.hpp"
-#include "mmbrdf/diagnostics.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "mmbrdf/reflectance_uncertainty.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/diagnostics.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

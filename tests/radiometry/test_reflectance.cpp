@@ -6,13 +6,13 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "cases.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/quadrature.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "published.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/reflectance_uncertainty.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/radiometry.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 namespace mmbrdf {
 namespace {

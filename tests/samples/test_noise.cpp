@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/noise.hpp"
+#include "mmbrdf/samples/noise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 #include <span>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "published.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "cases.hpp"
-#include "published.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
 
 using namespace mmbrdf;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/simulation.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "cases.hpp"
+#include "given/cases.hpp"
 
 using namespace mmbrdf;
 

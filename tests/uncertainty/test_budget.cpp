@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/budget.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/monte_carlo.hpp"
-#include "mmbrdf/sensitivity.hpp"
+#include "given/cases.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
 
 namespace mmbrdf {
 namespace {

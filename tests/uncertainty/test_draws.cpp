@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/monte_carlo.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,17 +9,17 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/conversion.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/quadrature.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "mmbrdf/sensitivity.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "mmbrdf/uncertainty.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 namespace {

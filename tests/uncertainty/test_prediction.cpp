@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,15 +9,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cases.hpp"
-#include "mmbrdf/conversion.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "published.hpp"
-#include "random_model.hpp"
+#include "given/cases.hpp"
+#include "given/published.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -4,15 +4,15 @@
 #include <iostream>
 #include <memory>
 
-#include "analyze_report.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/io.hpp"
-#include "npy.hpp"
-#include "output.hpp"
-#include "scan.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "options/files.hpp"
+#include "options/scan.hpp"
+#include "pages/analyze_report.hpp"
+#include "pages/output.hpp"
+#include "streams/npy.hpp"
 
 namespace mmbrdf::program {
 

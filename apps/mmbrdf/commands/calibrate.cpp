@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf calibrate, mmbrdf instrument
 
-#include "mmbrdf/calibration.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 
 #include <cmath>
 #include <memory>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "mmbrdf/readings.hpp"
-#include "output.hpp"
-#include "polarimetry.hpp"
+#include "mmbrdf/files/readings.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "options/polarimetry.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

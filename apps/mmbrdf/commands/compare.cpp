@@ -5,14 +5,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
-#include "files.hpp"
-#include "mmbrdf/comparison.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <memory>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
-#include "files.hpp"
-#include "mmbrdf/conversion.hpp"
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/description.hpp"
-#include "output.hpp"
+#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/samples/samples.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

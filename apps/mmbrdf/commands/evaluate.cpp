@@ -9,13 +9,13 @@
 #include <thread>
 
 #include "command.hpp"
-#include "describe.hpp"
-#include "evaluate_file.hpp"
-#include "files.hpp"
-#include "mmbrdf/model.hpp"
-#include "npy.hpp"
-#include "output.hpp"
-#include "question.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "options/files.hpp"
+#include "options/question.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
+#include "streams/evaluate_file.hpp"
+#include "streams/npy.hpp"
 
 namespace mmbrdf::program {
 

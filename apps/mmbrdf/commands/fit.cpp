@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf fit
 
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/description.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/description.hpp"
 
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "fit_report.hpp"
-#include "mmbrdf/common_errors.hpp"
-#include "mmbrdf/readings.hpp"
-#include "output.hpp"
-#include "polarimetry.hpp"
+#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/polarimetry/common_errors.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "options/polarimetry.hpp"
+#include "pages/fit_report.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -6,13 +6,13 @@
 #include <map>
 #include <memory>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
-#include "files.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/materials.hpp"
-#include "output.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -7,14 +7,14 @@
 #include <numbers>
 #include <optional>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/readings.hpp"
-#include "output.hpp"
-#include "polarimetry.hpp"
+#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "options/polarimetry.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
-#include "files.hpp"
-#include "mmbrdf/report.hpp"
-#include "output.hpp"
+#include "mmbrdf/quantities/report.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

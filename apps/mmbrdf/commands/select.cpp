@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "mmbrdf/selection.hpp"
-#include "output.hpp"
-#include "select_report.hpp"
+#include "mmbrdf/fitting/selection.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/output.hpp"
+#include "pages/select_report.hpp"
 
 namespace mmbrdf::program {
 

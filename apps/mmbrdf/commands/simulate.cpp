@@ -4,14 +4,14 @@
 #include <iostream>
 #include <memory>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
-#include "files.hpp"
-#include "mmbrdf/goniometer.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/simulation.hpp"
-#include "polarimetry.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "options/polarimetry.hpp"
+#include "pages/describe.hpp"
 
 namespace mmbrdf::program {
 

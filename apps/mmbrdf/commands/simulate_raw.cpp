@@ -2,13 +2,13 @@
 #include <filesystem>
 #include <iostream>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/goniometer.hpp"
-#include "output.hpp"
-#include "polarimetry.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/polarimetry/goniometer.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "options/polarimetry.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf subsets
 
-#include "mmbrdf/subsets.hpp"
-#include "mmbrdf/description.hpp"
+#include "mmbrdf/fitting/subsets.hpp"
+#include "mmbrdf/model/description.hpp"
 
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "describe.hpp"
-#include "files.hpp"
-#include "output.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

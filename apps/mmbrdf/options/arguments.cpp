@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arguments.hpp"
+#include "options/arguments.hpp"
 
 #include <array>
 #include <charconv>

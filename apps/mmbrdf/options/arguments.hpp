@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/model.hpp"
-#include "output.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/samples/samples.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "files.hpp"
+#include "options/files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "arguments.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/materials.hpp"
-#include "output.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "options/arguments.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::program {
 

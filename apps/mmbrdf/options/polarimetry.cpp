@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "polarimetry.hpp"
+#include "options/polarimetry.hpp"
 
 #include <cmath>
 #include <iostream>
 #include <map>
 
-#include "arguments.hpp"
-#include "mmbrdf/description.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "options/arguments.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "mmbrdf/readings.hpp"
+#include "mmbrdf/files/readings.hpp"
 
 namespace mmbrdf::program {
 

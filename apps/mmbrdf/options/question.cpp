@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "question.hpp"
+#include "options/question.hpp"
 
-#include "describe.hpp"
-#include "files.hpp"
-#include "mmbrdf/description.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "options/files.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

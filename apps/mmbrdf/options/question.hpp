@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "arguments.hpp"
-#include "evaluate_file.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "options/arguments.hpp"
+#include "streams/evaluate_file.hpp"
 
 namespace mmbrdf::program {
 

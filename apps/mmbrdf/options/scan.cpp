@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scan.hpp"
+#include "options/scan.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "output.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "question.hpp"
+#include "options/question.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sides.hpp"
+#include "options/sides.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
 
-#include "arguments.hpp"
-#include "output.hpp"
+#include "options/arguments.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

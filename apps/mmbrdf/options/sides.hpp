@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/apertures.hpp"
+#include "mmbrdf/geometry/apertures.hpp"
 
 namespace mmbrdf::program {
 

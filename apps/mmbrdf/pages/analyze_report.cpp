@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analyze_report.hpp"
+#include "pages/analyze_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 
-#include "describe.hpp"
-#include "output.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

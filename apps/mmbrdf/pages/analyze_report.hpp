@@ -2,8 +2,8 @@
 // What analyze prints about one geometry.
 #pragma once
 
-#include "analyzer.hpp"
-#include "question.hpp"
+#include "options/question.hpp"
+#include "pages/analyzer.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analyzer.hpp"
+#include "pages/analyzer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/description.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "evaluate_file.hpp"
-#include "mmbrdf/budget.hpp"
-#include "mmbrdf/monte_carlo.hpp"
-#include "mmbrdf/sensitivity.hpp"
-#include "recent_wavelengths.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
+#include "streams/evaluate_file.hpp"
+#include "streams/recent_wavelengths.hpp"
 
 namespace mmbrdf::program {
 

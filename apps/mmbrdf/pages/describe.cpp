@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "describe.hpp"
+#include "pages/describe.hpp"
 
 #include <algorithm>
 #include <iostream>
 
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

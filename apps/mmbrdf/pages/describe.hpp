@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::program {
 

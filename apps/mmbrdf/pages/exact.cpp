@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exact.hpp"
+#include "pages/exact.hpp"
 
 #include <array>
 #include <bit>

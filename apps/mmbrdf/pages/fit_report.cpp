@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fit_report.hpp"
+#include "pages/fit_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "describe.hpp"
-#include "mmbrdf/description.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "mmbrdf/fit.hpp"
-#include "output.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf integrate
 
-#include "integrate.hpp"
+#include "pages/integrate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
-#include "arguments.hpp"
 #include "command.hpp"
-#include "files.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/io.hpp"
-#include "mmbrdf/radiometry.hpp"
-#include "mmbrdf/reflectance_uncertainty.hpp"
-#include "mmbrdf/uncertainty.hpp"
-#include "sides.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "options/sides.hpp"
 
 namespace mmbrdf::program {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
-#include "mmbrdf/mueller.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "describe.hpp"
-#include "integrate.hpp"
+#include "pages/describe.hpp"
+#include "pages/integrate.hpp"
 
 namespace mmbrdf::program {
 

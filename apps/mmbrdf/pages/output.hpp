@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "exact.hpp"
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
+#include "pages/exact.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "select_report.hpp"
+#include "pages/select_report.hpp"
 
 #include <array>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "describe.hpp"
-#include "mmbrdf/description.hpp"
-#include "output.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "pages/describe.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

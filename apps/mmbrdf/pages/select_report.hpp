@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/selection.hpp"
-#include "output.hpp"
+#include "mmbrdf/fitting/selection.hpp"
+#include "pages/output.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate_file.hpp"
+#include "streams/evaluate_file.hpp"
 
 #include <unistd.h>
 
@@ -11,14 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "files.hpp"
-#include "in_order.hpp"
-#include "mmbrdf/description.hpp"
-#include "mmbrdf/io.hpp"
-#include "npy.hpp"
-#include "output.hpp"
-#include "recent_wavelengths.hpp"
-#include "waiting_input.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "options/files.hpp"
+#include "pages/output.hpp"
+#include "streams/in_order.hpp"
+#include "streams/npy.hpp"
+#include "streams/recent_wavelengths.hpp"
+#include "streams/waiting_input.hpp"
 
 namespace mmbrdf::program {
 

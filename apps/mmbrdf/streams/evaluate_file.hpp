@@ -6,9 +6,9 @@
 #include <ostream>
 #include <string>
 
-#include "geometry_rows.hpp"
-#include "mmbrdf/geometry.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "streams/geometry_rows.hpp"
 
 namespace mmbrdf::program {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry_rows.hpp"
+#include "streams/geometry_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <streambuf>
 
-#include "mmbrdf/io.hpp"
-#include "npy.hpp"
-#include "output.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "pages/output.hpp"
+#include "streams/npy.hpp"
 
 namespace mmbrdf::program {
 

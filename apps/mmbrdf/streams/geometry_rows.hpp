@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
 
 namespace mmbrdf::program {
 

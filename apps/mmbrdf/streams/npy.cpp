@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "npy.hpp"
+#include "streams/npy.hpp"
 
 #include <algorithm>
 #include <bit>

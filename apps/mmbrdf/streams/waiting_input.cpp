@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "waiting_input.hpp"
+#include "streams/waiting_input.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/zernike.hpp"
+#include "mmbrdf/basis/zernike.hpp"
 
 namespace mmbrdf {
 

@@ -7,7 +7,7 @@
 ///   K_n^k  √((n+1)/π) R_n^|k|(ρ) az_k(φ),  az = cos kφ (k > 0), 1/√2 (k = 0), sin|k|φ (k < 0)
 #pragma once
 
-#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
 
 namespace mmbrdf {
 
@@ -53,5 +53,8 @@ constexpr int zernike_count(int order) { return (order + 1) * (order + 2) / 2; }
 /// |error| ≤ table_error √((n+1)/π); the largest seen up to order 40 is 7.4e-15.
 void zernike_table(int order, const DiscPoint& point, double* values);
 inline constexpr double table_error = 2e-14;
+
+/// ∫ K_n^0 cos θ dΩ over the hemisphere; all other K integrate to 0.
+double projected_integral(int n, DiscMapping mapping);
 
 }  // namespace mmbrdf

@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 

@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mmbrdf/calibration.hpp"
-#include "mmbrdf/io.hpp"
+#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 
 namespace mmbrdf {
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/fit.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 
 namespace mmbrdf {
 

@@ -25,10 +25,10 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/least_squares.hpp"
-#include "mmbrdf/model.hpp"
-#include "mmbrdf/noise.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/numerics/least_squares.hpp"
+#include "mmbrdf/samples/noise.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 
@@ -187,9 +187,5 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
 /// Weights::estimated its noise. Empty for none. Throws as the functions above, and for estimated without noise.
 std::vector<Mueller> fit_weights(std::span<const Sample> samples, const Basis& basis, const FitResult& fitted,
                                  Weights weights);
-
-/// Measured − model for each sample, as in FitResult.
-std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,
-                               Rotation rotation = Rotation::covariant);
 
 }  // namespace mmbrdf

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 

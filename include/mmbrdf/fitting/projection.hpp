@@ -2,7 +2,7 @@
 /// Models of one family in the modes of another.
 #pragma once
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 

@@ -32,8 +32,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/partition.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/partition.hpp"
 
 namespace mmbrdf {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/analysis.hpp"
-#include "mmbrdf/fit.hpp"
-#include "mmbrdf/partition.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/partition.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
 
 namespace mmbrdf {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "mmbrdf/geometry.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
 
 namespace mmbrdf {
 

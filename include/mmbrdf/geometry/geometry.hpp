@@ -10,12 +10,10 @@
 #include <numbers>
 #include <string>
 
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/covariance.hpp"
+#include "mmbrdf/text/units.hpp"
 
 namespace mmbrdf {
-
-constexpr double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
-constexpr double degrees(double radians) { return radians * (180 / std::numbers::pi); }
 
 /// Components along x, y and z; z is the surface normal.
 using Vector3 = std::array<double, 3>;
@@ -93,6 +91,10 @@ inline constexpr double parallel_limit = 1e-8;
 /// scattering_plane the rounding of phi_r − phi_i, some 4e-16, adds up to 8 / |k_in × k_out| times itself.
 /// Throws std::invalid_argument for an invalid geometry.
 Mueller change_frame(const Mueller& m, const Geometry& geometry, Frame from, Frame to);
+
+/// The covariance of its elements, of all sixteen or of f11 and the normalised ones, in another frame.
+/// Throws std::invalid_argument for an invalid geometry.
+MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to);
 inline constexpr double frame_error = 1e-14;
 
 /// The matrix of an isotropic sample at the geometry turned by `angle` about the normal, in the xy frame (B6):

@@ -11,7 +11,7 @@
 #include <array>
 #include <span>
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/geometry.hpp"
-#include "mmbrdf/modes.hpp"
+#include "mmbrdf/basis/modes.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
 
 namespace mmbrdf {
 

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/elements.hpp"
-#include "mmbrdf/polarimeter.hpp"
+#include "mmbrdf/polarimetry/polarimeter.hpp"
+#include "mmbrdf/polarization/elements.hpp"
 
 namespace mmbrdf {
 

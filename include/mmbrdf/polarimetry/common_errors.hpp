@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/model.hpp"
-#include "mmbrdf/polarimeter.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/polarimetry/polarimeter.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/calibration.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 
 namespace mmbrdf {
 

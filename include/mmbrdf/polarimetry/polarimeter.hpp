@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/mueller.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
+#include "mmbrdf/samples/samples.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 
@@ -79,10 +79,6 @@ class Reduction {
   struct Inverses;
   std::shared_ptr<const Inverses> inverses_;
 };
-
-/// Covariance of (f11, m_12 … m_44), that is of M11 and the other elements divided by it, from that of the elements.
-/// Throws std::invalid_argument unless M11 is positive.
-MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m);
 
 /// The sample whose Mueller matrix, relative to the collinear beam and in Frame::scattering_plane, is m:
 /// f = m / (solid_angle · cos θr). Throws std::invalid_argument unless solid_angle (sr) is positive and at most 2π, M11

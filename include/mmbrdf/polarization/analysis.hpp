@@ -11,7 +11,7 @@
 #include <array>
 #include <complex>
 
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
 

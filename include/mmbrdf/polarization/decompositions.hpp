@@ -8,7 +8,7 @@
 /// comes before or after the diattenuator, and the other factors lose digits as ε / (1 − d).
 #pragma once
 
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
 

@@ -5,7 +5,7 @@
 
 #include <complex>
 
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
 

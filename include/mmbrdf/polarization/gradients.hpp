@@ -8,8 +8,7 @@
 /// told below, and draws (monte_carlo.hpp) are the way.
 #pragma once
 
-#include "mmbrdf/mueller.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/polarization/covariance.hpp"
 
 namespace mmbrdf {
 

@@ -8,14 +8,10 @@
 #include <numbers>
 #include <vector>
 
-#include "mmbrdf/apertures.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/geometry/apertures.hpp"
+#include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
-
-/// ∫ K_n^0 cos θ dΩ over the hemisphere; all other K integrate to 0.
-double projected_integral(int n, DiscMapping mapping);
-
 /// Slopes of the directional-hemispherical reflectance over the coefficients of the modes of element 11, for one power
 /// of the wavelength and without reflectance table: it is linear in them. Throws std::invalid_argument for an invalid
 /// direction, or modes that are not of the family.

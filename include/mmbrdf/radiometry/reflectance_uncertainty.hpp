@@ -4,8 +4,8 @@
 /// hold and leave out is said in uncertainty.hpp. All throw std::invalid_argument where the values do.
 #pragma once
 
-#include "mmbrdf/apertures.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/geometry/apertures.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 

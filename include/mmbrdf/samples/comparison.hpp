@@ -4,9 +4,10 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 
@@ -25,6 +26,11 @@ struct Comparison {
   Difference f11_relative;                ///< divided by f11 of the model
   std::array<Difference, 16> normalized;  ///< of f_ij / f11, in row-major order, xy frame; that of element 11 is 0
 };
+
+/// Measured − model for each sample, xy frame: f11 in sr⁻¹ (element 11), others m_ij. Throws std::invalid_argument for an
+/// invalid model or geometry.
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,
+                               Rotation rotation = Rotation::covariant);
 
 /// Samples − model, for f11 and for the normalised elements.
 /// Throws std::invalid_argument for an invalid model or sample, without samples, where f11 of the model is not positive

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 

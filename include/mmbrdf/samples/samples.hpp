@@ -4,10 +4,11 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "mmbrdf/geometry.hpp"
-#include "mmbrdf/mueller.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
 
@@ -23,6 +24,9 @@ struct Sample {
 
 /// Whether the uncertainty of any of its elements is known.
 bool has_uncertainty(const Sample& sample);
+
+/// What samples hold, as their columns are called: "f11", "m12" … "m44" for 0, 1 … 15.
+std::string sample_element(std::size_t element);
 
 /// The distinct wavelengths, rising. Values are distinct if they differ by more than wavelength_resolution.
 /// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive and finite.

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/dataset.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
 

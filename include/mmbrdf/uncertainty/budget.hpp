@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 

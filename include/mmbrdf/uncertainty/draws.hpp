@@ -16,8 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
-#include "mmbrdf/uncertainty.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 

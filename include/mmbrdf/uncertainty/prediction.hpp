@@ -10,23 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/polarization/covariance.hpp"
 
 namespace mmbrdf {
-
-/// Covariances of the sixteen elements of one matrix, in row-major order: symmetric, 16 × 16.
-struct MuellerCovariance {
-  std::array<double, 256> values{};
-  double operator()(std::size_t element, std::size_t other) const { return values[16 * element + other]; }
-  double& operator()(std::size_t element, std::size_t other) { return values[16 * element + other]; }
-};
-
-/// Square roots of the diagonal.
-Mueller standard_uncertainty(const MuellerCovariance& covariance);
-
-/// The same in another frame, of all sixteen elements or of f11 and the normalised ones. Throws std::invalid_argument
-/// for an invalid geometry.
-MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to);
 
 /// Slopes of the sixteen elements of a matrix over the parameters of a model at one wavelength: 16 × parameters,
 /// row-major, an element in each row. Sums of matrices have the sums of their gradients.

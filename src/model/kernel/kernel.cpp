@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled once for each instruction set, with MMBRDF_ISA as its name.
-#include "kernel.hpp"
+#include "model/kernel/kernel.hpp"
 
-#include "kernel_geometry.hpp"
-#include "kernel_germer2017.hpp"
-#include "kernel_incidence.hpp"
-#include "kernel_isotropic.hpp"
-#include "kernel_pairs.hpp"
-#include "pack.hpp"
+#include "model/kernel/kernel_geometry.hpp"
+#include "model/kernel/kernel_germer2017.hpp"
+#include "model/kernel/kernel_incidence.hpp"
+#include "model/kernel/kernel_isotropic.hpp"
+#include "model/kernel/kernel_pairs.hpp"
+#include "model/kernel/pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

@@ -2,8 +2,8 @@
 /// Directions as points of the disc, and their products.
 #pragma once
 
-#include "kernel.hpp"
-#include "pack.hpp"
+#include "model/kernel/kernel.hpp"
+#include "model/kernel/pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

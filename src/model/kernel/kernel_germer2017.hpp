@@ -6,7 +6,7 @@
 /// kernel_isotropic.hpp; C_k and S_k are the real and imaginary parts of w^k.
 #pragma once
 
-#include "kernel_isotropic.hpp"
+#include "model/kernel/kernel_isotropic.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

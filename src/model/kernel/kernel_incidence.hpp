@@ -2,7 +2,7 @@
 /// One incident direction: what is left are functions of the reflected one.
 #pragma once
 
-#include "kernel_pairs.hpp"
+#include "model/kernel/kernel_pairs.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

@@ -10,7 +10,7 @@
 /// c, s, p, and Im v, 14, 41 such polynomials times e.
 #pragma once
 
-#include "kernel_geometry.hpp"
+#include "model/kernel/kernel_geometry.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

@@ -6,7 +6,7 @@
 /// both. Pairs that feed the same elements form a run, whose sums stay in registers.
 #pragma once
 
-#include "kernel_geometry.hpp"
+#include "model/kernel/kernel_geometry.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

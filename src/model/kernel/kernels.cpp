@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kernels.hpp"
+#include "model/kernel/kernels.hpp"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "kernel.hpp"
-#include "mmbrdf/model.hpp"
+#include "mmbrdf/model/model.hpp"
+#include "model/kernel/kernel.hpp"
 
 namespace mmbrdf {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "arrangement_parts.hpp"
+#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "arrangement_parts.hpp"
+#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 namespace {

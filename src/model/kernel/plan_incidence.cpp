@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdlib>
 
-#include "arrangement_parts.hpp"
+#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "arrangement_parts.hpp"
+#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "kernels.hpp"
+#include "model/kernel/kernels.hpp"
 
 namespace mmbrdf {
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Covariances of the sixteen elements of a Mueller matrix.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "mmbrdf/polarization/mueller.hpp"
+
+namespace mmbrdf {
+
+/// Covariances of the sixteen elements of one matrix, in row-major order: symmetric, 16 × 16.
+struct MuellerCovariance {
+  std::array<double, 256> values{};
+  double operator()(std::size_t element, std::size_t other) const { return values[16 * element + other]; }
+  double& operator()(std::size_t element, std::size_t other) { return values[16 * element + other]; }
+};
+
+/// Square roots of the diagonal.
+Mueller standard_uncertainty(const MuellerCovariance& covariance);
+
+/// Of the elements of left · M · right, from those of M.
+MuellerCovariance transformed(const MuellerCovariance& covariance, const Mueller& left, const Mueller& right);
+
+/// Of M11 and of the other elements divided by it, from those of M. Throws std::invalid_argument unless M11 is positive.
+MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m);
+
+}  // namespace mmbrdf

@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Every #include points to a room above its own: check_rooms.py ROOT prints those that do not, and fails.
+
+The library's rooms, from the top; rooms on one line do not know each other. Programs, Python, tests and examples
+include what they like of include/, and nothing includes them.
+"""
+import pathlib
+import re
+import sys
+
+LINES = [
+    ["text"],
+    ["numerics"],
+    ["polarization"],
+    ["geometry"],
+    ["basis"],
+    ["model"],
+    ["samples", "uncertainty"],
+    ["radiometry"],
+    ["fitting", "polarimetry"],
+    ["quantities"],
+    ["files"],
+]
+LEVEL = {room: level for level, rooms in enumerate(LINES) for room in rooms}
+HEADERS = 8  # public ones in a room, at most
+
+
+def upward_arrows(root):
+    for base in ["include/mmbrdf", "src"]:
+        for file in sorted((root / base).rglob("*.?pp")):
+            room = file.relative_to(root / base).parts[0]
+            if room not in LEVEL:
+                yield f"{file.relative_to(root)}: in no room that {pathlib.Path(__file__).name} knows"
+                continue
+            for line, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+                found = re.match(r'#include "(?:mmbrdf/)?(\w+)/', text)
+                if found and found[1] != room and not LEVEL.get(found[1], len(LINES)) < LEVEL[room]:
+                    yield f"{file.relative_to(root)}:{line}: {room} includes {found[1]}, which is not above it"
+
+
+def misfits(root):
+    """Rooms with too many headers, and sources that no header has the name of."""
+    for room in sorted((root / "include/mmbrdf").iterdir()):
+        count = len(list(room.glob("*.hpp")))
+        if count > HEADERS:
+            yield f"{room.relative_to(root)}: {count} headers, at most {HEADERS}"
+    for source in sorted((root / "src").rglob("*.cpp")):
+        header = source.relative_to(root / "src").with_suffix(".hpp")
+        if not (root / "include/mmbrdf" / header).exists() and not (root / "src" / header).exists():
+            yield f"{source.relative_to(root)}: no header has its name"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+    faults = [*upward_arrows(root), *misfits(root)]
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
