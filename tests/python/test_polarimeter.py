@@ -99,6 +99,38 @@ def test_readings_become_a_model_within_its_uncertainty(chain):
     assert (np.abs(error) < 5 * u).all()
 
 
+def test_a_model_says_that_its_instrument_is_in_its_uncertainty(chain, program, tmp_path):
+    goniometer, folder, _ = chain
+    found = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    found.save(tmp_path / "instrument.json")
+    loaded = mmbrdf.load_instrument(tmp_path / "instrument.json")
+    data = mmbrdf.reduce(folder / "raw.csv", loaded, solid_angle=goniometer.solid_angle)
+    data.save(tmp_path / "data.csv")
+    program("fit", "data.csv", "--orders", "3,2", "--instrument", "instrument.json", "-o", "there.json")
+    there = mmbrdf.load(tmp_path / "there.json")
+    here = mmbrdf.fit(mmbrdf.load(tmp_path / "data.csv"), orders=(3, 2), instrument=loaded).model
+    assert here.provenance["instrument"] == there.provenance["instrument"] == "instrument.json"
+    for a, b in zip(there.blocks, here.blocks, strict=True):
+        np.testing.assert_allclose(a.covariance, b.covariance, rtol=1e-9, atol=1e-15)
+    here.save(tmp_path / "here.json")
+    told = program("analyze", "here.json", "-i", "45,0", "-r", "30,180")
+    assert "standard (k = 1), of the fit and its instrument: --term adds the rest of a budget" in told
+    alone = mmbrdf.fit(data, orders=(3, 2)).model
+    assert "instrument" not in alone.provenance
+    from_references = mmbrdf.fit(data, orders=(3, 2), instrument=found).model
+    assert from_references.provenance["instrument"] == "references.csv"
+
+
+def test_the_page_about_a_model_says_what_its_uncertainty_is_of(chain, tmp_path):
+    pytest.importorskip("matplotlib")
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle)
+    for options, words in (({}, "of the fit alone"), ({"instrument": instrument}, "of the fit and its instrument")):
+        mmbrdf.report(mmbrdf.fit(data, orders=(3, 2), **options).model, None, tmp_path / "page.html")
+        assert f"uncertainties are standard (k = 1) and {words}<" in (tmp_path / "page.html").read_text()
+
+
 def test_what_cannot_be_calibrated_or_reduced_is_refused(chain, tmp_path):
     goniometer, folder, _ = chain
     with pytest.raises(FileNotFoundError):
@@ -110,7 +142,11 @@ def test_what_cannot_be_calibrated_or_reduced_is_refused(chain, tmp_path):
     linear = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film, refine=False)
     assert linear.covariance is None
     data = mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=goniometer.solid_angle)
-    with pytest.raises(ValueError, match="without a covariance"):
+    with pytest.raises(ValueError, match="references.csv: a linear calibration, without a covariance"):
         mmbrdf.fit(data, instrument=linear)
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    elsewhere = mmbrdf.simulate(mmbrdf.material("ptfe-633"), 633, mmbrdf.random_geometries(300, seed=1))
+    with pytest.raises(ValueError, match="references.csv: of 532 nm, but there are data at 633 nm"):
+        mmbrdf.fit(elsewhere, orders=(3, 2), instrument=instrument)
     with pytest.raises(ValueError, match="solid"):
         mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=-1)
