@@ -111,7 +111,7 @@ void require_covariance(const FitResult& result) {
 void add_instrument(FitResult& result, std::span<const Sample> samples, const Options& options) {
   const Calibration instrument = load_instrument(options.instrument);
   const std::string name = base_name(options.instrument);
-  judge(instrument, name);
+  heed(judged(instrument), name);
   require_instrument_of(samples, instrument, name);
   require_covariance(result);
   mmbrdf::add_instrument(result, samples, options.basis, options.weights, instrument, name);

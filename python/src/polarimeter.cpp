@@ -14,6 +14,7 @@
 #include "mmbrdf/elements.hpp"
 #include "mmbrdf/goniometer.hpp"
 #include "mmbrdf/io.hpp"
+#include "mmbrdf/judgement.hpp"
 #include "mmbrdf/readings.hpp"
 
 namespace mmbrdf::python {
@@ -108,6 +109,15 @@ Film film_from(const std::tuple<std::complex<double>, double, std::complex<doubl
 using FilmTuple = std::tuple<std::complex<double>, double, std::complex<double>>;
 using Noise = std::map<std::string, double>;
 
+/// Warns, as Python warnings do, of the doubts about what is called `name`; throws std::invalid_argument if it is
+/// refused.
+void heed(const Verdict& verdict, const std::string& name) {
+  const py::object category = py::module_::import("mmbrdf").attr("InstrumentWarning");
+  for (const std::string& doubt : verdict.doubts)
+    if (PyErr_WarnEx(category.ptr(), (name + ": " + doubt).c_str(), 1) != 0) throw py::error_already_set();
+  if (!verdict.refusal.empty()) throw std::invalid_argument(name + ": " + verdict.refusal);
+}
+
 InstrumentPointer calibrated(const std::filesystem::path& path, const std::optional<FilmTuple>& film, int dial_sense,
                              double extinction, bool refine, bool phase, const Noise& noise, double saturation) {
   require_readable(path);
@@ -119,7 +129,7 @@ InstrumentPointer calibrated(const std::filesystem::path& path, const std::optio
   options.fit_polarizer_phase = phase;
   options.noise = noise_from(noise);
   if (film) options.film = film_from(*film);
-  return without_gil([&] {
+  auto instrument = without_gil([&] {
     const ReferenceFile file = read_references(path, saturation);
     options.generator_states = file.states.generator;
     options.analyzer_states = file.states.analyzer;
@@ -130,6 +140,8 @@ InstrumentPointer calibrated(const std::filesystem::path& path, const std::optio
     result->provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
     return result;
   });
+  heed(judged(*instrument, options.film), instrument->name);
+  return instrument;
 }
 
 std::vector<Sample> reduced_file(const std::filesystem::path& path, const Calibration& instrument, double solid_angle,
@@ -257,16 +269,22 @@ void bind_calibration(py::module_& m) {
       "load_instrument",
       [](const std::filesystem::path& path) {
         require_readable(path);
-        return std::make_shared<Instrument>(load_instrument(path), path.filename().string());
+        auto instrument = std::make_shared<Instrument>(load_instrument(path), path.filename().string());
+        heed(judged(*instrument), instrument->name);
+        return instrument;
       },
-      py::arg("path"), "A Calibration from a file of `mmbrdf calibrate` or Calibration.save().");
-  m.def("calibrate", calibrated, py::arg("references"), py::kw_only(), py::arg("film") = py::none(),
-        py::arg("dial_sense") = 1, py::arg("extinction") = 0.0, py::arg("refine") = true,
-        py::arg("fit_polarizer_phase") = false, py::arg("noise") = Noise{{"relative", 1e-3}},
-        py::arg("saturation") = never_saturated,
-        "The instrument that measured the references of a file (docs/formats.md), with its covariance.\n\n"
-        "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
-        "dark, shot and relative. Raises ValueError, saying what is missing, where they do not determine it.");
+      py::arg("path"),
+      "A Calibration from a file of `mmbrdf calibrate` or Calibration.save(). Warns and raises as calibrate().");
+  m.def(
+      "calibrate", calibrated, py::arg("references"), py::kw_only(), py::arg("film") = py::none(),
+      py::arg("dial_sense") = 1, py::arg("extinction") = 0.0, py::arg("refine") = true,
+      py::arg("fit_polarizer_phase") = false, py::arg("noise") = Noise{{"relative", 1e-3}},
+      py::arg("saturation") = never_saturated,
+      "The instrument that measured the references of a file (docs/formats.md), with its covariance.\n\n"
+      "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
+      "dark, shot and relative. Raises ValueError, saying what is missing, where they do not determine it, and for an\n"
+      "instrument with a figure of merit above 0.5 or a condition number above 100; warns (InstrumentWarning) above\n"
+      "0.05 and 10, and of a film that is more than 10 % from the given thickness.");
   m.def(
       "reduce",
       [](const std::filesystem::path& path, const Instrument& instrument, double solid_angle, const Noise& noise,
@@ -274,13 +292,17 @@ void bind_calibration(py::module_& m) {
         require_readable(path);
         require_limit(saturation);
         const ReadingNoise law = noise_from(noise);
-        return dataset_object(
-            without_gil([&] { return reduced_file(path, instrument, solid_angle, law, saturation); }));
+        std::vector<Sample> samples =
+            without_gil([&] { return reduced_file(path, instrument, solid_angle, law, saturation); });
+        heed(judged(samples), path.filename().string());
+        return dataset_object(std::move(samples));
       },
       py::arg("raw"), py::arg("instrument"), py::kw_only(), py::arg("solid_angle"),
       py::arg("noise") = Noise{{"relative", 1e-3}}, py::arg("saturation") = never_saturated,
       "A Dataset from a file of readings, with uncertainties from their noise; solid_angle in sr. What the instrument\n"
-      "is uncertain by is the same in all samples: fit(..., instrument=...) adds it.");
+      "is uncertain by is the same in all samples: fit(..., instrument=...) adds it. Warns (InstrumentWarning) of "
+      "matrices\n"
+      "that cannot be physical.");
 }
 
 void bind_goniometer(py::module_& m) {
