@@ -17,7 +17,8 @@ LINES = [
     ["model"],
     ["samples", "uncertainty"],
     ["radiometry"],
-    ["fitting", "polarimetry"],
+    ["polarimetry"],
+    ["fitting"],
     ["quantities"],
     ["files"],
 ]

@@ -4,12 +4,11 @@
 
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "dataset.hpp"
 #include "instrument.hpp"
-#include "mmbrdf/polarimetry/common_errors.hpp"
+#include "mmbrdf/fitting/common_errors.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 
 namespace mmbrdf::python {
@@ -28,7 +27,7 @@ struct Request {
   Basis basis;
   FitOptions options;
   Weights weights = Weights::none;
-  CalibrationPointer instrument;
+  InstrumentPointer instrument;
   std::string name, attribution;
 };
 
@@ -55,23 +54,13 @@ void sign(FitResult& result, const Request& request, std::size_t rows) {
   if (!request.attribution.empty()) model.provenance["attribution"] = request.attribution;
 }
 
-/// Adds to the covariance what the instrument is uncertain by, which is the same error in all its samples.
-void add_instrument(FitResult& result, const Dataset& data, const Request& request) {
-  const Calibration& instrument = *request.instrument;
-  if (instrument.covariance.empty())
-    throw std::invalid_argument("instrument: a linear calibration, without a covariance");
-  for (const Sample& sample : data.samples)
-    if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution)
-      throw std::invalid_argument("instrument: of another wavelength than the samples");
-  const Reduction reduction(instrument.polarimeter, instrument.covariance);
-  add_common_errors(result.model, data.samples, instrument_errors(reduction, data.samples),
-                    fit_weights(data.samples, request.basis, result, request.weights));
-}
-
 FittedPointer fitted(const Dataset& data, const Request& request) {
   return without_gil([&] {
     FitResult result = fit(data.samples, request.basis, request.options, request.weights);
-    if (request.instrument) add_instrument(result, data, request);
+    if (request.instrument) {
+      add_instrument(result, data.samples, request.basis, request.weights, *request.instrument,
+                     request.instrument->name);
+    }
     sign(result, request, data.samples.size());
     auto model = std::make_shared<ModelObject>(result.model);
     return std::make_shared<Fitted>(std::move(result), std::move(model));
@@ -162,7 +151,8 @@ constexpr const char* fit_doc =
     "covariance   'residuals' or 'sandwich', for noise that is not as the weights say\n"
     "minimum_norm accept data that do not determine every coefficient (germer2017: always)\n"
     "as_printed   germer2017 at the azimuths the samples have, to compare only\n"
-    "instrument   Calibration that measured all samples: its uncertainty is added to the covariance\n\n"
+    "instrument   Calibration that measured all samples: its uncertainty is added to the covariance, its file to the "
+    "provenance\n\n"
     "Raises ValueError for data that do not determine the model: the message says what is free.";
 
 }  // namespace
@@ -174,7 +164,7 @@ void bind_fit(py::module_& m) {
       [](const Dataset& data, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
          std::optional<int> powers, const std::optional<std::map<double, double>>& reflectance,
          const std::string& weights, const std::string& covariance, bool minimum_norm, bool as_printed,
-         const CalibrationPointer& instrument, const std::string& name, const std::string& attribution) {
+         const InstrumentPointer& instrument, const std::string& name, const std::string& attribution) {
         Request request{
             basis_from(family, orders, mapping, as_printed), {}, weights_from(weights), instrument, name, attribution};
         request.options.powers = powers;

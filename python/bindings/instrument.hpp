@@ -2,12 +2,19 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "bindings.hpp"
 #include "mmbrdf/polarimetry/calibration.hpp"
 
 namespace mmbrdf::python {
 
-using CalibrationPointer = std::shared_ptr<Calibration>;
+/// A calibrated instrument as Python holds it, with the name of the file it is from: its own, or that of its references.
+struct Instrument : Calibration {
+  Instrument(Calibration calibration, std::string its_name)
+      : Calibration(std::move(calibration)), name(std::move(its_name)) {}
+  std::string name;
+};
+using InstrumentPointer = std::shared_ptr<Instrument>;
 
 }  // namespace mmbrdf::python

@@ -14,6 +14,7 @@
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/readings.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/polarimetry/judgement.hpp"
 #include "mmbrdf/polarization/elements.hpp"
 
 namespace mmbrdf::python {
@@ -108,8 +109,17 @@ Film film_from(const std::tuple<std::complex<double>, double, std::complex<doubl
 using FilmTuple = std::tuple<std::complex<double>, double, std::complex<double>>;
 using Noise = std::map<std::string, double>;
 
-CalibrationPointer calibrated(const std::filesystem::path& path, const std::optional<FilmTuple>& film, int dial_sense,
-                              double extinction, bool refine, bool phase, const Noise& noise, double saturation) {
+/// Warns, as Python warnings do, of the doubts about what is called `name`; throws std::invalid_argument if it is
+/// refused.
+void heed(const Verdict& verdict, const std::string& name) {
+  const py::object category = py::module_::import("mmbrdf").attr("InstrumentWarning");
+  for (const std::string& doubt : verdict.doubts)
+    if (PyErr_WarnEx(category.ptr(), (name + ": " + doubt).c_str(), 1) != 0) throw py::error_already_set();
+  if (!verdict.refusal.empty()) throw std::invalid_argument(name + ": " + verdict.refusal);
+}
+
+InstrumentPointer calibrated(const std::filesystem::path& path, const std::optional<FilmTuple>& film, int dial_sense,
+                             double extinction, bool refine, bool phase, const Noise& noise, double saturation) {
   require_readable(path);
   require_limit(saturation);
   CalibrationOptions options;
@@ -119,17 +129,19 @@ CalibrationPointer calibrated(const std::filesystem::path& path, const std::opti
   options.fit_polarizer_phase = phase;
   options.noise = noise_from(noise);
   if (film) options.film = film_from(*film);
-  return without_gil([&] {
+  auto instrument = without_gil([&] {
     const ReferenceFile file = read_references(path, saturation);
     options.generator_states = file.states.generator;
     options.analyzer_states = file.states.analyzer;
     options.wavelength = file.wavelength;
-    auto result = std::make_shared<Calibration>(calibrate(file.references, options));
+    auto result = std::make_shared<Instrument>(calibrate(file.references, options), path.filename().string());
     result->provenance["data"] = path.filename().string();
     result->provenance["references"] = std::to_string(file.references.size());
     result->provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
     return result;
   });
+  heed(judged(*instrument, options.film), instrument->name);
+  return instrument;
 }
 
 std::vector<Sample> reduced_file(const std::filesystem::path& path, const Calibration& instrument, double solid_angle,
@@ -208,13 +220,13 @@ void bind_instrument(py::module_& m) {
 }
 
 void bind_calibration(py::module_& m) {
-  py::class_<Calibration, CalibrationPointer>(m, "Calibration", "A calibrated instrument at one wavelength.")
-      .def_property_readonly("wavelength_nm", [](const Calibration& c) { return nanometres(c.wavelength); })
-      .def_property_readonly("polarimeter", [](const Calibration& c) { return c.polarimeter; })
+  py::class_<Instrument, InstrumentPointer>(m, "Calibration", "A calibrated instrument at one wavelength.")
+      .def_property_readonly("wavelength_nm", [](const Instrument& c) { return nanometres(c.wavelength); })
+      .def_property_readonly("polarimeter", [](const Instrument& c) { return c.polarimeter; })
       .def_property_readonly(
           "covariance",
           [](const py::object& self) -> py::object {
-            const auto& c = self.cast<const Calibration&>();
+            const auto& c = self.cast<const Instrument&>();
             if (c.covariance.empty()) return py::none();
             const auto n =
                 static_cast<py::ssize_t>(4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size()));
@@ -224,15 +236,15 @@ void bind_calibration(py::module_& m) {
           "Of the components of all generator, then all analyzer states: a view; None: not known")
       .def_readonly("scale_uncertainty", &Calibration::scale_uncertainty, "Relative")
       .def_property_readonly(
-          "polarizer_offset_deg", [](const Calibration& c) { return degrees(c.polarizer_offset); },
+          "polarizer_offset_deg", [](const Instrument& c) { return degrees(c.polarizer_offset); },
           "Azimuth of the reference polarizer at dial 0")
       .def_readonly("extinction", &Calibration::extinction, "Of the reference polarizer")
       .def_readonly("film_thickness_um", &Calibration::film_thickness, "0: no film was given")
       .def_property_readonly(
-          "figure_of_merit", [](const Calibration& c) { return c.figure_of_merit.total; },
+          "figure_of_merit", [](const Instrument& c) { return c.figure_of_merit.total; },
           "Rms of measured - expected matrices of the references, each divided by element 11")
       .def_property_readonly(
-          "film_misfit_deg", [](const Calibration& c) { return degrees(c.film_misfit); },
+          "film_misfit_deg", [](const Instrument& c) { return degrees(c.film_misfit); },
           "Rms of the wafers' psi and delta from those of the film; 0: no film was given")
       .def_readonly("generator_condition", &Calibration::generator_condition)
       .def_readonly("analyzer_condition", &Calibration::analyzer_condition)
@@ -244,12 +256,12 @@ void bind_calibration(py::module_& m) {
       .def_readonly("provenance", &Calibration::provenance)
       .def(
           "save",
-          [](const Calibration& c, const std::filesystem::path& path) {
+          [](const Instrument& c, const std::filesystem::path& path) {
             require_place(path);
             save_instrument(path, c);
           },
           py::arg("path"), "Writes an instrument file")
-      .def("__repr__", [](const Calibration& c) {
+      .def("__repr__", [](const Instrument& c) {
         return "<mmbrdf.Calibration: " + formatted("{:g}", nanometres(c.wavelength)) + " nm, figure of merit " +
                formatted("{:.3g}", c.figure_of_merit.total) + ">";
       });
@@ -257,30 +269,40 @@ void bind_calibration(py::module_& m) {
       "load_instrument",
       [](const std::filesystem::path& path) {
         require_readable(path);
-        return std::make_shared<Calibration>(load_instrument(path));
+        auto instrument = std::make_shared<Instrument>(load_instrument(path), path.filename().string());
+        heed(judged(*instrument), instrument->name);
+        return instrument;
       },
-      py::arg("path"), "A Calibration from a file of `mmbrdf calibrate` or Calibration.save().");
-  m.def("calibrate", calibrated, py::arg("references"), py::kw_only(), py::arg("film") = py::none(),
-        py::arg("dial_sense") = 1, py::arg("extinction") = 0.0, py::arg("refine") = true,
-        py::arg("fit_polarizer_phase") = false, py::arg("noise") = Noise{{"relative", 1e-3}},
-        py::arg("saturation") = never_saturated,
-        "The instrument that measured the references of a file (docs/formats.md), with its covariance.\n\n"
-        "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
-        "dark, shot and relative. Raises ValueError, saying what is missing, where they do not determine it.");
+      py::arg("path"),
+      "A Calibration from a file of `mmbrdf calibrate` or Calibration.save(). Warns and raises as calibrate().");
+  m.def(
+      "calibrate", calibrated, py::arg("references"), py::kw_only(), py::arg("film") = py::none(),
+      py::arg("dial_sense") = 1, py::arg("extinction") = 0.0, py::arg("refine") = true,
+      py::arg("fit_polarizer_phase") = false, py::arg("noise") = Noise{{"relative", 1e-3}},
+      py::arg("saturation") = never_saturated,
+      "The instrument that measured the references of a file (docs/formats.md), with its covariance.\n\n"
+      "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
+      "dark, shot and relative. Raises ValueError, saying what is missing, where they do not determine it, and for an\n"
+      "instrument with a figure of merit above 0.5 or a condition number above 100; warns (InstrumentWarning) above\n"
+      "0.05 and 10, and of a film that is more than 10 % from the given thickness.");
   m.def(
       "reduce",
-      [](const std::filesystem::path& path, const Calibration& instrument, double solid_angle, const Noise& noise,
+      [](const std::filesystem::path& path, const Instrument& instrument, double solid_angle, const Noise& noise,
          double saturation) {
         require_readable(path);
         require_limit(saturation);
         const ReadingNoise law = noise_from(noise);
-        return dataset_object(
-            without_gil([&] { return reduced_file(path, instrument, solid_angle, law, saturation); }));
+        std::vector<Sample> samples =
+            without_gil([&] { return reduced_file(path, instrument, solid_angle, law, saturation); });
+        heed(judged(samples), path.filename().string());
+        return dataset_object(std::move(samples));
       },
       py::arg("raw"), py::arg("instrument"), py::kw_only(), py::arg("solid_angle"),
       py::arg("noise") = Noise{{"relative", 1e-3}}, py::arg("saturation") = never_saturated,
       "A Dataset from a file of readings, with uncertainties from their noise; solid_angle in sr. What the instrument\n"
-      "is uncertain by is the same in all samples: fit(..., instrument=...) adds it.");
+      "is uncertain by is the same in all samples: fit(..., instrument=...) adds it. Warns (InstrumentWarning) of "
+      "matrices\n"
+      "that cannot be physical.");
 }
 
 void bind_goniometer(py::module_& m) {

@@ -33,6 +33,10 @@ class ExtrapolationWarning(UserWarning):
     """Geometries or wavelengths lie outside what a model was fitted to."""
 
 
+class InstrumentWarning(UserWarning):
+    """An instrument, or what it measured, is doubtful."""
+
+
 class Outside(_enum.IntFlag):
     """Which of the fitted ranges a question leaves: what Model.outside() gives."""
 

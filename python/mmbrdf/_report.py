@@ -191,9 +191,10 @@ def page(
     facts = json.loads(report_json(model, name or model.name or "the model", chosen, data, data_name))
     title = html.escape(facts.pop("title"))
     warnings = facts.pop("warnings")
+    source = "of the fit and its instrument" if "instrument" in model.provenance else "of the fit alone"
     parts = [
         f"<h1>{title}</h1>",
-        f'<p class="dim">mmbrdf {__version__}; uncertainties are standard (k = 1) and of the fit alone</p>',
+        f'<p class="dim">mmbrdf {__version__}; uncertainties are standard (k = 1) and {source}</p>',
     ]
     if warnings:
         lines = "".join(f"<li>{html.escape(warning)}</li>" for warning in warnings)

@@ -17,6 +17,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 // Memory that is held through operator new, and the most there ever was. Each piece is preceded by its size.

@@ -10,6 +10,7 @@
 #include "given/random_model.hpp"
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 
 namespace mmbrdf {
 namespace {

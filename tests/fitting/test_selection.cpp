@@ -12,6 +12,7 @@
 #include "given/published.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/io.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {

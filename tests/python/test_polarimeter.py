@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From readings to a fitted model, as the program does it."""
 
+import csv
+import json
+import warnings
+
 import numpy as np
 import pytest
 
@@ -99,6 +103,111 @@ def test_readings_become_a_model_within_its_uncertainty(chain):
     assert (np.abs(error) < 5 * u).all()
 
 
+def test_a_model_says_that_its_instrument_is_in_its_uncertainty(chain, program, tmp_path):
+    goniometer, folder, _ = chain
+    found = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    found.save(tmp_path / "instrument.json")
+    loaded = mmbrdf.load_instrument(tmp_path / "instrument.json")
+    data = mmbrdf.reduce(folder / "raw.csv", loaded, solid_angle=goniometer.solid_angle)
+    data.save(tmp_path / "data.csv")
+    program("fit", "data.csv", "--orders", "3,2", "--instrument", "instrument.json", "-o", "there.json")
+    there = mmbrdf.load(tmp_path / "there.json")
+    here = mmbrdf.fit(mmbrdf.load(tmp_path / "data.csv"), orders=(3, 2), instrument=loaded).model
+    assert here.provenance["instrument"] == there.provenance["instrument"] == "instrument.json"
+    for a, b in zip(there.blocks, here.blocks, strict=True):
+        np.testing.assert_allclose(a.covariance, b.covariance, rtol=1e-9, atol=1e-15)
+    here.save(tmp_path / "here.json")
+    told = program("analyze", "here.json", "-i", "45,0", "-r", "30,180")
+    assert "standard (k = 1), of the fit and its instrument: --term adds the rest of a budget" in told
+    alone = mmbrdf.fit(data, orders=(3, 2)).model
+    assert "instrument" not in alone.provenance
+    from_references = mmbrdf.fit(data, orders=(3, 2), instrument=found).model
+    assert from_references.provenance["instrument"] == "references.csv"
+
+
+def test_the_page_about_a_model_says_what_its_uncertainty_is_of(chain, tmp_path):
+    pytest.importorskip("matplotlib")
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle)
+    for options, words in (({}, "of the fit alone"), ({"instrument": instrument}, "of the fit and its instrument")):
+        mmbrdf.report(mmbrdf.fit(data, orders=(3, 2), **options).model, None, tmp_path / "page.html")
+        assert f"uncertainties are standard (k = 1) and {words}<" in (tmp_path / "page.html").read_text()
+
+
+def saved_with(instrument, path, merit=None, divisor=None):
+    """A file of the instrument with another figure of merit, or with S4 of the generator over a divisor."""
+    instrument.save(path)
+    fields = json.loads(path.read_text())
+    if merit:
+        fields["figure_of_merit"]["total"] = merit
+    if divisor:
+        fields["generator"] = [[*state[:3], state[3] / divisor] for state in fields["generator"]]
+        fields["generator_condition"] = mmbrdf.condition_number(fields["generator"])
+    path.write_text(json.dumps(fields))
+    return path
+
+
+def test_an_instrument_that_the_program_refuses_or_doubts_is_refused_or_doubted(chain, tmp_path):
+    goniometer, folder, _ = chain
+    path = tmp_path / "bad.json"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        good = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+        mmbrdf.load_instrument(saved_with(good, path))
+    with pytest.raises(
+        ValueError, match=r"^bad.json: figure of merit 0.6, more than 0.5: are states or references mixed"
+    ):
+        mmbrdf.load_instrument(saved_with(good, path, merit=0.6))
+    with pytest.warns(mmbrdf.InstrumentWarning, match=r"^bad.json: figure of merit 0.051, more than 0.05: are states"):
+        mmbrdf.load_instrument(saved_with(good, path, merit=0.051))
+    with pytest.raises(
+        ValueError, match=r"^bad.json: the condition number of the generator is 1\d\d.\d, more than 100$"
+    ):
+        mmbrdf.load_instrument(saved_with(good, path, divisor=100))
+    with pytest.warns(
+        mmbrdf.InstrumentWarning, match="the condition number of the generator is .*, more than 10: noise"
+    ):
+        mmbrdf.load_instrument(saved_with(good, path, divisor=10))
+    index, _, substrate = goniometer.film
+    with pytest.warns(
+        mmbrdf.InstrumentWarning, match=r"^references.csv: the film is .* um thick, \+15 % from the given"
+    ):
+        mmbrdf.calibrate(folder / "references.csv", film=(index, 0.87, substrate))
+
+
+def test_references_that_do_not_belong_to_an_instrument_are_doubted(chain, tmp_path):
+    goniometer, folder, _ = chain
+    rows = list(csv.DictReader((folder / "references.csv").read_text().splitlines()))
+    for row in rows:
+        if row["reference"] == "polarizer" and float(row["angle_deg"]) > 90:
+            row["angle_deg"] = float(row["angle_deg"]) - 10
+    with open(tmp_path / "bad.csv", "w", newline="") as file:
+        table = csv.DictWriter(file, rows[0])
+        table.writeheader()
+        table.writerows(rows)
+    with pytest.warns(mmbrdf.InstrumentWarning, match=r"^bad.csv: figure of merit 0.05\d, more than 0.05: are states"):
+        mmbrdf.calibrate(tmp_path / "bad.csv", film=goniometer.film)
+
+
+def test_matrices_that_cannot_be_physical_are_doubted(chain, tmp_path):
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    header, *lines = (folder / "raw.csv").read_text().splitlines()
+    rows = [line.split(",") for line in lines]
+    for fields in rows:
+        if int(fields[5]) < 4 and fields[6] == "1":
+            fields[8] = str(30 * float(fields[8]))
+    (tmp_path / "bad.csv").write_text("\n".join([header, *map(",".join, rows)]))
+    with pytest.warns(mmbrdf.InstrumentWarning, match=r"^bad.csv: 3 of 300 matrices cannot be physical: are generator"):
+        data = mmbrdf.reduce(tmp_path / "bad.csv", instrument, solid_angle=goniometer.solid_angle)
+    assert len(data) == 300
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", mmbrdf.InstrumentWarning)
+        with pytest.raises(mmbrdf.InstrumentWarning):
+            mmbrdf.reduce(tmp_path / "bad.csv", instrument, solid_angle=goniometer.solid_angle)
+
+
 def test_what_cannot_be_calibrated_or_reduced_is_refused(chain, tmp_path):
     goniometer, folder, _ = chain
     with pytest.raises(FileNotFoundError):
@@ -110,7 +219,11 @@ def test_what_cannot_be_calibrated_or_reduced_is_refused(chain, tmp_path):
     linear = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film, refine=False)
     assert linear.covariance is None
     data = mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=goniometer.solid_angle)
-    with pytest.raises(ValueError, match="without a covariance"):
+    with pytest.raises(ValueError, match="references.csv: a linear calibration, without a covariance"):
         mmbrdf.fit(data, instrument=linear)
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    elsewhere = mmbrdf.simulate(mmbrdf.material("ptfe-633"), 633, mmbrdf.random_geometries(300, seed=1))
+    with pytest.raises(ValueError, match="references.csv: of 532 nm, but there are data at 633 nm"):
+        mmbrdf.fit(elsewhere, orders=(3, 2), instrument=instrument)
     with pytest.raises(ValueError, match="solid"):
         mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=-1)

@@ -3,7 +3,6 @@
 
 #include "mmbrdf/polarimetry/calibration.hpp"
 
-#include <cmath>
 #include <memory>
 
 #include "command.hpp"
@@ -46,17 +45,6 @@ Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, co
   }
 }
 
-/// The range ends soon behind it, and another film may be in it by chance.
-void warn_of_thickness(const Calibration& result, const CalibrationOptions& options, const std::string& name) {
-  const double given = options.film ? options.film->thickness : 0;
-  const double change = given > 0 ? result.film_thickness / given - 1 : 0;
-  if (std::abs(change) > film_range / 2) {
-    warn(name + ": " +
-         format("the film is %.4f um thick, %+.0f %% from the given %g um: is it the right one?", result.film_thickness,
-                100 * change, given));
-  }
-}
-
 void calibrate_instrument(Options options, const CommandLine& line) {
   require_kept(options.references, options.output, "references");
   options.calibration.refine = !options.linear;
@@ -65,8 +53,7 @@ void calibrate_instrument(Options options, const CommandLine& line) {
   read_input(options.references,
              [&](std::istream& in, const std::string& path) { file = read_references(in, path, options.saturation); });
   Calibration result = calibrated(file, options.calibration, name);
-  judge(result, name);
-  warn_of_thickness(result, options.calibration, name);
+  heed(judged(result, options.calibration.film), name);
   print_instrument(result);
   result.provenance["data"] = name;
   result.provenance["references"] = std::to_string(file.references.size());
@@ -129,7 +116,7 @@ Run instrument_command(CLI::App& app, const CommandLine&) {
   app.footer(instrument_footer);
   return [path] {
     const Calibration instrument = load_instrument(*path);
-    judge(instrument, base_name(*path));
+    heed(judged(instrument), base_name(*path));
     print_instrument(instrument);
   };
 }

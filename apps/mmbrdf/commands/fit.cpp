@@ -4,14 +4,13 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/description.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
 
 #include "command.hpp"
 #include "mmbrdf/files/readings.hpp"
-#include "mmbrdf/polarimetry/common_errors.hpp"
+#include "mmbrdf/fitting/common_errors.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "options/polarimetry.hpp"
@@ -84,7 +83,17 @@ bool streams(const Options& options) {
          options.instrument.empty();
 }
 
-/// There must be a covariance to add to.
+/// Says which option helps, where the library only refuses.
+void require_instrument_of(std::span<const Sample> samples, const Calibration& instrument, const std::string& name) {
+  try {
+    mmbrdf::require_measured_by(samples, instrument, name);
+  } catch (const std::invalid_argument& error) {
+    const bool linear = instrument.covariance.empty();
+    throw std::runtime_error(error.what() + std::string(linear ? "" : "; choose with --wavelength"));
+  }
+}
+
+/// There must be a covariance to add to: names the options that leave one.
 void require_covariance(const FitResult& result) {
   for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
     const FittedBlock& fitted = result.model.blocks[b];
@@ -102,20 +111,10 @@ void require_covariance(const FitResult& result) {
 void add_instrument(FitResult& result, std::span<const Sample> samples, const Options& options) {
   const Calibration instrument = load_instrument(options.instrument);
   const std::string name = base_name(options.instrument);
-  judge(instrument, name);
-  if (instrument.covariance.empty()) throw std::runtime_error(name + ": a linear calibration, without a covariance");
-  for (const Sample& sample : samples) {
-    if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution) {
-      throw std::runtime_error(name + ": of " + brief(nanometres(instrument.wavelength)) +
-                               " nm, but there are data at " + brief(nanometres(sample.wavelength)) +
-                               " nm; choose with --wavelength");
-    }
-  }
+  heed(judged(instrument), name);
+  require_instrument_of(samples, instrument, name);
   require_covariance(result);
-  const Reduction reduction(instrument.polarimeter, instrument.covariance);
-  add_common_errors(result.model, samples, instrument_errors(reduction, samples),
-                    fit_weights(samples, options.basis, result, options.weights));
-  result.model.provenance["instrument"] = name;
+  mmbrdf::add_instrument(result, samples, options.basis, options.weights, instrument, name);
 }
 
 FitResult fitted(const Options& options, long& rows) {

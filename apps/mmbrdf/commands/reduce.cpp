@@ -20,9 +20,6 @@ namespace mmbrdf::program {
 
 namespace {
 
-/// Smallest coherency eigenvalue over f11 below which a matrix is called impossible: noise seldom gets there.
-constexpr double impossible_eigenvalue = -0.05;
-
 struct Options {
   std::string raw, instrument, output;
   std::optional<double> solid_angle;
@@ -60,22 +57,16 @@ std::vector<Sample> reduced_file(const Calibration& instrument, const Options& o
 
 /// Warns of matrices that nothing can have, or refuses them.
 void check_possible(const std::vector<Sample>& samples, const Options& options) {
-  long impossible = 0;
-  for (const Sample& sample : samples)
-    impossible += coherency_eigenvalues(sample.normalized)[0] < impossible_eigenvalue ? 1 : 0;
-  if (impossible == 0) return;
-  const std::string message =
-      data_name(options.raw) + ": " + std::to_string(impossible) + " of " + std::to_string(samples.size()) +
-      " matrices cannot be physical: are generator and analyzer states exchanged, or is it another instrument?";
-  if (options.strict) throw std::runtime_error(message);
-  warn(message);
+  Verdict verdict = judged(samples);
+  if (options.strict && !verdict.doubts.empty()) verdict = {{}, verdict.doubts[0]};
+  heed(verdict, data_name(options.raw));
 }
 
 void reduce(const Options& options) {
   require_kept(options.raw, options.output, "readings");
   require_kept(options.instrument, options.output, "instrument");
   const Calibration instrument = load_instrument(options.instrument);
-  judge(instrument, base_name(options.instrument));
+  heed(judged(instrument), base_name(options.instrument));
   const std::vector<Sample> samples = reduced_file(instrument, options);
   check_possible(samples, options);
   if (is_standard_output(options.output))

@@ -104,27 +104,9 @@ void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise)
   add_option(app, "--saturation", saturation, positive_number, "LIMIT", "Refuse intensities from this one on");
 }
 
-void judge(const Calibration& calibration, const std::string& name) {
-  for (const auto& [arm, value] : {std::pair("generator", calibration.generator_condition),
-                                   std::pair("analyzer", calibration.analyzer_condition)}) {
-    if (value > worst_condition) {
-      throw std::runtime_error(
-          name + ": " + format("the condition number of the %s is %.4g, more than %g", arm, value, worst_condition));
-    }
-    if (value > doubtful_condition) {
-      warn(name + ": " +
-           format("the condition number of the %s is %.4g, more than %g: noise of the readings grows by it", arm, value,
-                  doubtful_condition));
-    }
-  }
-  const double merit = calibration.figure_of_merit.total;
-  const auto complaint = [&](double limit) {
-    return name + ": " +
-           format("figure of merit %.2g, more than %g: are states or references mixed up, or angles wrong?", merit,
-                  limit);
-  };
-  if (merit > worst_merit) throw std::runtime_error(complaint(worst_merit));
-  if (merit > doubtful_merit) warn(complaint(doubtful_merit));
+void heed(const Verdict& verdict, const std::string& name) {
+  for (const std::string& doubt : verdict.doubts) warn(name + ": " + doubt);
+  if (!verdict.refusal.empty()) throw std::runtime_error(name + ": " + verdict.refusal);
 }
 
 void print_instrument(const Calibration& c) {

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the commands of a polarimeter share: options, the judgement of an instrument, and what is printed of it.
+// What the commands of a polarimeter share: options, what is made of a judgement, and what is printed of it.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
 
 #include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/polarimetry/judgement.hpp"
 
 namespace mmbrdf::program {
-
-/// Condition number of the generator or analyzer states above which there is a warning; the best is 1.73. Above
-/// worst_condition it is refused.
-inline constexpr double doubtful_condition = 10;
-
-/// Figure of merit above which references and instrument do not belong together; above doubtful_merit there is a
-/// warning.
-inline constexpr double worst_merit = 0.5;
 
 /// N,THICKNESS_UM,N_SUBSTRATE,K_SUBSTRATE
 Film film_from(const std::string& text);
@@ -28,8 +21,8 @@ double positive_number(const std::string& text);
 /// --saturation and --noise
 void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise);
 
-/// Throws std::runtime_error for an instrument that is worse than the limits above, and warns of a doubtful one.
-void judge(const Calibration& calibration, const std::string& name);
+/// Warns of the doubts about what is called `name`, and throws std::runtime_error if it is refused.
+void heed(const Verdict& verdict, const std::string& name);
 
 /// On standard output.
 void print_instrument(const Calibration& calibration);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/polarimetry/common_errors.hpp"
+#include "mmbrdf/fitting/common_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -126,6 +126,40 @@ TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
   model = material("ptfe-532");
   EXPECT_THROW(add_common_errors(model, samples, std::array{SampleChanges(3)}), std::invalid_argument);
   EXPECT_THROW(add_common_errors(model, {}, {}), std::invalid_argument);
+}
+
+TEST(CommonErrors, OfAnInstrumentAreAddedToAFitWhichThenNamesIt) {
+  const Calibration instrument = calibrated(Goniometer({}, 1), 2);
+  const std::vector<Sample> samples = simulated();
+  const Basis basis{Family::isotropic, {5, 3}};
+  const FitResult alone = fit(samples, basis, {}, Weights::speckle);
+  FitResult with = alone;
+  add_instrument(with, samples, basis, Weights::speckle, instrument, "instrument.json");
+  EXPECT_EQ(with.model.provenance.at("instrument"), "instrument.json");
+  Model expected = alone.model;
+  const Reduction reduction(instrument.polarimeter, instrument.covariance);
+  add_common_errors(expected, samples, instrument_errors(reduction, samples), speckle_weights(samples, alone.model));
+  for (std::size_t b = 0; b < expected.blocks.size(); ++b) {
+    EXPECT_EQ(with.model.blocks[b].covariance, expected.blocks[b].covariance);
+    EXPECT_NE(with.model.blocks[b].covariance, alone.model.blocks[b].covariance);
+  }
+}
+
+TEST(CommonErrors, OfAnInstrumentThatIsNotThatOfTheSamplesAreRefused) {
+  Calibration instrument = calibrated(Goniometer({}, 1), 2);
+  const std::vector<Sample> samples = simulated();
+  const Basis basis{Family::isotropic, {3, 2}};
+  FitResult fitted = fit(samples, basis);
+  const std::vector<double> before = fitted.model.blocks[0].covariance;
+  const auto refusal = [&] {
+    return message_of([&] { add_instrument(fitted, samples, basis, Weights::none, instrument, "i.json"); });
+  };
+  instrument.wavelength = 0.633;
+  EXPECT_EQ(refusal(), "i.json: of 633 nm, but there are data at 532 nm");
+  instrument.covariance = {};
+  EXPECT_EQ(refusal(), "i.json: a linear calibration, without a covariance");
+  EXPECT_EQ(fitted.model.blocks[0].covariance, before);
+  EXPECT_FALSE(fitted.model.provenance.contains("instrument"));
 }
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/polarimetry/common_errors.hpp"
+#include "mmbrdf/fitting/common_errors.hpp"
 
 #include <Eigen/QR>
 #include <array>
@@ -7,7 +7,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/model/description.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -113,6 +115,23 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
     const MatrixXd added = moved * moved.transpose();
     Eigen::Map<MatrixXd>(model.blocks[b].covariance.data(), size, size) += (added + added.transpose()) / 2;
   }
+}
+
+void require_measured_by(std::span<const Sample> samples, const Calibration& instrument, const std::string& name) {
+  if (instrument.covariance.empty()) throw std::invalid_argument(name + ": a linear calibration, without a covariance");
+  for (const Sample& sample : samples)
+    if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution)
+      throw std::invalid_argument(name + ": of " + rounded(nanometres(instrument.wavelength), 10) +
+                                  " nm, but there are data at " + rounded(nanometres(sample.wavelength), 10) + " nm");
+}
+
+void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Basis& basis, Weights weights,
+                    const Calibration& instrument, const std::string& name) {
+  require_measured_by(samples, instrument, name);
+  const Reduction reduction(instrument.polarimeter, instrument.covariance);
+  add_common_errors(fitted.model, samples, instrument_errors(reduction, samples),
+                    fit_weights(samples, basis, fitted, weights));
+  fitted.model.provenance["instrument"] = name;
 }
 
 }  // namespace mmbrdf

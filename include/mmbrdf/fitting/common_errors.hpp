@@ -4,9 +4,12 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
+#include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/model.hpp"
+#include "mmbrdf/polarimetry/calibration.hpp"
 #include "mmbrdf/polarimetry/polarimeter.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
@@ -28,5 +31,15 @@ std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::sp
 /// than the first, or sizes that do not agree.
 void add_common_errors(Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
                        std::span<const Mueller> weights = {});
+
+/// Throws std::invalid_argument, beginning with `name`, for a linear calibration, which has no covariance, and for
+/// samples of another wavelength than that of the instrument.
+void require_measured_by(std::span<const Sample> samples, const Calibration& instrument, const std::string& name);
+
+/// Adds to the covariance of a fit what the instrument that measured all its samples is uncertain by, and records it in
+/// the model: provenance["instrument"] is `name`, what the instrument is called. Samples, basis and weights are those
+/// of the fit. Throws as require_measured_by(), fit_weights() and add_common_errors(); the fit is then as it was.
+void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Basis& basis, Weights weights,
+                    const Calibration& instrument, const std::string& name);
 
 }  // namespace mmbrdf

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/polarimetry/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mmbrdf/polarization/analysis.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+void judge_condition(Verdict& verdict, const std::string& arm, double condition) {
+  if (!verdict.refusal.empty()) return;
+  const std::string text = "the condition number of the " + arm + " is " + rounded(condition, 4) + ", more than ";
+  if (!(condition <= worst_condition))
+    verdict.refusal = text + shortest(worst_condition);
+  else if (condition > doubtful_condition)
+    verdict.doubts.push_back(text + shortest(doubtful_condition) + ": noise of the readings grows by it");
+}
+
+void judge_merit(Verdict& verdict, double merit) {
+  if (!verdict.refusal.empty()) return;
+  const auto complaint = [&](double limit) {
+    return "figure of merit " + rounded(merit, 2) + ", more than " + shortest(limit) +
+           ": are states or references mixed up, or angles wrong?";
+  };
+  if (!(merit <= worst_merit))
+    verdict.refusal = complaint(worst_merit);
+  else if (merit > doubtful_merit)
+    verdict.doubts.push_back(complaint(doubtful_merit));
+}
+
+void judge_thickness(Verdict& verdict, double found, double given) {
+  if (!verdict.refusal.empty() || !(given > 0)) return;
+  const double change = found / given - 1;
+  if (std::abs(change) > doubtful_film_change)
+    verdict.doubts.push_back("the film is " + fixed(found, 4) + " um thick, " + (change > 0 ? "+" : "") +
+                             fixed(100 * change, 0) + " % from the given " + rounded(given, 6) +
+                             " um: is it the right one?");
+}
+
+}  // namespace
+
+Verdict judged(const Calibration& calibration, const std::optional<Film>& film) {
+  Verdict verdict;
+  judge_condition(verdict, "generator", calibration.generator_condition);
+  judge_condition(verdict, "analyzer", calibration.analyzer_condition);
+  judge_merit(verdict, calibration.figure_of_merit.total);
+  if (film) judge_thickness(verdict, calibration.film_thickness, film->thickness);
+  return verdict;
+}
+
+Verdict judged(std::span<const Sample> samples) {
+  const auto impossible = std::count_if(samples.begin(), samples.end(), [](const Sample& sample) {
+    return coherency_eigenvalues(sample.normalized)[0] < impossible_eigenvalue;
+  });
+  if (impossible == 0) return {};
+  return {{std::to_string(impossible) + " of " + std::to_string(samples.size()) +
+           " matrices cannot be physical: are generator and analyzer states exchanged, or is it another instrument?"},
+          ""};
+}
+
+}  // namespace mmbrdf
