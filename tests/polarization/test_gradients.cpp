@@ -19,6 +19,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 namespace {

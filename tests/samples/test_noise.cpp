@@ -16,6 +16,7 @@
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
