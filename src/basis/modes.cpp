@@ -127,7 +127,7 @@ std::vector<Term> isotropic_terms(const Mode& mode) {
       add_u_or_v(t, a, b, mode.function == Function::u);
       break;
     default:
-      throw std::logic_error("isotropic_terms: " + to_string(mode));
+      throw std::logic_error(to_string(mode) + " is no mode of the isotropic family");
   }
   return t.take();
 }

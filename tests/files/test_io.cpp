@@ -148,7 +148,7 @@ TEST(Samples, OfWhichOnlySomeHaveUncertaintiesAreNotWritten) {
   const std::vector<Sample> samples{samples_in(with_columns(uncertainty_names, uncertainty_values))[0],
                                     samples_in(own("532,10,20,30,40,0.3"))[0]};
   EXPECT_EQ(message_of([&] { write_samples(folder / "s.csv", samples); }),
-            "write_samples: sample 2 has no uncertainties, but others have");
+            "sample 2 has no uncertainties, but others have");
   EXPECT_EQ(folder.files(), 0);
 }
 

@@ -169,10 +169,10 @@ RC_GTEST_PROP(Direction, UnfoldedIsTheSamePointOfTheSphere, ()) {
 
 TEST(Geometry, NamesTheInvalidAngleInDegrees) {
   const auto refusal = [](const Geometry& g) { return message_of([&] { require_valid(g, "row 7"); }); };
-  EXPECT_EQ(refusal(in_degrees(95, 0, 0, 0)), "row 7: theta_i = 95 degrees, must be in 0…90");
-  EXPECT_EQ(refusal(in_degrees(0, 0, 90.0000001, 0)), "row 7: theta_r = 90.0000001 degrees, must be in 0…90");
-  EXPECT_EQ(refusal(in_degrees(-1, 0, 0, 0)), "row 7: theta_i = -1 degrees, must be in 0…90");
-  EXPECT_EQ(refusal({{nan_value, 0}, {}}), "row 7: theta_i = nan degrees, must be in 0…90");
+  EXPECT_EQ(refusal(in_degrees(95, 0, 0, 0)), "row 7: theta_i = 95 degrees, must be in 0...90");
+  EXPECT_EQ(refusal(in_degrees(0, 0, 90.0000001, 0)), "row 7: theta_r = 90.0000001 degrees, must be in 0...90");
+  EXPECT_EQ(refusal(in_degrees(-1, 0, 0, 0)), "row 7: theta_i = -1 degrees, must be in 0...90");
+  EXPECT_EQ(refusal({{nan_value, 0}, {}}), "row 7: theta_i = nan degrees, must be in 0...90");
   EXPECT_EQ(refusal({{0, nan_value}, {}}), "row 7: phi_i = nan, must be finite");
   EXPECT_EQ(refusal({{}, {0, std::numeric_limits<double>::infinity()}}), "row 7: phi_r = inf, must be finite");
 }

@@ -53,8 +53,8 @@ struct WeightedGeometry {
 };
 
 /// Throws std::invalid_argument, naming the angle in degrees, unless both polar angles are in [0, π/2] and all four
-/// angles are finite. `what` begins the message.
-void require_valid(const Geometry& geometry, const char* what);
+/// angles are finite. `where`, such as "sample 3", begins the message.
+void require_valid(const Geometry& geometry, const char* where = "");
 
 /// Source and detector exchanged.
 Geometry exchanged(const Geometry& geometry);
