@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 using Vector = Eigen::Map<const VectorXd>;
 
 constexpr std::size_t rows_at_once = 128;    // keeps a block of rows in the cache
-constexpr double estimability_limit = 1e-8;  // theory 4.2
+constexpr double estimability_limit = 1e-8;  // theory 4.7
 
 /// Four sums at a time, of which none waits for another.
 template <class Step>

@@ -105,7 +105,7 @@ FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> refe
   if (reference.kind == ReferenceKind::wafer) {
     result.element = calibration::element_of(result.expected);
     result.element.tau = unknowns.elements[i].tau;
-    // Of (A1): λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
+    // Of a matrix that keeps s and p apart: λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
     const Mueller& m = result.measured;
     const double first = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), second = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
     result.eigenvalue_mismatch = std::abs(first - second);

@@ -29,7 +29,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Table = std::array<double, zernike_count(max_order)>;
 
-constexpr double estimability_limit = 1e-8;  // theory 4.2
+constexpr double estimability_limit = 1e-8;  // theory 4.7
 
 /// One block at one wavelength.
 struct BlockAt {

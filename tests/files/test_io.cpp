@@ -174,7 +174,7 @@ TEST(Samples, ArePublishedAtFourWavelengthsWithSixIncidentAngles) {
   const auto at_15 = std::ranges::count_if(samples, [](const Sample& s) {
     return s.geometry.incident == Direction{radians(15), std::numbers::pi};
   });
-  EXPECT_EQ(at_15, 1212);  // 4 × 303, theory 1.4
+  EXPECT_EQ(at_15, 1212);  // 4 × 303, theory 3.1
 }
 
 TEST(Samples, ThatAreWrongAreRefusedWithFileLineAndValue) {

@@ -318,7 +318,7 @@ TEST(Fit, AWeightIsThatOfItsElementAlone) {
   EXPECT_EQ(largest_difference(plain.solve().model, other.solve().model), 0);
 }
 
-// As the paper seems to have fitted its random directions (theory 0.2): the published sets hold at one azimuth, so
+// As the paper seems to have fitted its random directions (theory 4.8): the published sets hold at one azimuth, so
 // fitted and evaluated at the azimuths as they are they miss more than turned ones do.
 TEST(Fit, ThePublishedSetsCanBeFittedAtTheAzimuthsAsTheyAre) {
   const std::vector<Geometry> geometries = random_geometries(1760, 5);

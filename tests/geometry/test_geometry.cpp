@@ -57,8 +57,8 @@ Geometry in_degrees(double theta_i, double phi_i, double theta_r, double phi_r) 
   return {{radians(theta_i), radians(phi_i)}, {radians(theta_r), radians(phi_r)}};
 }
 
-// The axes as theory 1.1 defines them, vectors throughout and 64 bits of mantissa: what the closed forms must agree
-// with.
+// The axes as docs/conventions.md defines them, vectors throughout and 64 bits of mantissa: what the closed forms must
+// agree with.
 using Long = long double;
 using Long3 = std::array<Long, 3>;
 
@@ -257,7 +257,7 @@ RC_GTEST_PROP(Frame, ChangesArePairsOfRotatorsWithTheAnglesToXy, ()) {
   }
 }
 
-RC_GTEST_PROP(Frame, SpFollowsFromXyByTheAzimuthsAlone, ()) {  // B5
+RC_GTEST_PROP(Frame, SpFollowsFromXyByTheAzimuthsAlone, ()) {  // theory 1.1
   const Geometry g = any_geometry();
   const Mueller m = any_matrix(), expected = rotator(g.reflected.phi) * m * rotator(g.incident.phi);
   RC_ASSERT(largest(change_frame(m, g, Frame::xy, Frame::sp) - expected) <= frame_error * largest(m));
@@ -355,7 +355,7 @@ RC_GTEST_PROP(Frame, EachOneKeepsMirrorSymmetry, ()) {
   }
 }
 
-RC_GTEST_PROP(Frame, TurningAnIsotropicSampleShowsInXyOnly, ()) {  // B6
+RC_GTEST_PROP(Frame, TurningAnIsotropicSampleShowsInXyOnly, ()) {  // theory 1.2
   const Geometry g = any_geometry();
   RC_PRE(static_cast<double>(length(Beams(g).normal())) > 1e-3);
   const double angle = between(-pi, pi);

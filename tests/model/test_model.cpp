@@ -100,7 +100,7 @@ double f11_of(const Model& model, double wavelength) {
 
 // ---- symmetries -----------------------------------------------------------------------------------------------------
 
-// B6: turning the sample turns the axes.
+// Theory 1.2: turning the sample turns the axes.
 RC_GTEST_PROP(Model, OfAnIsotropicSampleTurnsWithTheGeometry, ()) {
   const Family family = *rc::gen::element(Family::isotropic, Family::germer2017);
   const PreparedModel model = prepare(any_model(family, 12), 1);

@@ -447,7 +447,7 @@ RC_GTEST_PROP(LeastSquares, KnowsWhatItsRowsDoNotDetermine, ()) {
   RC_ASSERT(solution.estimable(row));
 }
 
-// Theory 4.2: 1e-8 of the length is the limit.
+// Theory 4.7: 1e-8 of the length is the limit.
 TEST(LeastSquares, CallsEstimableWhatIsOffByLessThanTheLimit) {
   LeastSquares first(2);
   first.add(Numbers{1, 0}, Numbers{1});

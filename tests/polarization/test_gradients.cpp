@@ -116,7 +116,7 @@ MuellerCovariance random_covariance(RandomMueller& random) {
   return v;
 }
 
-// Theory 4.2, from the covariance of f11 and the normalised m12, m21, m22 that are fitted apart from it. The two ways
+// Theory 4.4, from the covariance of f11 and the normalised m12, m21, m22 that are fitted apart from it. The two ways
 // differ by rounding only.
 RC_GTEST_PROP(Sensitivity, OfCoAndCrossPolarizedPartsGivesTheUncertaintyOfTheTheory, ()) {
   RandomMueller random(*rc::gen::arbitrary<std::uint64_t>());
@@ -285,7 +285,7 @@ TEST(SpeckleBias, IsWhatNoiseAddsToTheSquareOfTheDepolarizationOnAverage) {
               1e-15);
 }
 
-// Theory 4.1 at 532 nm. σ² of each element is half the mean square of the differences of mirror pairs (φ_r and −φ_r:
+// Theory 4.5 at 532 nm. σ² of each element is half the mean square of the differences of mirror pairs (φ_r and −φ_r:
 // the same up to the signs that the mirror changes). 3.6e-4 is predicted with them, and the mean of D² of the samples
 // is above that of the fit by 2.8e-4, both to two digits.
 TEST(SpeckleBias, OfThePublishedDataIsNearWhatMirrorPairsPredict) {

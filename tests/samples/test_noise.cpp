@@ -280,7 +280,7 @@ NoiseLaw published_law(const std::string& path, double wavelength) {
   return estimate_noise(samples, fit(samples).residuals).law;
 }
 
-// Theory 4.1, printed digits; with the residuals of the published index sets a and b differ by up to 0.05.
+// Theory 3.3, printed digits; with the residuals of the published index sets a and b differ by up to 0.05.
 TEST(PublishedNoise, FollowsTheLawsOfTheoryPage) {
   const std::string grid = published("PTFE.data.csv"), random = published("PTFE.data.random.csv");
   if (grid.empty() || random.empty()) GTEST_SKIP() << absent("PTFE.data.csv, PTFE.data.random.csv");

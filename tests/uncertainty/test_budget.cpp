@@ -47,7 +47,7 @@ TEST(Budget, IsTheSumOfItsTermsAndKeepsThem) {
   EXPECT_NEAR(standard_uncertainty(depolarization_gradient(f), b.terms[1].covariance), 0, 1e-10);
 }
 
-// GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.2).
+// GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.6).
 TEST(Budget, OfADetectorAngleHasTheTangentOfTheMeasurementEquation) {
   Model lambertian = material("ptfe-532");
   for (FittedBlock& block : lambertian.blocks)

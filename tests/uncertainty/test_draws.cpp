@@ -26,7 +26,7 @@ namespace {
 
 const Geometry oblique{{0.8, 0.3}, {0.5, 2.6}};
 
-/// ∫ f11 cos θ_r dΩ_r, exact to rounding for order 7: 5 nodes in u = 1 − cos θ and 12 azimuths (theory 4.3).
+/// ∫ f11 cos θ_r dΩ_r, exact to rounding for order 7: 5 nodes in u = 1 − cos θ and 12 azimuths (theory 5.1).
 double reflectance_of(const PreparedModel& model, const Direction& incident) {
   double sum = 0;
   constexpr int azimuths = 12;

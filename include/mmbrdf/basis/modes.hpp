@@ -19,9 +19,9 @@ namespace mmbrdf {
 /// Which modes a basis has.
 enum class Family {
   isotropic,    ///< spin-weighted modes, k + l = 2 (σ_out + σ_in): exactly rotation-covariant, mirror-symmetric and
-                ///< reciprocal. 142 modes at orders 7, 4. Theory 2.5.
+                ///< reciprocal. 142 modes at orders 7, 4. Theory 2.3.
   germer2017,   ///< the index sets of the published coefficient files, 330 modes at orders 7, 4 (Eqs. 8, 14–16). They
-                ///< hold at phi_i = 0 only, so models are evaluated there and turned (theory 0.3).
+                ///< hold at phi_i = 0 only, so models are evaluated there and turned (theory 2.2).
   anisotropic,  ///< every index: the complete reciprocal expansion, Eqs. 1, 2 and 14–16. 2376 modes at orders 7, 4.
 };
 

@@ -45,7 +45,7 @@ struct Basis {
 
 enum class Weights {
   none,  ///< every row counts the same
-  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1).
+  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 3.3).
             ///< f11 is then fitted twice: the first, unweighted fit tells what σ is relative to.
   data,  ///< 1/u² of the samples' own uncertainties u, all of which must be known: data_weights(), with the reflectance
          ///< of the first, unweighted fit.

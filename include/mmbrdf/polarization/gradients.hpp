@@ -12,7 +12,7 @@
 
 namespace mmbrdf {
 
-/// ∂D/∂M_ij = M_ij / (3 D M11²), ∂D/∂M11 = −D / M11 (theory 4.2). 0 where D = 0.
+/// ∂D/∂M_ij = M_ij / (3 D M11²), ∂D/∂M11 = −D / M11 (theory 4.4). 0 where D = 0.
 Mueller depolarization_gradient(const Mueller& m);
 
 /// ∂d/∂M_1j = M_1j / (d M11²), ∂d/∂M11 = −d / M11. 0 where d = 0.
@@ -54,7 +54,7 @@ double covariance(const Mueller& gradient, const Mueller& other, const MuellerCo
 double standard_uncertainty(const Mueller& gradient, const MuellerCovariance& of_elements);
 
 /// ⅓ Σ_{ij≠11} σ_ij²: by how much errors of the elements m_ij = M_ij / M11, of standard deviations σ_ij, raise the
-/// expected D² (theory 4.1). Speckle is fully polarized light, so it makes a sample appear to depolarize less. For
+/// expected D² (theory 4.5). Speckle is fully polarized light, so it makes a sample appear to depolarize less. For
 /// measured matrices σ is their noise; for those of a fit standard_uncertainty() of PreparedUncertainty::normalized().
 /// Element 11 of `sigma` does not count. Throws std::invalid_argument for a σ that is negative or not finite.
 double squared_depolarization_bias(const Mueller& sigma);

@@ -40,7 +40,7 @@ Mueller transpose(const Mueller& m);
 /// M / M11. Throws std::invalid_argument if M11 is 0 or not finite.
 Mueller normalized(const Mueller& m);
 
-/// R(angle): the same light, described in axes turned by `angle` radians from e1 towards e2 (theory B3).
+/// R(angle): the same light, described in axes turned by `angle` radians from e1 towards e2 (theory 1.1).
 ///   rotator(π/4) * [1, 1, 0, 0] = [1, 0, −1, 0].        Period π; rotator(a)ᵀ = rotator(−a).
 Mueller rotator(double angle);
 
@@ -57,7 +57,7 @@ Mueller exchanged(const Mueller& m);
 /// P M P with P = diag(1, 1, −1, −1): the matrix of the mirror image, at the mirrored geometry.
 Mueller mirrored(const Mueller& m);
 
-/// How Stokes vectors are written elsewhere (theory 1.3). A convention is the sign pattern D of the Stokes
+/// How Stokes vectors are written elsewhere (docs/conventions.md). A convention is the sign pattern D of the Stokes
 /// components relative to this project's; M' = D M D. D changes no modulus, so no test of realizability can find a
 /// wrong one: store the convention with the data.
 enum class StokesConvention {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Uncertainties by propagation of distributions: draws of a model's coefficients, and any quantity over them (GUM
-/// Supplement 1: JCGM 101:2008; theory 4.2). For what is far from linear: eigenvalues, entropy, decompositions, a
+/// Supplement 1: JCGM 101:2008; theory 4.4). For what is far from linear: eigenvalues, entropy, decompositions, a
 /// depolarization near 0.
 ///
 ///   const Draws draws(model, 1000, seed);

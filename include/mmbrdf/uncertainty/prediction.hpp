@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Standard uncertainties of what a model predicts: the covariance of its coefficients, propagated in first order (GUM;
-/// theory 4.2). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
+/// theory 4.1). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
 /// noise. What all data share (scale, angles, the sample) is not in them. A reflectance table that the fit took from
 /// its data has a covariance and counts; one that was given to it counts as exact.
 #pragma once
@@ -48,7 +48,7 @@ class PreparedUncertainty {
 
   /// Whether the data of the fit determine every element there. Where they do not, the uncertainties above are those of
   /// the part that is determined: too small. The rows of the elements over the coefficients may lie in the combinations
-  /// that the data leave free with at most 1e-8 of their length (theory 4.2). Of a
+  /// that the data leave free with at most 1e-8 of their length (theory 4.7). Of a
   /// deficient fit whose free combinations are not known nothing is. Throws std::invalid_argument for an invalid
   /// geometry.
   bool estimable(const Geometry& geometry) const;
