@@ -88,10 +88,15 @@ int mode_count(const std::vector<Block>& blocks);
 
 /// Throws std::invalid_argument, naming mode and rule, unless |k| ≤ n ≤ max_order, |l| ≤ m ≤ max_order, n − k and m − l
 /// even, and the family's rules hold:
-///   m11, m22, m33, m44 of germer2017 and anisotropic   (n, k) not before (m, l): n > m, or n = m and (|k|, k) ≥ (|l|,
-///   l); germer2017    n − m even                           m11: k = l ≥ 0 isotropic     m11, m44: k + l = 0, n ≥ m, k
-///   ≥ 0    m14: k + l = 0, k > 0   g, h: k + l = 2
-///                 u: k + l = 4, n > m or n = m and k ≥ l           v: k + l = 0, n ≥ m
+///   family                    function   rule
+///   germer2017, anisotropic   mii        n > m, or n = m and (|k|, k) ≥ (|l|, l): (n, k) does not come before (m, l)
+///   germer2017                all        n − m even
+///                             m11        k = l ≥ 0
+///   isotropic                 m11, m44   k + l = 0, n ≥ m, k ≥ 0
+///                             m14        k + l = 0, k > 0
+///                             g, h       k + l = 2
+///                             u          k + l = 4, n > m, or n = m and k ≥ l
+///                             v          k + l = 0, n ≥ m
 void require_valid(const Mode& mode, Family family);
 
 /// "22 (n, m, k, l) = (4, 2, 4, 2)" for messages.
