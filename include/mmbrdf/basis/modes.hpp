@@ -6,7 +6,7 @@
 /// one evaluation serves them all. f11 is in sr⁻¹; the other elements are normalised, m_ij = f_ij / f11.
 ///
 ///   n, k   radial and azimuthal order of the first factor, which Eq. 15 gives to the incident side
-///   m, l   the same of the second factor
+///   m, l   radial and azimuthal order of the second factor
 #pragma once
 
 #include <string>
@@ -109,8 +109,8 @@ std::string to_string(Function function);
 std::string to_string(DiscMapping mapping);
 /// Of row and column, from 0, on or above the diagonal: m11 … m44. Throws std::invalid_argument for others.
 Function function_of(int row, int column);
-Family family_from(const std::string& name);             ///< throws std::invalid_argument for another name
-Function function_from(const std::string& name);         ///< the same
-DiscMapping disc_mapping_from(const std::string& name);  ///< the same
+Family family_from(const std::string& name);  ///< all three throw std::invalid_argument for another name
+Function function_from(const std::string& name);
+DiscMapping disc_mapping_from(const std::string& name);
 
 }  // namespace mmbrdf

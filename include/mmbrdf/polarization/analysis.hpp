@@ -35,9 +35,9 @@ double polarizance(const Mueller& m);
 double degree_of_polarization(const Stokes& light);
 inline constexpr double stokes_tolerance = 1e-12;  ///< relative to S1
 
-/// The same for M · incident; 0 where there is no light but for rounding, as behind crossed polarizers. May exceed 1
-/// for a matrix that is not realizable. Throws std::invalid_argument for such incident light as above, or if the matrix
-/// makes an intensity below 0 or polarized light without intensity.
+/// Degree of polarization of M · incident; 0 where there is no light but for rounding, as behind crossed polarizers.
+/// May exceed 1 for a matrix that is not realizable. Throws std::invalid_argument for incident light that cannot exist,
+/// or if the matrix makes an intensity below 0 or polarized light without intensity.
 double degree_of_polarization(const Mueller& m, const Stokes& incident);
 
 /// BRDFs between linear polarizations in sr⁻¹; the first letter is the incident polarization.

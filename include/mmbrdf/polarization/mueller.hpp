@@ -71,11 +71,11 @@ enum class StokesConvention {
   p_first_right,
   /// D = (1, −1, 1, 1): axes (p, s), a left-handed pair; S4 = left − right. Avoid.
   p_first_left_handed_axes_left,
-  /// D = (1, −1, 1, −1): as before with S4 = right − left. Avoid.
+  /// D = (1, −1, 1, −1): axes (p, s), a left-handed pair; S4 = right − left. Avoid.
   p_first_left_handed_axes_right,
 };
 
-/// The same matrix written in another convention. convert(M, c, c) = M, and it is its own inverse with from and to
+/// D M D, the matrix as another convention writes it. convert(M, c, c) = M, and it is its own inverse with from and to
 /// exchanged.  convert(M, germer2017, s_first_right) changes the sign of elements 14, 24, 34, 41, 42, 43.
 Mueller convert(const Mueller& m, StokesConvention from, StokesConvention to);
 Stokes convert(const Stokes& s, StokesConvention from, StokesConvention to);

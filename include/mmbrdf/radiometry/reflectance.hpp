@@ -25,9 +25,9 @@ std::vector<double> directional_hemispherical_slopes(const Block& f11, Family fa
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident);
 inline constexpr double dhr_error = 1e-14;
 
-/// The same for incident light of any polarization, in the sp frame of the incident beam: s is {1, 1, 0, 0} and p is
-/// {1, −1, 0, 0}. Reflected flux, whatever its polarization, per incident flux. Integrated with hemisphere_nodes.
-/// Throws std::invalid_argument if the light cannot exist (degree_of_polarization).
+/// Directional-hemispherical reflectance for incident light of any polarization, in the sp frame of the incident beam:
+/// s is {1, 1, 0, 0} and p is {1, −1, 0, 0}. Reflected flux, whatever its polarization, per incident flux. Integrated
+/// with hemisphere_nodes. Throws std::invalid_argument if the light cannot exist (degree_of_polarization).
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident,
                                              const Stokes& light_sp);
 

@@ -67,12 +67,13 @@ struct Distribution {
   double low = 0, high = 0;       ///< ends of the coverage interval, both among the values
 };
 
-/// Throws std::invalid_argument for fewer than two values, one that is not finite, or unless 0 < coverage < 1.
+/// Mean, standard deviation and coverage interval of drawn values. Throws std::invalid_argument for fewer than two
+/// values, one that is not finite, or unless 0 < coverage < 1.
 Distribution distribution(std::span<const double> values, double coverage = 0.95,
                           Interval interval = Interval::symmetric);
 
-/// Of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws std::invalid_argument if the
-/// counts differ, or as above.
+/// Correlation of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws
+/// std::invalid_argument if the counts differ, for fewer than two values, or one that is not finite.
 double correlation(std::span<const double> values, std::span<const double> others);
 
 }  // namespace mmbrdf
