@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
     std::cerr << "mmbrdf: out of memory\n";
     return 1;
   } catch (const std::exception& error) {
-    std::cerr << "mmbrdf: " << mmbrdf::program::plain_message(error) << '\n';
+    std::cerr << "mmbrdf: " << error.what() << '\n';
     return 1;
   }
 }

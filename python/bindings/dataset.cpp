@@ -245,7 +245,7 @@ void bind_dataset(py::module_& m) {
       .def(
           "save",
           [](const Dataset& d, const std::filesystem::path& path) {
-            if (d.samples.empty()) throw std::invalid_argument("save: a dataset without samples");
+            if (d.samples.empty()) throw std::invalid_argument("a dataset without samples cannot be saved");
             require_place(path);
             write_samples(path, d.samples);
           },

@@ -124,7 +124,7 @@ py::object outside_of(const Question& question) {
         1, 1, [&](double wavelength) { return wavelength; },
         [&](double wavelength, const Some& some) {
           for (std::size_t i = 0; i < some.geometries.size(); ++i) {
-            require_valid(some.geometries[i], "outside");
+            require_valid(some.geometries[i]);
             out[some.position(i)] =
                 static_cast<std::uint8_t>(outside(question.model().model().validity, wavelength, some.geometries[i]));
           }

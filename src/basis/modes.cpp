@@ -17,7 +17,7 @@
 //   V_n^k  = √((n+1)/π) R_n^|k| e^{ikφ} = C_n^k + i S_n^k       the complex function of the isotropic family
 //   C_n^k  = √2 K_n^0 for k = 0, else K_n^|k|
 //   S_n^k  = 0 for k = 0, else sign(k) K_n^{−|k|}
-//   Z(i,r) = V_n^k(i) V_m^l(r)                                  the mode function of theory 2.5
+//   Z(i,r) = V_n^k(i) V_m^l(r)                                  the mode function of theory 2.3
 
 namespace mmbrdf {
 namespace {
@@ -94,7 +94,7 @@ void add_u_or_v(Terms& t, const V& a, const V& b, bool is_u) {
   add_both(add_imaginary, 1, 2, -sign);
 }
 
-/// Theory 2.5, "Real elements". Z(i,r) is a(i) b(r), and Z(r,i) is b(i) a(r).
+/// Theory 2.3, the table of real elements. Z(i,r) is a(i) b(r), and Z(r,i) is b(i) a(r).
 std::vector<Term> isotropic_terms(const Mode& mode) {
   const V a{mode.n, mode.k}, b{mode.m, mode.l};
   Terms t;
@@ -127,7 +127,7 @@ std::vector<Term> isotropic_terms(const Mode& mode) {
       add_u_or_v(t, a, b, mode.function == Function::u);
       break;
     default:
-      throw std::logic_error("isotropic_terms: " + to_string(mode));
+      throw std::logic_error(to_string(mode) + " is no mode of the isotropic family");
   }
   return t.take();
 }
@@ -170,7 +170,7 @@ auto key(const Mode& mode) { return std::tuple(mode.function, mode.n, mode.m, az
 
 bool not_before(int n, int k, int m, int l) { return std::tuple(n, std::abs(k), k) >= std::tuple(m, std::abs(l), l); }
 
-/// Whether the published files have this index (theory 2.3).
+/// Whether the published files have this index (theory 2.2).
 bool is_published(const Mode& mode) {
   const auto [function, n, m, k, l] = mode;
   const bool same_sign = k > 0 && l > 0, opposite = k * l < 0;

@@ -89,8 +89,8 @@ DiscPoint disc_point(const Vector3& v, DiscMapping mapping) {
 
 double radial(int n, int k, double rho) {
   if (n < 0 || n > max_order)
-    throw std::invalid_argument("radial: n = " + std::to_string(n) + ", must be in 0…" + std::to_string(max_order));
-  if (!(rho >= 0 && rho <= 1)) throw std::invalid_argument("radial: rho = " + shortest(rho) + ", must be in [0, 1]");
+    throw std::invalid_argument("n = " + std::to_string(n) + ", must be in 0..." + std::to_string(max_order));
+  if (!(rho >= 0 && rho <= 1)) throw std::invalid_argument("rho = " + shortest(rho) + ", must be in [0, 1]");
   if (k < -n || k > n || (n - k) % 2 != 0) return 0;
   std::array<double, table_size> values;
   unnormalized_table(n, {rho, 0}, values.data());
@@ -99,8 +99,7 @@ double radial(int n, int k, double rho) {
 
 double zernike(int n, int k, const Direction& direction, DiscMapping mapping) {
   if (!(direction.theta >= 0 && direction.theta <= radians(90)))
-    throw std::invalid_argument("zernike: theta = " + shortest(in_degrees(direction.theta)) +
-                                " degrees, must be in 0…90");
+    throw std::invalid_argument("theta = " + shortest(in_degrees(direction.theta)) + " degrees, must be in 0...90");
   const double rho = std::min(1.0, disc_radius(direction.theta, mapping));  // √2 sin 45° may be rounded to above 1
   const double radius = radial(n, k, rho);                                  // checks n
   return norm(n, k) * radius * (k < 0 ? std::sin(-1.0 * k * direction.phi) : std::cos(k * direction.phi));

@@ -197,7 +197,7 @@ ordered_json calibration_json(const Calibration& c) {
 /// What is not finite would be written as null.
 void require_finite(const ordered_json& value, const std::string& name) {
   if (value.is_number() && !std::isfinite(value.get<double>()))
-    throw std::invalid_argument("to_json: " + name + " of the instrument must be finite");
+    throw std::invalid_argument(name + " of the instrument must be finite");
   if (!value.is_structured()) return;
   for (const auto& [key, child] : value.items()) require_finite(child, value.is_object() ? key : name);
 }
@@ -210,7 +210,7 @@ Calibration calibration_from_json(std::string_view text, const std::string& name
 }
 
 std::string to_json(const Calibration& calibration) {
-  if (!(calibration.wavelength > 0)) throw std::invalid_argument("to_json: the wavelength must be positive");
+  if (!(calibration.wavelength > 0)) throw std::invalid_argument("the wavelength must be positive");
   Reduction(calibration.polarimeter, calibration.covariance);  // throws for what could not be used
   const ordered_json root = calibration_json(calibration);
   require_finite(root, "a number");
@@ -218,12 +218,12 @@ std::string to_json(const Calibration& calibration) {
   try {
     text = json_text(root);
   } catch (const nlohmann::json::exception& e) {  // text that is not UTF-8
-    throw std::invalid_argument("to_json: provenance of the instrument: " + std::string(e.what()));
+    throw std::invalid_argument("provenance of the instrument: " + std::string(e.what()));
   }
   try {
     calibration_from_json(text, "instrument");
   } catch (const std::runtime_error& e) {
-    throw std::invalid_argument("to_json: " + std::string(e.what()));
+    throw std::invalid_argument(std::string(e.what()));
   }
   return text;
 }

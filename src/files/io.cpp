@@ -84,7 +84,7 @@ bool have_uncertainties(std::span<const Sample> samples) {
   if (std::none_of(samples.begin(), samples.end(), has_uncertainty)) return false;
   const auto without = std::find_if_not(samples.begin(), samples.end(), has_uncertainty);
   if (without != samples.end())
-    throw std::invalid_argument("write_samples: sample " + std::to_string(without - samples.begin() + 1) +
+    throw std::invalid_argument("sample " + std::to_string(without - samples.begin() + 1) +
                                 " has no uncertainties, but others have");
   return true;
 }
@@ -283,8 +283,7 @@ Model read_coefficients(const std::string& path) {
 std::string to_coefficients_csv(const Model& model) {
   require_valid(model);
   if (model.mapping != DiscMapping::lambert)
-    throw std::invalid_argument("to_coefficients_csv: the published layout is for the mapping lambert, not " +
-                                to_string(model.mapping));
+    throw std::invalid_argument("the published layout is for the mapping lambert, not " + to_string(model.mapping));
   const Model published = in_published_form(model);
   std::string text;
   for (const FittedBlock& fitted : published.blocks) {

@@ -24,7 +24,7 @@ Model material(std::string_view name) {
     if (embedded.name == name) return model_from_json(embedded.json, "material " + std::string(name));
   std::string known;
   for (const std::string& other : materials()) known += (known.empty() ? "" : ", ") + other;
-  throw std::invalid_argument("material: '" + std::string(name) + "' is not one of " + known);
+  throw std::invalid_argument("material '" + std::string(name) + "' is not one of " + known);
 }
 
 }  // namespace mmbrdf

@@ -159,7 +159,7 @@ Model read_model(const Field& root) {
 
 void require_finite(const std::vector<double>& values, const std::string& what) {
   if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
-    throw std::invalid_argument("to_json: " + what + " must be finite");
+    throw std::invalid_argument(what + " must be finite");
 }
 
 ordered_json reflectance_json(const ReflectanceTable& table) {
@@ -222,7 +222,7 @@ std::string to_json(const Model& model) {
   try {
     return json_text(model_json(model));
   } catch (const json::exception& e) {  // text that is not UTF-8
-    throw std::invalid_argument("to_json: name or provenance of the model: " + std::string(e.what()));
+    throw std::invalid_argument("name or provenance of the model: " + std::string(e.what()));
   }
 }
 

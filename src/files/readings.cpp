@@ -199,11 +199,10 @@ void require_same(const CsvReader& reader, const CollectedReference& collected, 
   require_same(reader, number, first.delta_sign == row.delta_sign, "delta_sign", line);
 }
 
-std::size_t checked_size(const std::vector<double>& readings, const StateCounts& states, const char* what) {
+std::size_t checked_size(const std::vector<double>& readings, const StateCounts& states) {
   const std::size_t expected = states.generator * states.analyzer;
   if (readings.size() != expected)
-    throw std::invalid_argument(std::string(what) + ": " + std::to_string(readings.size()) + " readings in place of " +
-                                std::to_string(expected));
+    throw std::invalid_argument(std::to_string(readings.size()) + " readings in place of " + std::to_string(expected));
   return expected;
 }
 
@@ -260,11 +259,12 @@ ReferenceFile read_references(const std::string& path, double saturation) {
 }
 
 void write_references(std::ostream& out, const ReferenceFile& file) {
-  if (!(file.wavelength > 0)) throw std::invalid_argument("references: wavelength " + shortest(file.wavelength));
+  if (!(file.wavelength > 0))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(file.wavelength)) + " nm, must be positive");
   out << "wavelength_nm,reference,angle_deg,s_exceeds_p,delta_sign,number,generator_state,analyzer_state,intensity\n";
   for (std::size_t r = 0; r < file.references.size(); ++r) {
     const Reference& reference = file.references[r];
-    const std::size_t count = checked_size(reference.readings, file.states, "references");
+    const std::size_t count = checked_size(reference.readings, file.states);
     for (std::size_t i = 0; i < count; ++i) {
       out << shortest(in_nanometres(file.wavelength)) << ',' << to_string(reference.kind) << ','
           << shortest(in_degrees(reference.angle)) << ',' << reference.s_exceeds_p << ',' << reference.delta_sign;
@@ -314,7 +314,8 @@ struct RawReader::State {
 Sample reduced(const Reduction& reduction, const RawMeasurement& measurement, double solid_angle,
                const ReadingNoise& noise) {
   for (const double part : {noise.dark, noise.shot, noise.relative})
-    if (!(part >= 0) || !std::isfinite(part)) throw std::invalid_argument("reduced: a noise of " + shortest(part));
+    if (!(part >= 0) || !std::isfinite(part))
+      throw std::invalid_argument("a noise of " + shortest(part) + ", must be finite and not negative");
   const auto& [wavelength, geometry, readings] = measurement;
   const Mueller m = reduction.mueller(readings);
   Sample result = sample(m, wavelength, geometry, solid_angle);
@@ -324,7 +325,7 @@ Sample reduced(const Reduction& reduction, const RawMeasurement& measurement, do
   result.uncertainty = standard_uncertainty(change_frame(c, geometry, Frame::scattering_plane, Frame::xy));
   result.uncertainty(0, 0) /= solid_angle * std::cos(geometry.reflected.theta);
   for (const double u : result.uncertainty.elements)
-    if (!std::isfinite(u)) throw std::invalid_argument("reduced: the noise leaves no finite uncertainty");
+    if (!std::isfinite(u)) throw std::invalid_argument("the noise leaves no finite uncertainty");
   return result;
 }
 
@@ -366,7 +367,7 @@ void write_raw(std::ostream& out, const StateCounts& states, std::span<const Raw
     std::string begin = shortest(in_nanometres(wavelength));
     for (const Direction& direction : {geometry.incident, geometry.reflected})
       begin += ',' + shortest(in_degrees(direction.theta)) + ',' + shortest(in_degrees(direction.phi));
-    for (std::size_t i = 0; i < checked_size(readings, states, "raw readings"); ++i) {
+    for (std::size_t i = 0; i < checked_size(readings, states); ++i) {
       out << begin;
       write_reading(out, m + 1, states, i, readings[i]);
       out << '\n';

@@ -20,20 +20,20 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 void require_fitting(const Model& model, std::span<const Sample> samples, std::span<const SampleChanges> errors,
                      std::span<const Mueller> weights) {
-  if (model.powers != 0) throw std::invalid_argument("common errors: the model has powers of the wavelength");
+  if (model.powers != 0) throw std::invalid_argument("the model has powers of the wavelength");
   if (!model.reflectance.covariance.empty())
-    throw std::invalid_argument("common errors: the reflectance that f11 is divided by comes from samples of its own");
-  if (samples.empty()) throw std::invalid_argument("common errors: no samples");
+    throw std::invalid_argument("the reflectance that f11 is divided by comes from samples of its own");
+  if (samples.empty()) throw std::invalid_argument("no samples");
   for (const Sample& sample : samples)
     if (std::abs(sample.wavelength - samples[0].wavelength) > wavelength_resolution)
-      throw std::invalid_argument("common errors: samples of more than one wavelength");
+      throw std::invalid_argument("samples of more than one wavelength");
   for (const SampleChanges& error : errors)
     if (error.size() != samples.size())
-      throw std::invalid_argument("common errors: " + std::to_string(error.size()) + " changes of " +
-                                  std::to_string(samples.size()) + " samples");
+      throw std::invalid_argument(std::to_string(error.size()) + " changes of " + std::to_string(samples.size()) +
+                                  " samples");
   if (!weights.empty() && weights.size() != samples.size())
-    throw std::invalid_argument("common errors: " + std::to_string(weights.size()) + " weights of " +
-                                std::to_string(samples.size()) + " samples");
+    throw std::invalid_argument(std::to_string(weights.size()) + " weights of " + std::to_string(samples.size()) +
+                                " samples");
 }
 
 /// XᵀWX and XᵀW dy of one block, a column for each error.

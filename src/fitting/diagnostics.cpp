@@ -121,14 +121,14 @@ double studentized(double residual, double weight, double deviation, double leve
 void require_matching(std::span<const Sample> samples, const FitResult& result, std::span<const Mueller> weights) {
   require_valid(samples);
   if (!weights.empty() && weights.size() != samples.size())
-    throw std::invalid_argument("sample diagnostics: " + std::to_string(weights.size()) + " weights for " +
-                                std::to_string(samples.size()) + " samples");
+    throw std::invalid_argument(std::to_string(weights.size()) + " weights for " + std::to_string(samples.size()) +
+                                " samples");
   const auto weighs = [&](std::size_t s) { return weights.empty() || weights[s](0, 0) > 0; };
   long rows = 0;  // an accumulator does not count rows of weight 0
   for (std::size_t s = 0; s < samples.size(); ++s) rows += weighs(s) ? 1 : 0;
   if (result.elements[0].rows != rows || result.solutions.size() != result.model.blocks.size())
-    throw std::invalid_argument("sample diagnostics: " + std::to_string(samples.size()) +
-                                " samples, the model was fitted to " + std::to_string(result.elements[0].rows));
+    throw std::invalid_argument(std::to_string(samples.size()) + " samples, the model was fitted to " +
+                                std::to_string(result.elements[0].rows));
 }
 
 /// Fills in the residuals of the block's elements, and returns the leverage of the sample.
@@ -182,7 +182,7 @@ SampleDiagnostics sample_diagnostics(std::span<const Sample> samples, const FitR
 }
 
 std::vector<Outlier> outliers(const SampleDiagnostics& diagnostics, double threshold) {
-  if (!(threshold >= 0)) throw std::invalid_argument("outliers: threshold " + shortest(threshold) + " is negative");
+  if (!(threshold >= 0)) throw std::invalid_argument("threshold " + shortest(threshold) + " is negative");
   std::vector<Outlier> result;
   for (std::size_t s = 0; s < diagnostics.studentized.size(); ++s)
     for (std::size_t e = 0; e < 16; ++e)
@@ -210,8 +210,7 @@ void take_in(ModelDiagnostics& result, const Geometry& geometry, const PreparedM
 
 ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double theta_max) {
   if (!(theta_max >= 0 && theta_max <= radians(90) * (1 + 1e-12)))
-    throw std::invalid_argument("model diagnostics: largest polar angle " + shortest(degrees(theta_max)) +
-                                " degrees is not in [0, 90]");
+    throw std::invalid_argument("largest polar angle " + shortest(degrees(theta_max)) + " degrees is not in [0, 90]");
   const PreparedModel prepared = prepare(model, wavelength);
   ModelDiagnostics result;
   result.wavelength = wavelength;

@@ -136,7 +136,7 @@ FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
 }
 
 void FitAccumulator::merge(const FitAccumulator& other) {
-  if (!(basis_ == other.basis_)) throw std::invalid_argument("FitAccumulator: cannot merge fits of different bases");
+  if (!(basis_ == other.basis_)) throw std::invalid_argument("cannot merge fits of different bases");
   for (const auto& [wavelength, theirs] : other.wavelengths_) {
     AtWavelength& ours = slot(wavelength);
     for (std::size_t e = 0; e < 16; ++e) {
@@ -198,7 +198,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, Deco
     f11.blocks.push_back({blocks_[0], solution.x, {}, 0, 0});
     const double dhr = directional_hemispherical_reflectance(f11, wavelength, {0, 0});
     if (!(dhr > 0))
-      throw std::invalid_argument("fit: the normal-incidence reflectance at " + nanometres(wavelength) +
+      throw std::invalid_argument("the normal-incidence reflectance at " + nanometres(wavelength) +
                                   " nm comes out as " + shortest(dhr) + "; give a reflectance table");
     table.wavelengths.push_back(wavelength);
     table.values.push_back(dhr);
@@ -213,12 +213,12 @@ bool FitAccumulator::accepts_minimum_norm(const FitOptions& options) const {
 int FitAccumulator::chosen_powers(const FitOptions& options) const {
   const int powers = options.powers.value_or(wavelengths_.size() > 1 ? 1 : 0);
   if (powers < 0)
-    throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is negative");
+    throw std::invalid_argument("highest power of the wavelength " + std::to_string(powers) + " is negative");
   if (powers > max_power)
-    throw std::invalid_argument("fit: highest power of the wavelength " + std::to_string(powers) + " is more than " +
+    throw std::invalid_argument("highest power of the wavelength " + std::to_string(powers) + " is more than " +
                                 std::to_string(max_power));
   if (size(powers) >= wavelengths_.size())
-    throw std::invalid_argument("fit: powers of the wavelength up to " + std::to_string(powers) + " need " +
+    throw std::invalid_argument("powers of the wavelength up to " + std::to_string(powers) + " need " +
                                 std::to_string(powers + 1) + " wavelengths, the data have " +
                                 std::to_string(wavelengths_.size()));
   return powers;
@@ -226,12 +226,12 @@ int FitAccumulator::chosen_powers(const FitOptions& options) const {
 
 FitResult FitAccumulator::solve(const FitOptions& options) const {
   if (options.covariance == Covariance::sandwich)
-    throw std::invalid_argument("fit: a sandwich covariance needs the samples again, and an accumulator keeps none");
+    throw std::invalid_argument("a sandwich covariance needs the samples again, and an accumulator keeps none");
   return solved(options);
 }
 
 FitResult FitAccumulator::solved(const FitOptions& options) const {
-  if (samples_ == 0) throw std::invalid_argument("fit: no samples");
+  if (samples_ == 0) throw std::invalid_argument("no samples");
   const int powers = chosen_powers(options);
   std::string complaints;
   Decompositions known;
@@ -273,7 +273,7 @@ void FitAccumulator::require_covered(const ReflectanceTable& table) const {
   for (const auto& [wavelength, at] : wavelengths_)
     if (wavelength < table.wavelengths.front() - wavelength_resolution ||
         wavelength > table.wavelengths.back() + wavelength_resolution)
-      throw std::invalid_argument("fit: the reflectance table does not reach " + nanometres(wavelength) + " nm");
+      throw std::invalid_argument("the reflectance table does not reach " + nanometres(wavelength) + " nm");
 }
 
 ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const double> x,

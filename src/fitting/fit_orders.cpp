@@ -13,7 +13,7 @@ std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
   const auto same = [](const Block& ours, const FittedBlock& theirs) { return ours.modes == theirs.block.modes; };
   if (model.family != basis_.family || model.mapping != basis_.mapping ||
       !std::equal(blocks_.begin(), blocks_.end(), model.blocks.begin(), model.blocks.end(), same))
-    throw std::invalid_argument("FitAccumulator: the model has another basis");
+    throw std::invalid_argument("the model has another basis");
   std::array<ElementFit, 16> result;
   for (std::size_t e = 0; e < 16 && samples_ > 0; ++e) {
     const bool fed = block_of_[e] >= 0;
@@ -26,8 +26,8 @@ std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
 
 FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
   if (orders.f11 > basis_.orders.f11 || orders.other > basis_.orders.other)
-    throw std::invalid_argument("FitAccumulator: orders " + std::to_string(orders.f11) + "," +
-                                std::to_string(orders.other) + " are higher than those of the samples added");
+    throw std::invalid_argument("orders " + std::to_string(orders.f11) + "," + std::to_string(orders.other) +
+                                " are higher than those of the samples added");
   Basis basis = basis_;
   basis.orders = orders;
   FitAccumulator result(basis);

@@ -27,12 +27,13 @@ std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 void require_weights(std::span<const Mueller> weights, std::size_t samples) {
   if (!weights.empty() && weights.size() != samples)
-    throw std::invalid_argument("fit: " + std::to_string(weights.size()) + " weights for " + std::to_string(samples) +
+    throw std::invalid_argument(std::to_string(weights.size()) + " weights for " + std::to_string(samples) +
                                 " samples");
   for (std::size_t s = 0; s < weights.size(); ++s)
     for (const double weight : weights[s].elements)
       if (!(weight >= 0) || !std::isfinite(weight))
-        throw std::invalid_argument("fit: weight " + shortest(weight) + " of sample " + std::to_string(s + 1));
+        throw std::invalid_argument("weight " + shortest(weight) + " of sample " + std::to_string(s + 1) +
+                                    ", must be finite and not negative");
 }
 
 /// Squares of rows are added up: what is larger than this would leave no finite sum of a million of them.
@@ -45,7 +46,7 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
       const double value = std::abs(e == 0 ? samples[s].f11 : samples[s].normalized.elements[e]);
       const double weight = weights.empty() ? 1 : weights[s].elements[e];
       if (std::sqrt(weight) * std::max(value, 1.0) > largest_value)
-        throw std::invalid_argument("fit: sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
+        throw std::invalid_argument("sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
                                     shortest(value) + " with weight " + shortest(weight) + " is too large");
     }
 }

@@ -100,8 +100,8 @@ Partition folds_by_wavelength(std::span<const Sample> samples) {
 
 std::vector<std::vector<Sample>> parts(std::span<const Sample> samples, const Partition& partition) {
   if (partition.fold.size() != samples.size())
-    throw std::invalid_argument("parts: a partition of " + std::to_string(partition.fold.size()) +
-                                " samples, there are " + std::to_string(samples.size()));
+    throw std::invalid_argument("a partition of " + std::to_string(partition.fold.size()) + " samples, there are " +
+                                std::to_string(samples.size()));
   std::vector<std::vector<Sample>> result(partition.names.size());
   for (std::size_t s = 0; s < samples.size(); ++s) result[partition.fold[s]].push_back(samples[s]);
   return result;

@@ -298,17 +298,17 @@ void require_valid(std::span<const Sample> samples, std::span<const Partition> p
     throw std::invalid_argument("powers of the wavelength up to " + std::to_string(options.powers.last) + " need " +
                                 std::to_string(options.powers.last + 1) + " wavelengths, the data have " +
                                 std::to_string(there));
-  if (partitions.empty()) throw std::invalid_argument("selection: no partition of the samples");
+  if (partitions.empty()) throw std::invalid_argument("no partition of the samples");
   for (const Partition& partition : partitions) {
     if (partition.fold.size() != samples.size())
-      throw std::invalid_argument("selection: a partition of " + std::to_string(partition.fold.size()) + " of " +
+      throw std::invalid_argument("a partition of " + std::to_string(partition.fold.size()) + " of " +
                                   std::to_string(samples.size()) + " samples");
     if (partition.names.size() < 2 || partition.names.size() > static_cast<std::size_t>(max_folds))
-      throw std::invalid_argument("selection: a partition of " + std::to_string(partition.names.size()) +
+      throw std::invalid_argument("a partition of " + std::to_string(partition.names.size()) +
                                   " folds, it takes 2 to " + std::to_string(max_folds));
     for (const std::size_t fold : partition.fold)
       if (fold >= partition.names.size())
-        throw std::invalid_argument("selection: fold number " + std::to_string(fold) + " of " +
+        throw std::invalid_argument("fold number " + std::to_string(fold) + " of " +
                                     std::to_string(partition.names.size()));
   }
 }

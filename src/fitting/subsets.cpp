@@ -26,19 +26,18 @@ void require_same_rank(const Model& part, const Model& whole) {
 }
 
 void require_positive(const PolarizedCurve& reference) {
-  if (reference.empty()) throw std::invalid_argument("subsets: no geometries");
+  if (reference.empty()) throw std::invalid_argument("no geometries");
   for (std::size_t g = 0; g < reference.size(); ++g)
     for (std::size_t c = 0; c < every_curve.size(); ++c)
       if (const double value = reference[g].*every_curve[c]; !(value > 0) || !std::isfinite(value))
-        throw std::invalid_argument(std::string("subsets: ") + curve_names[c] + " of the reference is " +
-                                    shortest(value) + " /sr at geometry " + std::to_string(g + 1) +
-                                    ", must be positive");
+        throw std::invalid_argument(std::string(curve_names[c]) + " of the reference is " + shortest(value) +
+                                    " /sr at geometry " + std::to_string(g + 1) + ", must be positive");
 }
 
 void require_same_length(const PolarizedCurve& curve, const PolarizedCurve& reference) {
   if (curve.size() != reference.size())
-    throw std::invalid_argument("subsets: a curve of " + std::to_string(curve.size()) +
-                                " geometries, the reference has " + std::to_string(reference.size()));
+    throw std::invalid_argument("a curve of " + std::to_string(curve.size()) + " geometries, the reference has " +
+                                std::to_string(reference.size()));
 }
 
 }  // namespace
@@ -53,7 +52,7 @@ SubsetFits fit_parts(std::span<const std::vector<Sample>> parts, const Basis& ba
       fits.parts.push_back(fit(part, basis, options, weights).model);
       require_same_rank(fits.parts.back(), fits.whole);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("subsets: part " + std::to_string(&part - parts.data() + 1) + " of " +
+      throw std::invalid_argument("part " + std::to_string(&part - parts.data() + 1) + " of " +
                                   std::to_string(parts.size()) + ", " + std::to_string(part.size()) +
                                   " samples: " + error.what());
     }
@@ -91,7 +90,7 @@ PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std:
 }
 
 SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const PolarizedCurve& reference) {
-  if (curves.size() < 2) throw std::invalid_argument("subsets: fewer than 2 curves have no spread");
+  if (curves.size() < 2) throw std::invalid_argument("fewer than 2 curves have no spread");
   require_positive(reference);
   for (const PolarizedCurve& curve : curves) require_same_length(curve, reference);
   const auto k = static_cast<double>(curves.size()), count = 4 * static_cast<double>(reference.size());

@@ -227,7 +227,7 @@ bool has_one_azimuth(std::span<const Sample> samples) {
 
 double f_probability(double f, double numerator, double denominator) {
   if (!(f >= 0) || !(numerator > 0) || !(denominator > 0))
-    throw std::invalid_argument("F distribution: F = " + shortest(f) + " with " + shortest(numerator) + " and " +
+    throw std::invalid_argument("F = " + shortest(f) + " with " + shortest(numerator) + " and " +
                                 shortest(denominator) + " degrees of freedom");
   if (std::isinf(f)) return 0;
   const double x = denominator / (denominator + numerator * f);  // Abramowitz and Stegun 26.6.2
@@ -236,11 +236,11 @@ double f_probability(double f, double numerator, double denominator) {
 
 SymmetryTests symmetry_tests(std::span<const Sample> samples, const Orders& orders, DiscMapping mapping,
                              std::span<const Mueller> weights) {
-  if (samples.empty()) throw std::invalid_argument("symmetry tests: no samples");
+  if (samples.empty()) throw std::invalid_argument("no samples");
   require_valid(samples);
   if (!weights.empty() && weights.size() != samples.size())
-    throw std::invalid_argument("symmetry tests: " + std::to_string(weights.size()) + " weights for " +
-                                std::to_string(samples.size()) + " samples");
+    throw std::invalid_argument(std::to_string(weights.size()) + " weights for " + std::to_string(samples.size()) +
+                                " samples");
   const Problem problem{samples, weights, wavelengths(samples), std::max(orders.f11, orders.other), mapping};
   SymmetryTests result;
   result.one_azimuth = has_one_azimuth(samples);

@@ -46,7 +46,7 @@ std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& mo
     try {
       weights.push_back(weights_of(sample, law_at(wavelength), prepared(wavelength), model.reflectance.at(wavelength)));
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("weights: sample " + std::to_string(weights.size() + 1) + ": " + error.what());
+      throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }
   }
   return weights;
@@ -103,7 +103,7 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
     try {
       weights.push_back(data_weights_of(turns ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("weights: sample " + std::to_string(weights.size() + 1) + ": " + error.what());
+      throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }
   }
   return weights;
@@ -114,7 +114,7 @@ std::vector<Mueller> fit_weights(std::span<const Sample> samples, const Basis& b
   if (weights == Weights::none) return {};
   if (weights == Weights::data) return data_weights(samples, basis, fitted.model.reflectance);
   if (weights == Weights::estimated && fitted.noise.empty())
-    throw std::invalid_argument("weights: the fit has estimated no noise");
+    throw std::invalid_argument("the fit has estimated no noise");
   return weights_of(samples, fitted.model, [&](double wavelength) {
     return weights == Weights::speckle ? NoiseLaw{} : fitted.noise[place(fitted.model, wavelength)].law;
   });

@@ -300,8 +300,7 @@ void Aperture::add_nodes(int nodes, double sign, std::vector<WeightedDirection>&
 
 std::vector<WeightedDirection> Aperture::quadrature(int nodes) const {
   if (nodes < 1 || nodes > most_nodes)
-    throw std::invalid_argument("quadrature: " + std::to_string(nodes) + " nodes, must be 1 to " +
-                                std::to_string(most_nodes));
+    throw std::invalid_argument(std::to_string(nodes) + " nodes, must be 1 to " + std::to_string(most_nodes));
   std::vector<WeightedDirection> list;
   add_nodes(nodes, 1, list);
   for (const Aperture& port : ports_) port.add_nodes(nodes, -1, list);

@@ -55,15 +55,17 @@ Mueller rotated(const Mueller& m, double scattered, double incident) {
   return result;
 }
 
-void require_theta(double theta, const char* what, const char* name) {
+std::string begun(const char* where) { return *where == 0 ? "" : std::string(where) + ": "; }
+
+void require_theta(double theta, const char* where, const char* name) {
   if (theta >= 0 && theta <= radians(90)) return;
-  throw std::invalid_argument(std::string(what) + ": " + name + " = " + shortest(in_degrees(theta)) +
-                              " degrees, must be in 0…90");
+  throw std::invalid_argument(begun(where) + name + " = " + shortest(in_degrees(theta)) +
+                              " degrees, must be in 0...90");
 }
 
-void require_phi(double phi, const char* what, const char* name) {
+void require_phi(double phi, const char* where, const char* name) {
   if (std::isfinite(phi)) return;
-  throw std::invalid_argument(std::string(what) + ": " + name + " = " + shortest(phi) + ", must be finite");
+  throw std::invalid_argument(begun(where) + name + " = " + shortest(phi) + ", must be finite");
 }
 
 }  // namespace
@@ -76,8 +78,8 @@ Vector3 unit_vector(const Direction& direction) {
 Direction direction(const Vector3& vector) {
   const auto [x, y, z] = vector;
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z) || z < 0 || (x == 0 && y == 0 && z == 0))
-    throw std::invalid_argument("direction: vector = (" + shortest(x) + ", " + shortest(y) + ", " + shortest(z) +
-                                "), must be finite, not 0, with z ≥ 0");
+    throw std::invalid_argument("vector = (" + shortest(x) + ", " + shortest(y) + ", " + shortest(z) +
+                                "), must be finite, not 0, with z >= 0");
   if (x == 0 && y == 0) return {0, 0};
   const double longest = std::max({std::abs(x), std::abs(y), z});  // no overflow for any length
   const double phi = std::atan2(y, x);                             // −π where y is −0 or lost beside x
@@ -98,11 +100,11 @@ Direction direction_from_degrees(double theta, double phi) {
   return {radians(std::abs(theta)), radians(theta < 0 ? opposite : phi)};
 }
 
-void require_valid(const Geometry& geometry, const char* what) {
-  require_theta(geometry.incident.theta, what, "theta_i");
-  require_theta(geometry.reflected.theta, what, "theta_r");
-  require_phi(geometry.incident.phi, what, "phi_i");
-  require_phi(geometry.reflected.phi, what, "phi_r");
+void require_valid(const Geometry& geometry, const char* where) {
+  require_theta(geometry.incident.theta, where, "theta_i");
+  require_theta(geometry.reflected.theta, where, "theta_r");
+  require_phi(geometry.incident.phi, where, "phi_i");
+  require_phi(geometry.reflected.phi, where, "phi_r");
 }
 
 Geometry exchanged(const Geometry& geometry) { return {geometry.reflected, geometry.incident}; }
@@ -119,18 +121,18 @@ FrameAngles angles_to_xy(const Geometry& geometry, Frame frame) {
       return {from_sp.scattered - plane.scattered, from_sp.incident - plane.incident};
     }
   }
-  throw std::invalid_argument("Frame: no frame has the number " + std::to_string(static_cast<int>(frame)));
+  throw std::invalid_argument("no frame has the number " + std::to_string(static_cast<int>(frame)));
 }
 
 Mueller change_frame(const Mueller& m, const Geometry& geometry, Frame from, Frame to) {
-  require_valid(geometry, "change_frame");
+  require_valid(geometry);
   if (from == to) return m;
   const FrameAngles a = angles_to_xy(geometry, from), b = angles_to_xy(geometry, to);
   return rotated(m, a.scattered - b.scattered, a.incident - b.incident);
 }
 
 MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to) {
-  require_valid(geometry, "change_frame");
+  require_valid(geometry);
   const FrameAngles a = angles_to_xy(geometry, from), b = angles_to_xy(geometry, to);
   return transformed(covariance, rotator(a.scattered - b.scattered), rotator(b.incident - a.incident));
 }

@@ -20,8 +20,7 @@ namespace {
 
 void require_size(std::size_t asked, const char* what, std::size_t room) {
   if (asked != room)
-    throw std::invalid_argument("evaluate: " + std::to_string(asked) + " " + what + ", room for " +
-                                std::to_string(room));
+    throw std::invalid_argument(std::to_string(asked) + " " + what + ", room for " + std::to_string(room));
 }
 
 bool is_valid(const Direction& d) {
@@ -34,7 +33,7 @@ void require_valid(std::span<const Geometry> geometries, int threads) {
     while (q < first + count && is_valid(geometries[q].incident) && is_valid(geometries[q].reflected)) ++q;
     return q;
   });
-  if (bad < geometries.size()) require_valid(geometries[bad], "evaluate");  // throws
+  if (bad < geometries.size()) require_valid(geometries[bad]);  // throws
 }
 
 void require_valid(std::span<const Direction> directions, int threads) {
@@ -43,14 +42,14 @@ void require_valid(std::span<const Direction> directions, int threads) {
     while (q < first + count && is_valid(directions[q])) ++q;
     return q;
   });
-  if (bad < directions.size()) require_valid(Geometry{{}, directions[bad]}, "evaluate");
+  if (bad < directions.size()) require_valid(Geometry{{}, directions[bad]});
 }
 
 template <class T>
 void require_valid(const UnitVectors<T>& vectors, const char* side, int threads) {
   const std::size_t count = vectors.x.size();
   if (vectors.y.size() != count || vectors.z.size() != count)
-    throw std::invalid_argument("evaluate: " + std::string(side) + " vectors with " + std::to_string(count) + " x, " +
+    throw std::invalid_argument(std::string(side) + " vectors with " + std::to_string(count) + " x, " +
                                 std::to_string(vectors.y.size()) + " y and " + std::to_string(vectors.z.size()) + " z");
   const std::size_t bad = first_found(count, threads, [&](std::size_t first, std::size_t part) {
     const T* const columns[3] = {vectors.x.data() + first, vectors.y.data() + first, vectors.z.data() + first};
@@ -60,14 +59,14 @@ void require_valid(const UnitVectors<T>& vectors, const char* side, int threads)
       return first + best_kernel().first_invalid_single(columns, part);
   });
   if (bad < count)
-    throw std::invalid_argument("evaluate: " + std::string(side) + " vector " + std::to_string(bad + 1) + ": (" +
+    throw std::invalid_argument(std::string(side) + " vector " + std::to_string(bad + 1) + ": (" +
                                 shortest(vectors.x[bad]) + ", " + shortest(vectors.y[bad]) + ", " +
                                 shortest(vectors.z[bad]) + ") is not a unit vector with z >= 0");
 }
 
 void require_known(Frame frame) {
   if (frame != Frame::xy && frame != Frame::sp && frame != Frame::scattering_plane)
-    throw std::invalid_argument("evaluate: frame " + std::to_string(static_cast<int>(frame)) + " is none");
+    throw std::invalid_argument("frame " + std::to_string(static_cast<int>(frame)) + " is none");
 }
 
 template <class T>
@@ -92,8 +91,8 @@ class Question {
       return;
     }
     if (count != wavelengths.size())
-      throw std::invalid_argument("evaluate: " + std::to_string(count) + " geometries, " +
-                                  std::to_string(wavelengths.size()) + " wavelengths");
+      throw std::invalid_argument(std::to_string(count) + " geometries, " + std::to_string(wavelengths.size()) +
+                                  " wavelengths");
     for (const double wavelength : wavelengths) require_wavelength(wavelength);
     const PreparedPattern& pattern = Evaluation::pattern(prepared);
     std::vector<double> all;
@@ -133,8 +132,7 @@ class Question {
     }
     for (const double value : reflectance->values) largest = std::max(largest, std::abs(value));
     if (!(largest <= static_cast<double>(std::numeric_limits<T>::max())))
-      throw std::invalid_argument("evaluate: wavelength " + shortest(in_nanometres(longest)) +
-                                  " nm: its powers are too large");
+      throw std::invalid_argument("wavelength " + shortest(in_nanometres(longest)) + " nm: its powers are too large");
   }
 
   void convert(const KernelModel<double>& from, std::vector<double>&& own) {
@@ -154,7 +152,7 @@ class Question {
       const auto count = static_cast<std::size_t>((from.powers + 1) * from.count);
       for (std::size_t i = 0; i < count; ++i) own_.push_back(static_cast<T>(from.coefficients[i]));
       if (!std::all_of(own_.begin(), own_.end(), [](T a) { return std::isfinite(a); }) || !std::isfinite(model.scale))
-        throw std::invalid_argument("evaluate: a coefficient is too large for single precision");
+        throw std::invalid_argument("a coefficient is too large for single precision");
       model.coefficients = own_.data();
     }
   }
@@ -292,7 +290,7 @@ void run_vectors(const PreparedModel& model, const VectorGeometries<T>& geometri
   require_valid(i, "incident", options.threads);
   require_valid(r, "reflected", options.threads);
   if (r.x.size() != count)
-    throw std::invalid_argument("evaluate: " + std::to_string(count) + " incident and " + std::to_string(r.x.size()) +
+    throw std::invalid_argument(std::to_string(count) + " incident and " + std::to_string(r.x.size()) +
                                 " reflected vectors");
   const Question<T> question(model, count, options);
   const KernelPoints<T> points{
@@ -308,7 +306,7 @@ void run_vectors(const PreparedModel& model, const VectorGeometries<T>& geometri
 template <class T>
 void run_vectors(const PreparedIncidence& model, const UnitVectors<T>& reflected, const KernelMatrices<T>& out,
                  const BatchOptions& options) {
-  if (!options.wavelengths.empty()) throw std::invalid_argument("evaluate: wavelengths for one incident direction");
+  if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, "reflected", options.threads);
   const Question<T> question(Evaluation::model(model));
   const KernelPoints<T> points{
@@ -364,7 +362,7 @@ void evaluate(const PreparedModel& model, const VectorGeometries<float>& geometr
 void evaluate(const PreparedIncidence& model, std::span<const Direction> reflected, std::span<Mueller> out,
               const BatchOptions& options) {
   require_size(reflected.size(), "directions", out.size());
-  if (!options.wavelengths.empty()) throw std::invalid_argument("evaluate: wavelengths for one incident direction");
+  if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, options.threads);
   run_angles(Question<double>(Evaluation::model(model)), reflected, out, options, [&](std::size_t q) {
     return Geometry{model.incident(), reflected[q]};

@@ -21,7 +21,7 @@ namespace {
 Vector3 normalized(const Vector3& v) {
   const double length = std::hypot(v[0], v[1], v[2]);
   if (!(std::abs(length - 1) < 1e-6) || v[2] < 0)
-    throw std::invalid_argument("evaluate: (" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) +
+    throw std::invalid_argument("(" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) +
                                 ") is not a unit vector with z >= 0");
   return {v[0] / length, v[1] / length, v[2] / length};
 }
@@ -72,11 +72,11 @@ PreparedModel PreparedModel::at(double wavelength) const {
 
 PreparedModel PreparedModel::with(std::span<const double> coefficients, double reflectance) const {
   if (coefficients.size() != pattern_->modes())
-    throw std::invalid_argument("with: " + std::to_string(coefficients.size()) + " coefficients, expected " +
+    throw std::invalid_argument(std::to_string(coefficients.size()) + " coefficients, expected " +
                                 std::to_string(pattern_->modes()));
   bool finite = std::isfinite(reflectance);
   for (const double a : coefficients) finite = finite && std::isfinite(a);
-  if (!finite) throw std::invalid_argument("with: a number is not finite");
+  if (!finite) throw std::invalid_argument("a coefficient or the reflectance is not finite");
   PreparedModel result = *this;
   result.reflectance_ = reflectance;
   result.set({coefficients.begin(), coefficients.end()});
@@ -116,13 +116,13 @@ void PreparedModel::evaluate(std::span<const Geometry> geometries, Frame frame, 
 }
 
 double PreparedModel::f11(const Geometry& geometry) const {
-  require_valid(geometry, "f11");
+  require_valid(geometry);
   return evaluate(geometry)(0, 0);
 }
 
 PreparedIncidence::PreparedIncidence(const PreparedModel& model, const Direction& incident)
     : pattern_(model.pattern_), reflectance_(model.reflectance_), incident_(incident) {
-  require_valid(Geometry{incident, {}}, "at");
+  require_valid(Geometry{incident, {}});
   of_form_ = incidence_coefficients(*pattern_, model.of_modes_, incident);
 }
 

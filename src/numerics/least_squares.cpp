@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 using Vector = Eigen::Map<const VectorXd>;
 
 constexpr std::size_t rows_at_once = 128;    // keeps a block of rows in the cache
-constexpr double estimability_limit = 1e-8;  // theory 4.2
+constexpr double estimability_limit = 1e-8;  // theory 4.7
 
 /// Four sums at a time, of which none waits for another.
 template <class Step>
@@ -41,8 +41,7 @@ void require_finite(std::span<const double> numbers, const char* what) {
   if (over_all(numbers, [](double sum, double x) { return sum + 0 * x; }) == 0) return;  // NaN if one is not finite
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (!std::isfinite(numbers[i]))
-      throw std::invalid_argument("LeastSquares: " + std::string(what) + " number " + std::to_string(i + 1) +
-                                  " is not finite");
+      throw std::invalid_argument(std::string(what) + " number " + std::to_string(i + 1) + " is not finite");
 }
 
 /// Column j of a square, multiplied by a factor, as column `to`.
@@ -62,8 +61,7 @@ double Solution::variance() const {
 
 bool Solution::estimable(std::span<const double> g) const {
   if (g.size() != x.size())
-    throw std::invalid_argument("estimable: " + std::to_string(g.size()) + " numbers for " + std::to_string(x.size()) +
-                                " unknowns");
+    throw std::invalid_argument(std::to_string(g.size()) + " numbers for " + std::to_string(x.size()) + " unknowns");
   const Vector direction(g.data(), index(g.size()));
   const Eigen::Map<const MatrixXd> null(null_space.data(), index(g.size()), index(g.size()) - rank);
   return (null.transpose() * direction).norm() <= estimability_limit * direction.norm();
@@ -71,7 +69,7 @@ bool Solution::estimable(std::span<const double> g) const {
 
 LeastSquares::LeastSquares(int unknowns) : unknowns_(unknowns) {
   if (unknowns < 1 || unknowns > max_unknowns)
-    throw std::invalid_argument("LeastSquares: unknowns = " + std::to_string(unknowns) + ", must be in 1..." +
+    throw std::invalid_argument("unknowns = " + std::to_string(unknowns) + ", must be in 1..." +
                                 std::to_string(max_unknowns));
   triangle_.assign(width() * width(), 0.0);
 }
@@ -79,23 +77,23 @@ LeastSquares::LeastSquares(int unknowns) : unknowns_(unknowns) {
 void LeastSquares::add(std::span<const double> rows, std::span<const double> values, std::span<const double> weights) {
   const std::size_t n = width() - 1;
   if (rows.size() != n * values.size())
-    throw std::invalid_argument("LeastSquares: " + std::to_string(rows.size()) + " numbers in " +
-                                std::to_string(values.size()) + " rows of " + std::to_string(n) + " unknowns");
+    throw std::invalid_argument(std::to_string(rows.size()) + " numbers in " + std::to_string(values.size()) +
+                                " rows of " + std::to_string(n) + " unknowns");
   if (!weights.empty() && weights.size() != values.size())
-    throw std::invalid_argument("LeastSquares: " + std::to_string(weights.size()) + " weights for " +
-                                std::to_string(values.size()) + " rows");
+    throw std::invalid_argument(std::to_string(weights.size()) + " weights for " + std::to_string(values.size()) +
+                                " rows");
   require_finite(rows, "row");
   require_finite(values, "value");
   require_finite(weights, "weight");
   if (const auto low = std::find_if(weights.begin(), weights.end(), [](double w) { return w < 0; });
       low != weights.end())
-    throw std::invalid_argument("LeastSquares: weight " + shortest(*low) + " is negative");
+    throw std::invalid_argument("weight " + shortest(*low) + " is negative");
 
   const auto largest = [](std::span<const double> numbers) {
     return over_all(numbers, [](double m, double x) { return std::max(m, std::abs(x)); });
   };
   if (!weights.empty() && !std::isfinite(std::sqrt(largest(weights)) * std::max(largest(rows), largest(values))))
-    throw std::invalid_argument("LeastSquares: weight " + shortest(largest(weights)) + " makes a row infinite");
+    throw std::invalid_argument("weight " + shortest(largest(weights)) + " makes a row infinite");
 
   for (std::size_t first = 0; first < values.size(); first += rows_at_once) {
     const std::size_t count = std::min(rows_at_once, values.size() - first);
@@ -112,7 +110,7 @@ void LeastSquares::add(std::span<const double> rows, std::span<const double> val
 
 void LeastSquares::merge(const LeastSquares& other) {
   if (other.unknowns_ != unknowns_)
-    throw std::invalid_argument("LeastSquares: cannot merge " + std::to_string(other.unknowns_) + " unknowns into " +
+    throw std::invalid_argument("cannot merge " + std::to_string(other.unknowns_) + " unknowns into " +
                                 std::to_string(unknowns_));
   if (std::all_of(triangle_.begin(), triangle_.end(), [](double x) { return x == 0; })) {
     triangle_ = other.triangle_;
@@ -127,8 +125,7 @@ void LeastSquares::merge(const LeastSquares& other) {
 LeastSquares LeastSquares::repeated(std::span<const double> factors, double value_factor) const {
   require_finite(factors, "factor");
   require_finite({&value_factor, 1}, "value factor");
-  if (factors.size() > static_cast<std::size_t>(max_unknowns))
-    throw std::invalid_argument("LeastSquares: too many factors");
+  if (factors.size() > static_cast<std::size_t>(max_unknowns)) throw std::invalid_argument("too many factors");
   LeastSquares result(unknowns_ * static_cast<int>(factors.size()));
   RowColumns rows(result.width(), width());
   std::size_t j = 0;
@@ -144,7 +141,7 @@ LeastSquares LeastSquares::restricted(std::span<const std::size_t> unknowns) con
   std::vector<bool> taken(width() - 1, false);
   for (const std::size_t unknown : unknowns) {
     if (unknown >= taken.size() || taken[unknown])
-      throw std::invalid_argument("LeastSquares: unknown number " + std::to_string(unknown) +
+      throw std::invalid_argument("unknown number " + std::to_string(unknown) +
                                   (unknown < taken.size() ? " comes twice" : " is not there"));
     taken[unknown] = true;
   }
@@ -160,8 +157,7 @@ LeastSquares LeastSquares::restricted(std::span<const std::size_t> unknowns) con
 
 double LeastSquares::residual_norm(std::span<const double> x) const {
   if (x.size() + 1 != width())
-    throw std::invalid_argument("LeastSquares: " + std::to_string(x.size()) + " values for " +
-                                std::to_string(unknowns_) + " unknowns");
+    throw std::invalid_argument(std::to_string(x.size()) + " values for " + std::to_string(unknowns_) + " unknowns");
   const Eigen::Map<const MatrixXd> triangle(triangle_.data(), index(width()), index(width()));
   VectorXd extended(index(width()));
   extended << Vector(x.data(), unknowns_), -1;
@@ -195,11 +191,11 @@ LeastSquares LeastSquares::from_state(int unknowns, std::span<const double> stat
   LeastSquares result(unknowns);
   const std::size_t width = result.width();
   if (state.size() != width * (width + 1) / 2 + 1)
-    throw std::invalid_argument("LeastSquares: a state of " + std::to_string(state.size()) + " numbers for " +
+    throw std::invalid_argument("a state of " + std::to_string(state.size()) + " numbers for " +
                                 std::to_string(unknowns) + " unknowns");
   require_finite(state, "state");
   if (state.back() < 0 || state.back() != std::floor(state.back()) || state.back() > 9e15)
-    throw std::invalid_argument("LeastSquares: a state with " + shortest(state.back()) + " rows");
+    throw std::invalid_argument("a state with " + shortest(state.back()) + " rows");
   auto next = state.begin();
   for (std::size_t row = 0; row < width; ++row)
     for (std::size_t column = row; column < width; ++column) result.triangle_[column * width + row] = *next++;
@@ -209,7 +205,7 @@ LeastSquares LeastSquares::from_state(int unknowns, std::span<const double> stat
 
 Solution LeastSquares::solve(double tolerance) const {
   if (!(tolerance >= 0 && tolerance < 1))
-    throw std::invalid_argument("LeastSquares: rank tolerance " + shortest(tolerance) + " is not in [0, 1)");
+    throw std::invalid_argument("rank tolerance " + shortest(tolerance) + " is not in [0, 1)");
   Decompositions none;
   return SharedRows(*this).solve(MatrixXd::Ones(1, 1), rows_, tolerance, none);
 }

@@ -9,7 +9,7 @@
 namespace mmbrdf {
 
 std::vector<Node> gauss_legendre(int count) {
-  if (count < 1) throw std::invalid_argument("gauss_legendre: " + std::to_string(count) + " nodes");
+  if (count < 1) throw std::invalid_argument(std::to_string(count) + " nodes, at least 1 is needed");
   std::vector<Node> nodes;
   for (int i = 0; i < count; ++i) {  // Newton's method on the recurrence of the Legendre polynomials
     double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), slope = 1;

@@ -20,8 +20,7 @@ inline constexpr std::size_t smallest_part = 4096;
 /// threads 0: as many as there are cores. Throws std::invalid_argument for negative numbers of threads.
 template <class Part>
 void in_parts(std::size_t count, int threads, Part part) {
-  if (threads < 0)
-    throw std::invalid_argument("evaluate: threads = " + std::to_string(threads) + ", must be 0 or more");
+  if (threads < 0) throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be 0 or more");
   const unsigned wanted = threads == 0 ? std::thread::hardware_concurrency() : static_cast<unsigned>(threads);
   const std::size_t parts = std::clamp<std::size_t>(count / smallest_part, 1, std::max(1u, wanted));
   const std::size_t each = (count / parts + 63) / 64 * 64;  // no two threads write to one cache line

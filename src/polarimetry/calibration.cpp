@@ -40,16 +40,14 @@ constexpr std::array<const char*, 3> kind_names{"empty", "polarizer", "wafer"};
 void require_valid(const CalibrationOptions& options) {
   for (const auto& [arm, states] :
        {std::pair("generator", options.generator_states), {"analyzer", options.analyzer_states}})
-    if (states < 4)
-      throw std::invalid_argument("calibration: " + std::to_string(states) + " states of the " + arm +
-                                  ", four are needed");
+    if (states < 4) throw std::invalid_argument(std::to_string(states) + " states of the " + arm + ", four are needed");
   if (options.dial_sense != 1 && options.dial_sense != -1)
-    throw std::invalid_argument("calibration: a dial sense of " + std::to_string(options.dial_sense) + ", not 1 or -1");
+    throw std::invalid_argument("a dial sense of " + std::to_string(options.dial_sense) + ", not 1 or -1");
   if (!(options.extinction >= 0 && options.extinction < 1))
-    throw std::invalid_argument("calibration: extinction " + shortest(options.extinction) + " is not in [0, 1)");
+    throw std::invalid_argument("extinction " + shortest(options.extinction) + " is not in [0, 1)");
   const auto& [dark, shot, relative] = options.noise;
   if (!(dark >= 0 && shot >= 0 && relative >= 0 && dark + shot + relative > 0 && std::isfinite(dark + shot + relative)))
-    throw std::invalid_argument("calibration: the noise of the readings must be finite, and positive somewhere");
+    throw std::invalid_argument("the noise of the readings must be finite, and positive somewhere");
   if (options.film) reflection(*options.film, options.wavelength, 0);
 }
 
@@ -107,7 +105,7 @@ FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> refe
   if (reference.kind == ReferenceKind::wafer) {
     result.element = calibration::element_of(result.expected);
     result.element.tau = unknowns.elements[i].tau;
-    // Of (A1): λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
+    // Of a matrix that keeps s and p apart: λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
     const Mueller& m = result.measured;
     const double first = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), second = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
     result.eigenvalue_mismatch = std::abs(first - second);

@@ -24,14 +24,13 @@ void require_valid(const GoniometerOptions& o) {
       o.dial_error, o.gain_change, o.noise.dark,    o.noise.shot,          o.noise.relative, o.speckle, o.solid_angle};
   for (const double value : not_negative)
     if (!(value >= 0 && std::isfinite(value)))
-      throw std::invalid_argument("goniometer: " + shortest(value) + " where a number that is not negative is needed");
+      throw std::invalid_argument(shortest(value) + " where a number that is not negative is needed");
   for (const double relative : {o.noise.relative, o.speckle, o.gain_change})
     if (relative > most_noise)
-      throw std::invalid_argument("goniometer: relative noise of " + shortest(relative) + ", at most " +
-                                  shortest(most_noise));
+      throw std::invalid_argument("relative noise of " + shortest(relative) + ", at most " + shortest(most_noise));
   if (!std::isfinite(o.retardance) || !std::isfinite(o.polarizer_offset) || !std::isfinite(o.drift))
-    throw std::invalid_argument("goniometer: an option is not finite");
-  if (!(o.solid_angle > 0)) throw std::invalid_argument("goniometer: a solid angle of 0 sr");
+    throw std::invalid_argument("an option is not finite");
+  if (!(o.solid_angle > 0)) throw std::invalid_argument("a solid angle of 0 sr");
 }
 
 /// A lossless element that turns linear polarization, as quartz along its axis does: R(−a/2).
@@ -89,7 +88,7 @@ void Goniometer::disturb(std::vector<double>& readings, double speckle, double g
 }
 
 std::vector<Reference> Goniometer::references(double wavelength, int count, unsigned long seed) const {
-  if (count < 1) throw std::invalid_argument("goniometer: " + std::to_string(count) + " references of each kind");
+  if (count < 1) throw std::invalid_argument(std::to_string(count) + " references of each kind");
   std::mt19937_64 engine = stream(seed, references_of);
   std::vector<Reference> result;
   const auto measure = [&](ReferenceKind kind, double angle, const Mueller& m) {
@@ -123,7 +122,7 @@ std::vector<std::vector<double>> Goniometer::readings(const PreparedModel& model
   std::vector<std::vector<double>> result;
   for (const Geometry& geometry : geometries) {
     const double cosine = std::cos(geometry.reflected.theta);
-    if (!(cosine > 1e-9)) throw std::invalid_argument("goniometer: theta_r is 90 degrees");
+    if (!(cosine > 1e-9)) throw std::invalid_argument("theta_r is 90 degrees");
     const Mueller m = options_.solid_angle * cosine * model.evaluate(geometry, Frame::scattering_plane);
     std::vector<double> one = mmbrdf::readings(polarimeter_, m);
     disturb(one, options_.speckle * std::sqrt(std::cos(geometry.incident.theta) / cosine), 1, engine);

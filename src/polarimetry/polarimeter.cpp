@@ -125,10 +125,9 @@ double condition_number(std::span<const Stokes> states) {
 }
 
 std::vector<double> optimal_angles(double retardance, int states) {
-  if (states < 4 || states > 16)
-    throw std::invalid_argument("optimal angles: " + std::to_string(states) + " states are not in 4...16");
+  if (states < 4 || states > 16) throw std::invalid_argument(std::to_string(states) + " states are not in 4...16");
   if (!std::isfinite(retardance) || std::abs(std::sin(retardance)) < 1e-6)
-    throw std::invalid_argument("optimal angles: a retardance of " + shortest(degrees(retardance)) +
+    throw std::invalid_argument("a retardance of " + shortest(degrees(retardance)) +
                                 " degrees makes no four independent states");
   const auto condition = [&](const VectorXd& positive) {
     const std::vector<double> azimuths = mirrored({positive.data(), static_cast<std::size_t>(positive.size())}, states);
@@ -201,11 +200,11 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
   const Index size = 4 * index(polarimeter.generator.size() + polarimeter.analyzer.size());
   if (!covariance.empty()) {
     if (index(covariance.size()) != size * size)
-      throw std::invalid_argument("instrument: covariance of " + std::to_string(covariance.size()) +
+      throw std::invalid_argument("the covariance of the instrument has " + std::to_string(covariance.size()) +
                                   " numbers, expected " + std::to_string(size * size));
     inverses->covariance = Eigen::Map<const MatrixXd>(covariance.data(), size, size);
     if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
-      throw std::invalid_argument("instrument: the covariance is not symmetric and finite");
+      throw std::invalid_argument("the covariance of the instrument is not symmetric and finite");
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverses->covariance);
     require_semidefinite(solver.eigenvalues(), "instrument", covariance_tolerance);
     const double least = 1e-14 * solver.eigenvalues()(size - 1);
@@ -219,10 +218,10 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
 Mueller Reduction::mueller(std::span<const double> readings) const {
   const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
   if (index(readings.size()) != analyzers * generators)
-    throw std::invalid_argument("reduction: " + std::to_string(readings.size()) + " readings, the instrument has " +
+    throw std::invalid_argument(std::to_string(readings.size()) + " readings, the instrument has " +
                                 std::to_string(analyzers * generators));
   const Eigen::Map<const RowMajor> b(readings.data(), analyzers, generators);
-  if (!b.allFinite()) throw std::invalid_argument("reduction: a reading is not finite");
+  if (!b.allFinite()) throw std::invalid_argument("a reading is not finite");
   Mueller m;
   Eigen::Map<RowMajor>(m.elements.data(), 4, 4) = inverses_->analyzer * b * inverses_->generator;
   return m;
@@ -231,14 +230,14 @@ Mueller Reduction::mueller(std::span<const double> readings) const {
 MuellerCovariance Reduction::from_readings(std::span<const double> variances) const {
   const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
   if (index(variances.size()) != analyzers * generators)
-    throw std::invalid_argument("reduction: " + std::to_string(variances.size()) + " variances, the instrument has " +
+    throw std::invalid_argument(std::to_string(variances.size()) + " variances, the instrument has " +
                                 std::to_string(analyzers * generators) + " readings");
   MatrixXd sum = MatrixXd::Zero(16, 16);
   for (Index q = 0; q < analyzers; ++q)
     for (Index p = 0; p < generators; ++p) {
       const double variance = variances[static_cast<std::size_t>(q * generators + p)];
       if (!(variance >= 0) || !std::isfinite(variance))
-        throw std::invalid_argument("reduction: a variance of " + shortest(variance));
+        throw std::invalid_argument("variance " + shortest(variance) + ", must be finite and not negative");
       VectorXd slope(16);
       for (Index e = 0; e < 16; ++e) slope(e) = inverses_->analyzer(e / 4, q) * inverses_->generator(p, e % 4);
       sum += variance * slope * slope.transpose();
@@ -278,12 +277,12 @@ std::vector<Mueller> Reduction::errors(const Mueller& m) const {
 }
 
 Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, double solid_angle) {
-  require_valid(geometry, "sample");
+  require_valid(geometry);
   if (!(solid_angle > 0 && solid_angle <= 2 * std::numbers::pi))
-    throw std::invalid_argument("sample: a solid angle of " + shortest(solid_angle) + " sr");
-  if (!(m(0, 0) > 0)) throw std::invalid_argument("sample: M11 is " + shortest(m(0, 0)));
+    throw std::invalid_argument("a solid angle of " + shortest(solid_angle) + " sr, must be above 0 and at most 2 pi");
+  if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
   const double cosine = std::cos(geometry.reflected.theta);
-  if (!(cosine > 1e-9)) throw std::invalid_argument("sample: theta_r is 90 degrees");
+  if (!(cosine > 1e-9)) throw std::invalid_argument("theta_r is 90 degrees");
   return {wavelength, geometry, m(0, 0) / (solid_angle * cosine),
           change_frame(normalized(m), geometry, Frame::scattering_plane, Frame::xy)};
 }

@@ -29,13 +29,12 @@ struct Scaled {
 };
 
 /// Throws std::invalid_argument if an element is not finite.
-Scaled scaled(const Mueller& m, const char* what) {
+Scaled scaled(const Mueller& m) {
   double largest = 0;
   for (std::size_t i = 0; i < 16; ++i) {
     const double element = m.elements[i];
     if (!std::isfinite(element))
-      throw std::invalid_argument(std::string(what) + ": M" + element_name(i) + " = " + shortest(element) +
-                                  ", must be finite");
+      throw std::invalid_argument("M" + element_name(i) + " = " + shortest(element) + ", must be finite");
     largest = std::max(largest, std::abs(element));
   }
   Scaled result{m, 0};
@@ -46,10 +45,9 @@ Scaled scaled(const Mueller& m, const char* what) {
 
 /// The matrix of the same, with M11 > 0. Not below the smallest normal number: a quotient of any element by it is
 /// finite.
-Mueller scaled_with_intensity(const Mueller& m, const char* what) {
-  Mueller result = scaled(m, what).m;
-  if (!(m(0, 0) > 0))
-    throw std::invalid_argument(std::string(what) + ": M11 = " + shortest(m(0, 0)) + ", must be positive");
+Mueller scaled_with_intensity(const Mueller& m) {
+  Mueller result = scaled(m).m;
+  if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
   result(0, 0) = std::max(result(0, 0), std::numeric_limits<double>::min());
   return result;
 }
@@ -139,29 +137,29 @@ void require_light(const Stokes& light) {
   const double polarized =
       finite && light[0] > 0 ? length({light[1] / light[0], light[2] / light[0], light[3] / light[0]}) : largest_double;
   if (polarized <= 1 + stokes_tolerance) return;
-  throw std::invalid_argument("degree_of_polarization: light (" + shortest(light[0]) + ", " + shortest(light[1]) +
-                              ", " + shortest(light[2]) + ", " + shortest(light[3]) +
+  throw std::invalid_argument("light (" + shortest(light[0]) + ", " + shortest(light[1]) + ", " + shortest(light[2]) +
+                              ", " + shortest(light[3]) +
                               ") cannot exist: S1 must be positive and at least the length of the rest");
 }
 
 }  // namespace
 
 double depolarization(const Mueller& m) {
-  const Mueller x = scaled_with_intensity(m, "depolarization");
+  const Mueller x = scaled_with_intensity(m);
   double sum = 0;
   for (std::size_t i = 1; i < 16; ++i) sum += x.elements[i] * x.elements[i];
   return std::sqrt(sum / 3) / x(0, 0);
 }
 
 std::array<double, 3> diattenuation_vector(const Mueller& m) {
-  scaled_with_intensity(m, "diattenuation");
+  scaled_with_intensity(m);
   return {ratio(m(0, 1), m(0, 0)), ratio(m(0, 2), m(0, 0)), ratio(m(0, 3), m(0, 0))};
 }
 
 double diattenuation(const Mueller& m) { return length(diattenuation_vector(m)); }
 
 std::array<double, 3> polarizance_vector(const Mueller& m) {
-  scaled_with_intensity(m, "polarizance");
+  scaled_with_intensity(m);
   return {ratio(m(1, 0), m(0, 0)), ratio(m(2, 0), m(0, 0)), ratio(m(3, 0), m(0, 0))};
 }
 
@@ -174,20 +172,20 @@ double degree_of_polarization(const Stokes& light) {
 
 double degree_of_polarization(const Mueller& m, const Stokes& incident) {
   require_light(incident);
-  const Mueller x = scaled(m, "degree_of_polarization").m;
+  const Mueller x = scaled(m).m;
   const Stokes s{1, incident[1] / incident[0], incident[2] / incident[0], incident[3] / incident[0]};
   const Stokes out = x * s;  // elements of x are at most 1
   const double polarized = length({out[1], out[2], out[3]});
   constexpr double no_light = 1e-14;
   if (std::abs(out[0]) <= no_light && polarized <= no_light) return 0;
   if (!(out[0] > 0))
-    throw std::invalid_argument("degree_of_polarization: the matrix makes an intensity of " + shortest(out[0]) +
+    throw std::invalid_argument("the matrix makes an intensity of " + shortest(out[0]) +
                                 " times its largest element; it is not realizable");
   return ratio(polarized, out[0]);
 }
 
 PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp) {
-  const auto [x, exponent] = scaled(m_sp, "co_and_cross_polarized");
+  const auto [x, exponent] = scaled(m_sp);
   const auto f = [&x = x, e = exponent](double a, double b) {
     return bounded(std::ldexp((x(0, 0) + a * x(0, 1) + b * x(1, 0) + a * b * x(1, 1)) / 2, e));
   };
@@ -195,7 +193,7 @@ PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp) {
 }
 
 Coherency coherency(const Mueller& m) {
-  const auto [x, exponent] = scaled(m, "coherency");
+  const auto [x, exponent] = scaled(m);
   const Matrix4c t = coherency_matrix(x);
   Coherency result;
   for (int row = 0; row < 4; ++row)
@@ -211,8 +209,8 @@ Mueller from_coherency(const Coherency& t) {
     for (int column = 0; column < 4; ++column) {
       const Complex element = t[static_cast<std::size_t>(4 * row + column)];
       if (!std::isfinite(element.real()) || !std::isfinite(element.imag()))
-        throw std::invalid_argument("from_coherency: element " + std::to_string(row + 1) + std::to_string(column + 1) +
-                                    " is not finite");
+        throw std::invalid_argument("element " + std::to_string(row + 1) + std::to_string(column + 1) +
+                                    " of the coherency matrix is not finite");
       matrix(row, column) = element / 4.0;
     }
   Mueller m = mueller_matrix(matrix);
@@ -221,19 +219,19 @@ Mueller from_coherency(const Coherency& t) {
 }
 
 std::array<double, 4> coherency_eigenvalues(const Mueller& m) {
-  const auto [x, exponent] = scaled(m, "coherency_eigenvalues");
+  const auto [x, exponent] = scaled(m);
   std::array<double, 4> result = eigenvalues(x);
   for (double& value : result) value = bounded(std::ldexp(value, exponent));
   return result;
 }
 
 double realizability_margin(const Mueller& m) {
-  const Mueller x = scaled_with_intensity(m, "realizability_margin");
+  const Mueller x = scaled_with_intensity(m);
   return eigenvalues(x)[0] / x(0, 0);
 }
 
 bool realizable(const Mueller& m) {
-  const Mueller x = scaled(m, "realizable").m;
+  const Mueller x = scaled(m).m;
   if (x == Mueller{}) return true;
   return x(0, 0) > 0 && realizable_to_rounding(eigenvalues(x)[0], x(0, 0));
 }
@@ -245,22 +243,22 @@ double purity(const Mueller& m) {
 
 double entropy(const Mueller& m) {
   double sum = 0;
-  for (const double p : probabilities(scaled_with_intensity(m, "entropy")))
+  for (const double p : probabilities(scaled_with_intensity(m)))
     if (p > 0) sum -= p * std::log2(p) / 2;
   return std::clamp(sum, 0.0, 1.0);
 }
 
 CloudeDecomposition cloude_decomposition(const Mueller& m) {
-  const auto [x, exponent] = scaled(m, "cloude_decomposition");
+  const auto [x, exponent] = scaled(m);
   CloudeDecomposition result = cloude(x);
   for (double& weight : result.weights) weight = bounded(std::ldexp(weight, exponent));
   return result;
 }
 
 Projection nearest_realizable(const Mueller& m) {
-  const auto [x, exponent] = scaled(m, "nearest_realizable");
+  const auto [x, exponent] = scaled(m);
   const double m11 = x(0, 0);
-  if (m11 < 0) throw std::invalid_argument("nearest_realizable: M11 = " + shortest(m(0, 0)) + ", must not be negative");
+  if (m11 < 0) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must not be negative");
   const CloudeDecomposition parts = cloude(x);
   if (m11 > 0 && realizable_to_rounding(parts.weights[3], m11)) return {m, 0};
   const std::array<double, 4> weights = on_simplex(parts.weights, m11);

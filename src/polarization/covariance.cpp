@@ -36,7 +36,7 @@ MuellerCovariance transformed(const MuellerCovariance& covariance, const Mueller
 
 MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m) {
   const double f11 = m(0, 0);
-  if (!(f11 > 0)) throw std::invalid_argument("M11 is " + shortest(f11) + ", must be positive");
+  if (!(f11 > 0)) throw std::invalid_argument("M11 = " + shortest(f11) + ", must be positive");
   MuellerCovariance result;  // d(M_e / M11) = (dM_e − (M_e / M11) dM11) / M11
   for (std::size_t e = 0; e < 16; ++e)
     for (std::size_t f = 0; f < 16; ++f) {

@@ -45,13 +45,12 @@ Mueller mueller(const Matrix4d& matrix) {
 }
 
 /// n; throws std::invalid_argument unless M11 > 0 and M is realizable.
-Matrix4d normalized_realizable(const Mueller& m, const char* what) {
+Matrix4d normalized_realizable(const Mueller& m) {
   const bool possible = realizable(m);
-  if (!(m(0, 0) > 0))
-    throw std::invalid_argument(std::string(what) + ": M11 = " + shortest(m(0, 0)) + ", must be positive");
+  if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
   if (!possible)
-    throw std::invalid_argument(std::string(what) + ": the matrix is not realizable, by " +
-                                shortest(realizability_margin(m)) + " of M11; nearest_realizable() gives one that is");
+    throw std::invalid_argument("the matrix is not realizable, by " + shortest(realizability_margin(m)) +
+                                " of M11; nearest_realizable() gives one that is");
   return matrix(normalized(m));
 }
 
@@ -229,8 +228,7 @@ Sandwich refined(const Matrix4d& n, Sandwich best) {
     if (!(error < before)) break;
   }
   if (!(error <= symmetric_error) || best.middle(0, 0) > largest_d0)
-    throw std::invalid_argument(
-        "symmetric_decomposition: the matrix has no diagonal depolarizer, or is too close to such a one");
+    throw std::invalid_argument("the matrix has no diagonal depolarizer, or is too close to such a one");
   return best;
 }
 
@@ -259,7 +257,7 @@ SymmetricDecomposition unfolded(double m11, const Sandwich& s) {
 }  // namespace
 
 LuChipman lu_chipman(const Mueller& m) {
-  const Matrix4d n = normalized_realizable(m, "lu_chipman");
+  const Matrix4d n = normalized_realizable(m);
   const Vector3d d = n.row(0).tail<3>(), p = n.col(0).tail<3>();
   if (is_complete(d) && is_product(n)) {
     const double length = p.norm();
@@ -280,20 +278,19 @@ double retardance(const Mueller& m) {
   const Matrix3d r = n.bottomRightCorner<3, 3>();
   if (!(m(0, 0) > 0) || !(distance(n, retarder(r)) <= 1e-9) || !((r * r.transpose()).isIdentity(1e-9)) ||
       !(r.determinant() > 0))
-    throw std::invalid_argument("retardance: the matrix is not that of a retarder");
+    throw std::invalid_argument("the matrix is not that of a retarder");
   const Vector3d twice_sine(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1));
   return std::atan2(twice_sine.norm(), r.trace() - 1);
 }
 
 double depolarization_power(const Mueller& m) {
-  if (!(m(0, 0) > 0))
-    throw std::invalid_argument("depolarization_power: M11 = " + shortest(m(0, 0)) + ", must be positive");
+  if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
   const Mueller n = normalized(m);
   return 1 - std::abs(n(1, 1) + n(2, 2) + n(3, 3)) / 3;
 }
 
 SymmetricDecomposition symmetric_decomposition(const Mueller& m) {
-  const Matrix4d n = normalized_realizable(m, "symmetric_decomposition");
+  const Matrix4d n = normalized_realizable(m);
   const Vector3d d = n.row(0).tail<3>(), p = n.col(0).tail<3>();
   const bool product = is_product(n) && (is_complete(d) || is_complete(p));
   return unfolded(m(0, 0), product ? of_product(p, d) : refined(n, leading(n)));

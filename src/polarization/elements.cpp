@@ -61,15 +61,15 @@ Mueller mueller(const DiattenuatorRetarder& element) {
 
 Mueller polarizer(double azimuth, double extinction, double phase) {
   if (!(extinction >= 0 && extinction <= 1))
-    throw std::invalid_argument("polarizer: extinction " + shortest(extinction) + " is not in [0, 1]");
+    throw std::invalid_argument("extinction " + shortest(extinction) + " of a polarizer is not in [0, 1]");
   if (!std::isfinite(azimuth) || !std::isfinite(phase))
-    throw std::invalid_argument("polarizer: an angle is not finite");
+    throw std::invalid_argument("an angle of a polarizer is not finite");
   return rotated(mueller({(1 + extinction) / 2, std::atan(std::sqrt(extinction)), phase}), azimuth);
 }
 
 Mueller retarder(double retardance, double azimuth) {
   if (!std::isfinite(retardance) || !std::isfinite(azimuth))
-    throw std::invalid_argument("retarder: an angle is not finite");
+    throw std::invalid_argument("an angle of a retarder is not finite");
   return rotated(mueller({1, std::numbers::pi / 4, retardance}), azimuth);
 }
 

@@ -58,8 +58,8 @@ Mueller smallest_eigenvalue_slopes(const Mueller& m, const CloudeDecomposition& 
 
 void require_deviation(double sigma, std::size_t element) {
   if (!(sigma >= 0 && std::isfinite(sigma)))
-    throw std::invalid_argument("squared_depolarization_bias: standard deviation " + shortest(sigma) + " of element " +
-                                element_name(element) + ", must be finite and not negative");
+    throw std::invalid_argument("standard deviation " + shortest(sigma) + " of element " + element_name(element) +
+                                ", must be finite and not negative");
 }
 
 /// gᵀ V h. The exponents of long double have room for products of three doubles.

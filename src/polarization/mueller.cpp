@@ -37,8 +37,7 @@ Signs signs(StokesConvention convention) {
     case StokesConvention::p_first_left_handed_axes_right:
       return {1, -1, 1, -1};
   }
-  throw std::invalid_argument("StokesConvention: no convention has the number " +
-                              std::to_string(static_cast<int>(convention)));
+  throw std::invalid_argument("no convention has the number " + std::to_string(static_cast<int>(convention)));
 }
 
 Signs signs(StokesConvention from, StokesConvention to) {
@@ -103,7 +102,7 @@ Mueller transpose(const Mueller& m) {
 Mueller normalized(const Mueller& m) {
   const double m11 = m(0, 0);
   if (m11 == 0 || !std::isfinite(m11))
-    throw std::invalid_argument("normalized: M11 = " + shortest(m11) + ", must be finite and not 0");
+    throw std::invalid_argument("M11 = " + shortest(m11) + ", must be finite and not 0");
   Mueller result = m;
   for (double& element : result.elements) element /= m11;
   return result;

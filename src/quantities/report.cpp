@@ -313,7 +313,7 @@ Reported reported(const Model& model, const std::string& name, std::span<const d
       model, name, {wavelengths.begin(), wavelengths.end()}, !wavelengths.empty() || knows_wavelength(model)};
   if (wavelengths.empty()) result.wavelengths = known_wavelengths(model);
   if (result.wavelengths.empty())
-    throw std::invalid_argument("report: " + name + " does not say to which wavelengths it was fitted: give some");
+    throw std::invalid_argument(name + " does not say to which wavelengths it was fitted: give some");
   for (const double wavelength : result.wavelengths) require_wavelength(wavelength);
   return result;
 }

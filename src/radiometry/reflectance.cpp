@@ -59,7 +59,7 @@ double dot(const Stokes& a, const Stokes& b) {
 
 std::vector<double> directional_hemispherical_slopes(const Block& f11, Family family, DiscMapping mapping,
                                                      const Direction& incident) {
-  require_valid(Geometry{incident, {}}, "directional_hemispherical_reflectance");
+  require_valid(Geometry{incident, {}});
   Table k_i;
   zernike_table(orders({f11}).f11, disc_point(incident, mapping), k_i.data());
   return slopes_with(f11, family, k_i, projected_integrals(mapping));

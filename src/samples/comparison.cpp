@@ -26,12 +26,12 @@ void divide(Difference& total, long samples, const std::string& name) {
   total.rms = std::sqrt(total.rms / static_cast<double>(samples));
   total.mean /= static_cast<double>(samples);
   if (!std::isfinite(total.rms) || !std::isfinite(total.mean))
-    throw std::invalid_argument("compare: the differences of " + name + " are too large to be squared");
+    throw std::invalid_argument("the differences of " + name + " are too large to be squared");
 }
 
 void require_positive(double f11, const Sample& sample) {
   if (f11 > 0) return;
-  throw std::invalid_argument("compare: f11 of the model is " + shortest(f11) +
+  throw std::invalid_argument("f11 of the model is " + shortest(f11) +
                               " /sr at theta_i = " + shortest(in_degrees(sample.geometry.incident.theta)) +
                               ", theta_r = " + shortest(in_degrees(sample.geometry.reflected.theta)) +
                               " degrees, must be positive");
@@ -53,7 +53,7 @@ std::vector<Mueller> residuals(const Model& model, std::span<const Sample> sampl
 }
 
 Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation) {
-  if (samples.empty()) throw std::invalid_argument("compare: no samples");
+  if (samples.empty()) throw std::invalid_argument("no samples");
   require_valid(samples);
   const std::vector<Mueller> differences = residuals(model, samples, rotation);
   AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength, rotation); });

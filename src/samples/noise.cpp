@@ -31,8 +31,7 @@ constexpr double rounding = 1e-12;      // of the likelihood, relative
 constexpr double most_exponent = 100;
 
 void refuse(const char* name, double theta, const std::string& reason) {
-  throw std::invalid_argument(std::string("noise law: ") + name + " = " + shortest(in_degrees(theta)) +
-                              " degrees, where " + reason);
+  throw std::invalid_argument(std::string(name) + " = " + shortest(in_degrees(theta)) + " degrees, where " + reason);
 }
 
 bool is_grazing(const Direction& direction) { return std::cos(direction.theta) < grazing; }
@@ -40,9 +39,9 @@ bool is_grazing(const Direction& direction) { return std::cos(direction.theta) <
 /// cos^a θi and cos^b θr. `infinite` says for which of the two angles 90 degrees is refused, with these words.
 std::pair<double, double> powers(const NoiseLaw& law, const Geometry& g, std::pair<bool, bool> infinite,
                                  const std::string& what) {
-  require_valid(g, "noise law");
+  require_valid(g);
   if (!(law.scale >= 0) || !std::isfinite(law.scale))
-    throw std::invalid_argument("noise law: scale = " + shortest(law.scale) + ", must be finite and not negative");
+    throw std::invalid_argument("scale = " + shortest(law.scale) + ", must be finite and not negative");
   if (infinite.first && is_grazing(g.incident)) refuse("theta_i", g.incident.theta, "the " + what + " infinite");
   if (infinite.second && is_grazing(g.reflected)) refuse("theta_r", g.reflected.theta, "the " + what + " infinite");
   const auto power = [](double theta, double exponent) { return std::pow(std::max(std::cos(theta), 0.0), exponent); };
@@ -86,11 +85,11 @@ struct Rows {
 Rows rows_of(std::span<const Sample> samples, std::span<const Mueller> residuals, std::span<const Element> elements) {
   Rows rows;
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    const std::string name = "noise: sample " + std::to_string(s + 1);
+    const std::string name = "sample " + std::to_string(s + 1);
     const Vector3d z = regressors(samples[s].geometry);
     for (const auto& [row, column] : elements) {
       if (row < 0 || row > 3 || column < 0 || column > 3)
-        throw std::invalid_argument("noise: element (" + std::to_string(row) + ", " + std::to_string(column) +
+        throw std::invalid_argument("element (" + std::to_string(row) + ", " + std::to_string(column) +
                                     "): row and column are counted from 0 to 3");
       const double residual = residuals[s](row, column) / (row == 0 && column == 0 ? samples[s].f11 : 1);
       if (!std::isfinite(residual * residual))
@@ -104,19 +103,18 @@ Rows rows_of(std::span<const Sample> samples, std::span<const Mueller> residuals
 
 void require_determined(const Rows& rows) {
   if (rows.z.size() < least_rows)
-    throw std::invalid_argument("noise: " + std::to_string(rows.z.size()) +
-                                " residuals, too few for a law with 3 unknowns");
+    throw std::invalid_argument(std::to_string(rows.z.size()) + " residuals, too few for a law with 3 unknowns");
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(rows.information);
   if (!(eigen.eigenvalues()(0) > least_spread * eigen.eigenvalues()(2)))
     throw std::invalid_argument(
-        "noise: the polar angles of the samples do not determine the law; both must vary, each by itself");
+        "the polar angles of the samples do not determine the law of the noise; both must vary, each by itself");
 }
 
 /// Scoring from a uniform variance, with steps halved until the likelihood grows.
 Vector3d most_likely(const Rows& rows, const Eigen::LLT<Matrix3d>& information) {
   double mean = 0;
   for (const double square : rows.squares) mean += square / static_cast<double>(rows.squares.size());
-  const auto no_maximum = [] { return std::invalid_argument("noise: too many residuals are 0 to have a law"); };
+  const auto no_maximum = [] { return std::invalid_argument("too many residuals are 0 to have a law"); };
   if (!(mean > 0) || !std::isfinite(mean)) throw no_maximum();
   Vector3d beta(std::log(mean), 0, 0);
   double best = rows.minus_two_log_likelihood(beta);
@@ -146,7 +144,7 @@ double weight(const NoiseLaw& law, const Geometry& geometry) {
   const auto [a, b] = powers(law, geometry, {law.incident_exponent > 0, law.reflected_exponent < 0}, "weight is");
   const double result = b / a / (law.scale * law.scale);
   if (!std::isfinite(result))
-    throw std::invalid_argument("noise law: scale = " + shortest(law.scale) + ", the weight is infinite");
+    throw std::invalid_argument("scale = " + shortest(law.scale) + ", the weight is infinite");
   return result;
 }
 
@@ -161,8 +159,8 @@ std::string to_string(const NoiseEstimate& estimate) {
 NoiseEstimate estimate_noise(std::span<const Sample> samples, std::span<const Mueller> residuals,
                              std::span<const Element> elements) {
   if (samples.size() != residuals.size())
-    throw std::invalid_argument("noise: " + std::to_string(residuals.size()) + " residuals for " +
-                                std::to_string(samples.size()) + " samples");
+    throw std::invalid_argument(std::to_string(residuals.size()) + " residuals for " + std::to_string(samples.size()) +
+                                " samples");
   const Rows rows = rows_of(samples, residuals, elements);
   require_determined(rows);
   const Eigen::LLT<Matrix3d> information(rows.information);

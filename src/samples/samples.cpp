@@ -161,11 +161,9 @@ std::vector<Geometry> germer2017_grid() {
 }
 
 std::vector<Geometry> random_geometries(int count, unsigned long seed, double theta_max) {
-  if (count < 0)
-    throw std::invalid_argument("random_geometries: count = " + std::to_string(count) + ", must not be negative");
+  if (count < 0) throw std::invalid_argument("count = " + std::to_string(count) + ", must not be negative");
   if (!(theta_max > 0 && theta_max <= radians(90)))
-    throw std::invalid_argument("random_geometries: theta_max = " + shortest(in_degrees(theta_max)) +
-                                " degrees, must be in (0, 90]");
+    throw std::invalid_argument("theta_max = " + shortest(in_degrees(theta_max)) + " degrees, must be in (0, 90]");
   std::mt19937_64 engine(seed);
   std::vector<Geometry> geometries(static_cast<std::size_t>(count));
   for (Geometry& geometry : geometries) {

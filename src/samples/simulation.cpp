@@ -15,7 +15,7 @@ namespace {
 void require_no_grazing_detector(std::span<const Geometry> geometries) {
   for (const Geometry& g : geometries)
     if (std::cos(g.reflected.theta) < 1e-9)
-      throw std::invalid_argument("simulate: theta_r = " + shortest(in_degrees(g.reflected.theta)) +
+      throw std::invalid_argument("theta_r = " + shortest(in_degrees(g.reflected.theta)) +
                                   " degrees, where the speckle noise is infinite");
 }
 
@@ -23,7 +23,7 @@ Sample exact_sample(const PreparedModel& model, const Geometry& geometry) {
   const Mueller m = model.evaluate(geometry);
   if (!(m(0, 0) > 0))
     throw std::invalid_argument(
-        "simulate: f11 = " + shortest(m(0, 0)) + " /sr at theta_i = " + shortest(in_degrees(geometry.incident.theta)) +
+        "f11 = " + shortest(m(0, 0)) + " /sr at theta_i = " + shortest(in_degrees(geometry.incident.theta)) +
         ", theta_r = " + shortest(in_degrees(geometry.reflected.theta)) + " degrees, must be positive");
   return {model.wavelength(), geometry, m(0, 0), normalized(m)};
 }
@@ -38,9 +38,9 @@ void add_noise(Sample& sample, double sigma, std::mt19937_64& engine) {
 std::vector<Sample> simulate(const Model& model, std::span<const double> wavelengths,
                              std::span<const Geometry> geometries, double speckle, unsigned long seed) {
   if (!(speckle >= 0 && std::isfinite(speckle)))
-    throw std::invalid_argument("simulate: speckle = " + shortest(speckle) + ", must be finite and not negative");
+    throw std::invalid_argument("speckle = " + shortest(speckle) + ", must be finite and not negative");
   require_valid(model);
-  for (const Geometry& geometry : geometries) require_valid(geometry, "simulate");
+  for (const Geometry& geometry : geometries) require_valid(geometry);
   if (speckle > 0) require_no_grazing_detector(geometries);
 
   const NoiseLaw law{.scale = speckle, .incident_exponent = 1, .reflected_exponent = 1};

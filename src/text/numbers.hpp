@@ -18,7 +18,8 @@ std::string in_quotes(std::string_view text);
 /// Throws std::invalid_argument with the text for anything else.
 double parse_number(std::string_view text);
 
-/// The same for an integer in [−1000, 1000]: no index of a mode comes near.
+/// The whole text, but for surrounding blanks and a leading +, as an integer in [−1000, 1000]: no index of a mode comes
+/// near.
 int parse_index(std::string_view text);
 
 /// The fewest digits that parse_number() reads back as the same number.

@@ -48,7 +48,7 @@ Mueller azimuth_slope(const PreparedModel& model, Geometry geometry) {
 Mueller detector_slope(const PreparedModel& model, const Geometry& geometry) {
   const double theta = geometry.reflected.theta;
   if (std::cos(theta) < grazing_limit)
-    throw std::invalid_argument("budget: theta_r = " + shortest(in_degrees(theta)) +
+    throw std::invalid_argument("theta_r = " + shortest(in_degrees(theta)) +
                                 " degrees, where no measurement tells f11 and a term theta_r is infinite");
   return polar_slope(model, geometry, &Geometry::reflected) - std::tan(theta) * model.evaluate(geometry, Frame::sp);
 }
@@ -76,20 +76,21 @@ void add(MuellerCovariance& sum, const Mueller& effect) {
 std::string to_string(ErrorOf what) {
   for (const auto& [value, name] : names)
     if (value == what) return name;
-  throw std::invalid_argument("to_string: there is no such ErrorOf");
+  throw std::invalid_argument("there is no such ErrorOf");
 }
 
 ErrorOf error_from(const std::string& name) {
   for (const auto& [value, known] : names)
     if (name == known) return value;
-  throw std::invalid_argument("\"" + name + "\": expected scale, theta_i, theta_r, azimuth or calibration");
+  throw std::invalid_argument("kind of error '" + name +
+                              "' is not one of scale, theta_i, theta_r, azimuth, calibration");
 }
 
 std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, const Geometry& geometry, Frame frame) {
-  require_valid(geometry, "budget");
+  require_valid(geometry);
   const double u = term.uncertainty;
   if (!(u >= 0 && u <= largest_term))
-    throw std::invalid_argument("budget: uncertainty " + shortest(u) + " of " + term.name + ", must be in [0, " +
+    throw std::invalid_argument("uncertainty " + shortest(u) + " of " + term.name + ", must be in [0, " +
                                 shortest(largest_term) + "]");
   const auto in_frame = [&](const Mueller& slope_sp) {
     return std::vector<Mueller>{u * change_frame(slope_sp, geometry, Frame::sp, frame)};
@@ -106,7 +107,7 @@ std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, 
     case ErrorOf::calibration:
       return calibration_effects(model, geometry, u, frame);
   }
-  throw std::invalid_argument("budget: there is no such ErrorOf");
+  throw std::invalid_argument("there is no such ErrorOf");
 }
 
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,

@@ -64,13 +64,10 @@ double mean_of(std::span<const double> values) {
   return sum;
 }
 
-void require_values(std::span<const double> values, const char* what) {
-  if (values.size() < 2)
-    throw std::invalid_argument(std::string(what) + ": " + std::to_string(values.size()) +
-                                " values, at least 2 are needed");
+void require_values(std::span<const double> values) {
+  if (values.size() < 2) throw std::invalid_argument(std::to_string(values.size()) + " values, at least 2 are needed");
   for (const double value : values)
-    if (!std::isfinite(value))
-      throw std::invalid_argument(std::string(what) + ": the value " + shortest(value) + " is not finite");
+    if (!std::isfinite(value)) throw std::invalid_argument("the value " + shortest(value) + " is not finite");
 }
 
 /// Differences from the mean in units of half the spread, and that. 0 if all values are equal, whatever their mean is
@@ -119,8 +116,7 @@ void require_semidefinite(const Model& model) {
 
 Draws::Draws(const Model& model, int count, unsigned long seed, Rotation rotation) : count_(count) {
   if (count < 2 || count > max_draws)
-    throw std::invalid_argument("draws: count = " + std::to_string(count) + ", must be in 2..." +
-                                std::to_string(max_draws));
+    throw std::invalid_argument("count = " + std::to_string(count) + ", must be in 2..." + std::to_string(max_draws));
   Coefficients drawn{prepare(model, 1, rotation), model.powers, model.reflectance, {}, {}};
   for (const FittedBlock& fitted : model.blocks) {
     if (fitted.covariance.empty())
@@ -166,9 +162,9 @@ std::vector<PreparedModel> Draws::at(double wavelength) const {
 }
 
 Distribution distribution(std::span<const double> values, double coverage, Interval interval) {
-  require_values(values, "distribution");
+  require_values(values);
   if (!(coverage > 0 && coverage < 1))
-    throw std::invalid_argument("distribution: coverage " + shortest(coverage) + " is not between 0 and 1");
+    throw std::invalid_argument("coverage " + shortest(coverage) + " is not between 0 and 1");
   const Deviations d = deviations(values);
   double squares = 0;
   for (const double value : d.relative) squares += value * value;
@@ -189,10 +185,9 @@ Distribution distribution(std::span<const double> values, double coverage, Inter
 
 double correlation(std::span<const double> values, std::span<const double> others) {
   if (values.size() != others.size())
-    throw std::invalid_argument("correlation: " + std::to_string(values.size()) + " and " +
-                                std::to_string(others.size()) + " values");
-  require_values(values, "correlation");
-  require_values(others, "correlation");
+    throw std::invalid_argument(std::to_string(values.size()) + " and " + std::to_string(others.size()) + " values");
+  require_values(values);
+  require_values(others);
   const Deviations a = deviations(values), b = deviations(others);
   double aa = 0, bb = 0, ab = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {

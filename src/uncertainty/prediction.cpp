@@ -29,7 +29,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Table = std::array<double, zernike_count(max_order)>;
 
-constexpr double estimability_limit = 1e-8;  // theory 4.2
+constexpr double estimability_limit = 1e-8;  // theory 4.7
 
 /// One block at one wavelength.
 struct BlockAt {
@@ -157,7 +157,7 @@ struct PreparedUncertainty::Slopes {
   std::array<const BlockAt*, 16> block{};
 
   Slopes(const Blocks& blocks, const Geometry& geometry) {
-    require_valid(geometry, "uncertainty");
+    require_valid(geometry);
     const auto [k_i, k_r] = blocks.tables(geometry);
     for (const BlockAt& b : blocks.list)
       for (std::size_t e = 0; e < b.elements.size(); ++e) {
@@ -241,7 +241,7 @@ MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> 
   const bool mixes = blocks_->turns || frame != Frame::xy;
   MatrixXd sum = MatrixXd::Zero(16, blocks_->parameters), one = sum;
   for (const auto& [geometry, weight] : geometries) {
-    if (!std::isfinite(weight)) throw std::invalid_argument("uncertainty: weight " + shortest(weight));
+    if (!std::isfinite(weight)) throw std::invalid_argument("weight " + shortest(weight) + " is not finite");
     const Slopes at(*blocks_, geometry);
     if (!mixes) {
       at.add_to(sum, weight);
@@ -266,8 +266,8 @@ MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> 
 MuellerCovariance PreparedUncertainty::covariance(const MuellerGradient& a, const MuellerGradient& b) const {
   for (const MuellerGradient& gradient : {std::cref(a), std::cref(b)})
     if (gradient.values.size() != 16 * parameters())
-      throw std::invalid_argument("uncertainty: a gradient of " + std::to_string(gradient.values.size()) +
-                                  " numbers, expected " + std::to_string(16 * parameters()));
+      throw std::invalid_argument("a gradient of " + std::to_string(gradient.values.size()) + " numbers, expected " +
+                                  std::to_string(16 * parameters()));
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMajor> slopes_a(a.values.data(), 16, blocks_->parameters),
       slopes_b(b.values.data(), 16, blocks_->parameters);
@@ -282,7 +282,7 @@ MuellerCovariance PreparedUncertainty::covariance(const MuellerGradient& a, cons
 }
 
 bool PreparedUncertainty::estimable(const Geometry& geometry) const {
-  require_valid(geometry, "uncertainty");
+  require_valid(geometry);
   const auto [k_i, k_r] = blocks_->tables(geometry);
   for (const BlockAt& block : blocks_->list)
     for (std::size_t e = 0; e < block.elements.size(); ++e) {
@@ -293,7 +293,7 @@ bool PreparedUncertainty::estimable(const Geometry& geometry) const {
 }
 
 double PreparedUncertainty::directional_hemispherical_reflectance(const Direction& incident) const {
-  require_valid(Geometry{incident, {}}, "uncertainty");
+  require_valid(Geometry{incident, {}});
   const auto [k_i, unused] = blocks_->tables({incident, incident});
   Table integrals{};
   for (const int n : {0, 2})

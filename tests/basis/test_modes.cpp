@@ -90,7 +90,7 @@ double h_function(int n, int m, int k, int l, const Geometry& g) {
 }
 
 double i_function(int n, int m, int k, const Geometry& g) {
-  const double a = n == m && k == 0 ? 4 : n == m || k == 0 ? 2 : 1;  // Eq. 10, corrected in theory 2.1
+  const double a = n == m && k == 0 ? 4 : n == m || k == 0 ? 2 : 1;  // Eq. 10, corrected in theory 7
   const double rho_i = std::min(1.0, std::numbers::sqrt2 * std::sin(g.incident.theta / 2));
   const double rho_r = std::min(1.0, std::numbers::sqrt2 * std::sin(g.reflected.theta / 2));
   return std::sqrt((n + 1) * (m + 1) / a) / (2 * pi) *
@@ -116,7 +116,7 @@ Mueller printed(const Mode& mode, Family family, const Geometry& g) {
   return result;
 }
 
-/// What a mode of isotropic gives to the elements: theory 2.5 with complex numbers.
+/// What a mode of isotropic gives to the elements: theory 2.3 with complex numbers.
 Mueller spin_weighted(const Mode& mode, const Geometry& geometry) {
   using Complex = std::complex<double>;
   const auto [function, n, m, k, l] = mode;
@@ -211,7 +211,7 @@ TEST(Modes, OfGermer2017AtOrders7And5AreThe634OfThePublishedGrey10Set) {
   EXPECT_EQ(mode_count(blocks(Family::germer2017, {7, 5})), 634);
 }
 
-// Theory 2.3: how many (n, m) each pair (k, l) has.
+// Theory 2.2: how many (n, m) each pair (k, l) has.
 TEST(Modes, OfGermer2017HaveThePublishedAzimuthalOrders) {
   using Counts = std::map<std::pair<int, int>, int>;
   const Counts of_11{{{0, 0}, 10}, {{1, 1}, 10}, {{2, 2}, 6}, {{3, 3}, 6},

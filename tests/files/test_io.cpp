@@ -148,7 +148,7 @@ TEST(Samples, OfWhichOnlySomeHaveUncertaintiesAreNotWritten) {
   const std::vector<Sample> samples{samples_in(with_columns(uncertainty_names, uncertainty_values))[0],
                                     samples_in(own("532,10,20,30,40,0.3"))[0]};
   EXPECT_EQ(message_of([&] { write_samples(folder / "s.csv", samples); }),
-            "write_samples: sample 2 has no uncertainties, but others have");
+            "sample 2 has no uncertainties, but others have");
   EXPECT_EQ(folder.files(), 0);
 }
 
@@ -174,7 +174,7 @@ TEST(Samples, ArePublishedAtFourWavelengthsWithSixIncidentAngles) {
   const auto at_15 = std::ranges::count_if(samples, [](const Sample& s) {
     return s.geometry.incident == Direction{radians(15), std::numbers::pi};
   });
-  EXPECT_EQ(at_15, 1212);  // 4 × 303, theory 1.4
+  EXPECT_EQ(at_15, 1212);  // 4 × 303, theory 3.1
 }
 
 TEST(Samples, ThatAreWrongAreRefusedWithFileLineAndValue) {

@@ -50,7 +50,7 @@ TEST(Materials, OfOtherNamesAreRefusedWithTheNamesThereAre) {
     material("spectralon");
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_STREQ(e.what(), "material: 'spectralon' is not one of ptfe, ptfe-351, ptfe-532, ptfe-633, ptfe-1064");
+    EXPECT_STREQ(e.what(), "material 'spectralon' is not one of ptfe, ptfe-351, ptfe-532, ptfe-633, ptfe-1064");
   }
 }
 

@@ -199,14 +199,15 @@ TEST(Readings, ThatAreNoneAreNotReduced) {
   const Polarimeter polarimeter = Goniometer({}, 1).polarimeter();
   const Reduction reduction(polarimeter);
   const RawMeasurement raw = some_measurement(polarimeter, 2e-4);
-  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 0, {}); }), "sample: a solid angle of 0 sr");
-  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 2e-4, {.relative = -1}); }), "reduced: a noise of -1");
+  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 0, {}); }),
+            "a solid angle of 0 sr, must be above 0 and at most 2 pi");
+  EXPECT_EQ(message_of([&] { reduced(reduction, raw, 2e-4, {.relative = -1}); }),
+            "a noise of -1, must be finite and not negative");
   EXPECT_EQ(message_of([&] { reduced(reduction, raw, 2e-4, {.dark = 1e150}); }),
-            "reduced: the noise leaves no finite uncertainty");
+            "the noise leaves no finite uncertainty");
   RawMeasurement short_one = raw;
   short_one.readings.pop_back();
-  EXPECT_EQ(message_of([&] { reduced(reduction, short_one, 2e-4, {}); }),
-            "reduction: 15 readings, the instrument has 16");
+  EXPECT_EQ(message_of([&] { reduced(reduction, short_one, 2e-4, {}); }), "15 readings, the instrument has 16");
 }
 
 TEST(Readings, OfAnotherNumberThanTheStatesAreNotWritten) {
@@ -272,14 +273,13 @@ TEST(Instrument, ThatCouldNotBeReadBackIsNotWritten) {
     spoil(c);
     return message_of([&] { to_json(c); });
   };
-  EXPECT_EQ(refusal([](Calibration& c) { c.extinction = 2; }),
-            "to_json: instrument: polarizer.extinction: 2.0 is more than 1");
+  EXPECT_EQ(refusal([](Calibration& c) { c.extinction = 2; }), "instrument: polarizer.extinction: 2.0 is more than 1");
   EXPECT_EQ(refusal([](Calibration& c) { c.figure_of_merit.elements(2, 1) = -1; }),
-            "to_json: instrument: figure_of_merit.elements[2]: -1 is negative");
+            "instrument: figure_of_merit.elements[2]: -1 is negative");
   EXPECT_EQ(refusal([](Calibration& c) { c.degrees_of_freedom = -1; }),
-            "to_json: instrument: degrees_of_freedom: -1 is negative");
+            "instrument: degrees_of_freedom: -1 is negative");
   EXPECT_EQ(refusal([](Calibration& c) { c.wavelength = 1e300; }),
-            "to_json: instrument: wavelength_nm: 1e+303 is not a wavelength in nm");
+            "instrument: wavelength_nm: 1e+303 is not a wavelength in nm");
   EXPECT_NE(refusal([](Calibration& c) { c.generator_condition *= 1.001; }), "nothing was thrown");
   EXPECT_NE(refusal([](Calibration& c) { c.covariance.assign(c.covariance.size(), 1e308); }), "nothing was thrown");
 }

@@ -300,7 +300,7 @@ std::vector<Sample> grid_at(double wavelength) {
 
 }  // namespace
 
-// Theory 1.4, to the digits printed there.
+// Theory 3.5.
 TEST(PublishedData, AreReciprocalButForF11) {
   const std::string random = published("PTFE.data.random.csv");
   if (random.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");
@@ -334,7 +334,7 @@ TEST(PublishedData, OfF11At351NanometresAreNotReciprocal) {
   EXPECT_TRUE(found.one_azimuth);
 }
 
-// Theory 1.4, to the digits printed there.
+// Theory 3.1.
 TEST(PublishedData, DifferFromTheirMirrorImagesByTheNoiseAndIn42ByMore) {
   if (published("PTFE.data.csv").empty()) GTEST_SKIP() << absent("PTFE.data.csv");
   const std::map<double, double> f11{{0.351, 0.009}, {0.532, 0.011}, {0.633, 0.012}, {1.064, 0.018}};
@@ -359,7 +359,7 @@ struct Expected {
   int negative_single, negative_multiple;
 };
 
-// Theory 4.4.
+// Theory 6.2.
 constexpr std::array expected_of_models{
     Expected{0.351, "PTFE.351.coeff.csv", {0.233, 0.204, 0.140, 0.106, 0.063}, 0, 0},
     Expected{0.532, "PTFE.532.coeff.csv", {0.230, 0.196, 0.120, 0.082, 0.035}, 7, 2},
@@ -400,7 +400,7 @@ TEST(PublishedModels, OfAllWavelengthsAreRealizableUpTo85DegreesToo) {
     expect_realizable_up_to_85(model, expected.wavelength, expected.negative_multiple);
 }
 
-// Theory 4.4, "isotropic basis".
+// Theory 6.2.
 TEST(BuiltInModels, AreRealizableButForAFewGrazingGeometries) {
   const std::map<std::string, int> expected{{"ptfe-351", 0}, {"ptfe-532", 0}, {"ptfe-633", 1}, {"ptfe-1064", 3}};
   for (const auto& [name, negative] : expected)
@@ -413,7 +413,7 @@ TEST(ModelDiagnostics, SayWhereTheWorstPlacesAre) {
   const PreparedModel prepared = prepare(model, 1.064);
   EXPECT_NEAR(realizability_margin(normalized(prepared.evaluate(found.margin.geometry))), found.margin.value, 1e-14);
   EXPECT_EQ(prepared.f11(found.f11.geometry), found.f11.value);
-  EXPECT_LT(found.f11.value, -0.32);  // theory 4.4: −0.330 at 90/90 degrees, retro-reflection
+  EXPECT_LT(found.f11.value, -0.32);  // theory 6.2: −0.330 at 90/90 degrees, retro-reflection
   EXPECT_EQ(found.f11.geometry.incident.theta, radians(90));
   EXPECT_EQ(found.f11.geometry.reflected, (Direction{radians(90), 0}));
   EXPECT_NEAR(found.dhr, 0.9869, 1e-4);

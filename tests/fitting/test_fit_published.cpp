@@ -59,7 +59,7 @@ TEST_F(PublishedData, MultiWavelengthFitIsThePublishedFile) {
   EXPECT_LT(largest_difference(result.model, read_coefficients(published("PTFE.coeff.csv"))), 1e-11);
 }
 
-// Theory 2.3, last column.
+// Theory 2.2, last column.
 TEST_F(PublishedData, PublishedIndexSetsHaveTheRanksOfTheTheory) {
   const FitResult result = fit(at(0.532), {Family::germer2017, {7, 4}});
   std::vector<int> ranks;
@@ -74,7 +74,7 @@ TEST_F(PublishedData, GridDoesNotDetermineOrder11) {
   EXPECT_THROW(fit(at(0.532), {Family::isotropic, {11, 4}}), std::invalid_argument);
 }
 
-// Theory 2.4; half a unit of the last digit printed there.
+// Theory 2.2; to half a unit of the last digit.
 TEST_F(PublishedData, PublishedIndexSetsHaveTheResidualsOfTheTheory) {
   const double f11[] = {.003217, .002993, .003348, .005398};
   for (std::size_t w = 0; w < 4; ++w)
@@ -104,7 +104,7 @@ TEST_F(PublishedData, MultiWavelengthResidualsAreThoseOfTheTheory) {
     EXPECT_NEAR(pair_rms(result, row, column), expected, 5e-6);
 }
 
-// Theory 2.5: fewer than half the coefficients, the residuals of the published set on the data fitted, and the noise on
+// Theory 2.3: fewer than half the coefficients, the residuals of the published set on the data fitted, and the noise on
 // the data that were not.
 TEST_F(PublishedData, IsotropicBasisFitsAsWellWithFewerThanHalfTheCoefficientsAndPredictsBetter) {
   const FitResult result = fit(at(0.532));
@@ -141,7 +141,7 @@ TEST_F(PublishedData, IsotropicMultiWavelengthResidualsAreWithin2e4OfThePublishe
     EXPECT_NEAR(pair_rms(result, row, column), expected, 0.0002) << row + 1 << column + 1;
 }
 
-// Theory 4.3: the fits' own DHR, as against the manufacturer's values of the published fit.
+// Theory 3.2: the fits' own DHR, as against the manufacturer's values of the published fit.
 TEST_F(PublishedData, WithoutATableEachWavelengthIsDividedByItsOwnNormalIncidenceReflectance) {
   const FitResult result = fit(grid);
   ASSERT_EQ(result.model.reflectance.values.size(), 4u);

@@ -203,7 +203,7 @@ class PublishedSelection : public testing::Test {
 
 }  // namespace
 
-// Theory 4.5, to the digits printed there.
+// Theory 3.4.
 TEST_F(PublishedSelection, OfRandomDirectionsHasTheErrorsOfTheTheory) {
   const Selection selection =
       select_model(random, std::array{folds_by_row(random.size(), 3)}, {.orders_other = {3, 7}});

@@ -26,7 +26,7 @@ std::vector<Sample> simulated(int count, double speckle) {
   return simulate(material("ptfe-532"), green, random_geometries(count, 5), speckle, 5);
 }
 
-/// theta_i = 45 degrees, theta_r = −60 … 60 degrees in steps of 1 (theory 4.2).
+/// theta_i = 45 degrees, theta_r = −60 … 60 degrees in steps of 1 (theory 4.8).
 std::vector<Geometry> of_the_paper() {
   std::vector<double> theta_r;
   for (int t = -60; t <= 60; ++t) theta_r.push_back(radians(t));
@@ -116,7 +116,7 @@ TEST(Subsets, RefuseWhatHasNoAnswer) {
   EXPECT_PRED2(has, message_of([&] { polarized_uncertainty(silent, 0.532, of_the_paper()); }), "is not known");
 }
 
-// The paper's section 5: "0.59 %", "2.6 %", "0.52 %". Theory 4.2 says how: published sets fitted at the azimuths as
+// The paper's section 5: "0.59 %", "2.6 %", "0.52 %". Theory 4.8 says how: published sets fitted at the azimuths as
 // they are, every third point, compared with the published fit of the grid. Printed digits.
 TEST(PublishedSubsets, GiveThePapersNumbersInThePapersWayAndLessInAnIsotropicOne) {
   const std::string file = published("PTFE.data.random.csv");
@@ -139,7 +139,7 @@ TEST(PublishedSubsets, GiveThePapersNumbersInThePapersWayAndLessInAnIsotropicOne
   EXPECT_NEAR(isotropic.mean_deviation, 0.0039, 5e-5);
 }
 
-/// What the fit to all samples predicts for a third of them, mean over angles and curves as theory 4.2 has it.
+/// What the fit to all samples predicts for a third of them, mean over angles and curves as theory 4.8 has it.
 double mean_prediction(const std::vector<Sample>& samples, const FitOptions& options, Weights weights) {
   const Model whole = fit(samples, {}, options, weights).model;
   const PolarizedCurve f = polarized_curve(whole, 0.532, of_the_paper());
@@ -150,7 +150,7 @@ double mean_prediction(const std::vector<Sample>& samples, const FitOptions& opt
   return std::sqrt(3) * sum / (4 * static_cast<double>(f.size()));
 }
 
-// Printed digits of theory 4.2.
+// Theory 4.8.
 TEST(PublishedSubsets, ArePredictedByEachCovariance) {
   const std::string file = published("PTFE.data.random.csv");
   if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");
@@ -162,8 +162,7 @@ TEST(PublishedSubsets, ArePredictedByEachCovariance) {
   EXPECT_NEAR(mean_prediction(samples, {}, Weights::speckle), 0.0035, 5e-5);
 }
 
-// Root mean squares over angles and curves: 0.38 % predicted, and about as much observed. The limits are those of
-// theory 5.
+// Theory 4.8: root mean squares over angles and curves, 0.38 % predicted and about as much observed.
 TEST(PublishedSubsets, OfThirtyRandomSplitsScatterAsTheCovarianceOfOneFitSays) {
   const std::string file = published("PTFE.data.random.csv");
   if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");

@@ -99,7 +99,7 @@ TEST(Apertures, EllipsesAndRectanglesAreWhatTheirDefinitionSays) {
   EXPECT_NEAR(integral(Aperture::ellipse(axis, half_theta, half_phi, turn), 12, smooth), ellipse, 1e-14);
 }
 
-// Theory 4.3: ∫ P_q(2u − 1) cos θ dΩ over a ring is (π/2) [Q_q − T_q], which it gives to 2e-14.
+// Theory 5.1: ∫ P_q(2u − 1) cos θ dΩ over a ring is (π/2) [Q_q − T_q], which it gives to 2e-14.
 TEST(Apertures, RingsIntegrateLegendrePolynomialsAsTheClosedFormSays) {
   const auto legendre = [](int q, double x) { return q < 0 ? 1 : std::legendre(static_cast<unsigned>(q), x); };
   const auto big_q = [&](int q, double x) {

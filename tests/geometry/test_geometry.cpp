@@ -57,8 +57,8 @@ Geometry in_degrees(double theta_i, double phi_i, double theta_r, double phi_r) 
   return {{radians(theta_i), radians(phi_i)}, {radians(theta_r), radians(phi_r)}};
 }
 
-// The axes as theory 1.1 defines them, vectors throughout and 64 bits of mantissa: what the closed forms must agree
-// with.
+// The axes as docs/conventions.md defines them, vectors throughout and 64 bits of mantissa: what the closed forms must
+// agree with.
 using Long = long double;
 using Long3 = std::array<Long, 3>;
 
@@ -169,10 +169,10 @@ RC_GTEST_PROP(Direction, UnfoldedIsTheSamePointOfTheSphere, ()) {
 
 TEST(Geometry, NamesTheInvalidAngleInDegrees) {
   const auto refusal = [](const Geometry& g) { return message_of([&] { require_valid(g, "row 7"); }); };
-  EXPECT_EQ(refusal(in_degrees(95, 0, 0, 0)), "row 7: theta_i = 95 degrees, must be in 0…90");
-  EXPECT_EQ(refusal(in_degrees(0, 0, 90.0000001, 0)), "row 7: theta_r = 90.0000001 degrees, must be in 0…90");
-  EXPECT_EQ(refusal(in_degrees(-1, 0, 0, 0)), "row 7: theta_i = -1 degrees, must be in 0…90");
-  EXPECT_EQ(refusal({{nan_value, 0}, {}}), "row 7: theta_i = nan degrees, must be in 0…90");
+  EXPECT_EQ(refusal(in_degrees(95, 0, 0, 0)), "row 7: theta_i = 95 degrees, must be in 0...90");
+  EXPECT_EQ(refusal(in_degrees(0, 0, 90.0000001, 0)), "row 7: theta_r = 90.0000001 degrees, must be in 0...90");
+  EXPECT_EQ(refusal(in_degrees(-1, 0, 0, 0)), "row 7: theta_i = -1 degrees, must be in 0...90");
+  EXPECT_EQ(refusal({{nan_value, 0}, {}}), "row 7: theta_i = nan degrees, must be in 0...90");
   EXPECT_EQ(refusal({{0, nan_value}, {}}), "row 7: phi_i = nan, must be finite");
   EXPECT_EQ(refusal({{}, {0, std::numeric_limits<double>::infinity()}}), "row 7: phi_r = inf, must be finite");
 }
@@ -257,7 +257,7 @@ RC_GTEST_PROP(Frame, ChangesArePairsOfRotatorsWithTheAnglesToXy, ()) {
   }
 }
 
-RC_GTEST_PROP(Frame, SpFollowsFromXyByTheAzimuthsAlone, ()) {  // B5
+RC_GTEST_PROP(Frame, SpFollowsFromXyByTheAzimuthsAlone, ()) {  // theory 1.1
   const Geometry g = any_geometry();
   const Mueller m = any_matrix(), expected = rotator(g.reflected.phi) * m * rotator(g.incident.phi);
   RC_ASSERT(largest(change_frame(m, g, Frame::xy, Frame::sp) - expected) <= frame_error * largest(m));
@@ -355,7 +355,7 @@ RC_GTEST_PROP(Frame, EachOneKeepsMirrorSymmetry, ()) {
   }
 }
 
-RC_GTEST_PROP(Frame, TurningAnIsotropicSampleShowsInXyOnly, ()) {  // B6
+RC_GTEST_PROP(Frame, TurningAnIsotropicSampleShowsInXyOnly, ()) {  // theory 1.2
   const Geometry g = any_geometry();
   RC_PRE(static_cast<double>(length(Beams(g).normal())) > 1e-3);
   const double angle = between(-pi, pi);

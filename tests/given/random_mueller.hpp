@@ -18,7 +18,7 @@ namespace mmbrdf {
 /// Rows one after the other.
 using Jones = std::array<std::complex<double>, 4>;
 
-/// B1: the Stokes vector of the field J (e1, e2).
+/// docs/conventions.md: the Stokes vector of the field J (e1, e2).
 inline Stokes stokes_behind(const Jones& j, std::complex<double> e1, std::complex<double> e2) {
   const std::complex<double> f1 = j[0] * e1 + j[1] * e2, f2 = j[2] * e1 + j[3] * e2, product = std::conj(f1) * f2;
   return {std::norm(f1) + std::norm(f2), std::norm(f1) - std::norm(f2), 2 * product.real(), 2 * product.imag()};

@@ -187,10 +187,9 @@ TEST(Batch, RefusesWhatIsInvalidBeforeItWrites) {
   std::vector<Mueller> out = untouched;
   for (const int threads : {1, 2}) {
     const BatchOptions options{.threads = threads};
-    EXPECT_EQ(message_of([&] { evaluate(model, with_bad, out, options); }),
-              "evaluate: theta_r = 95 degrees, must be in 0…90");
+    EXPECT_EQ(message_of([&] { evaluate(model, with_bad, out, options); }), "theta_r = 95 degrees, must be in 0...90");
     EXPECT_EQ(message_of([&] { evaluate(model, vectors.geometries(), out, options); }),
-              "evaluate: incident vector 12346: (3, 0, 0) is not a unit vector with z >= 0");
+              "incident vector 12346: (3, 0, 0) is not a unit vector with z >= 0");
   }
   EXPECT_EQ(out, untouched);
 }
@@ -214,17 +213,17 @@ TEST(Batch, RefusesSizesThatDoNotAgree) {
   const Columns<double> vectors(geometries);
   std::vector<Mueller> two(2), three(3);
   const std::vector<double> wavelengths(2, 0.5), negative(3, -0.5);
-  EXPECT_EQ(message_of([&] { evaluate(model, geometries, two); }), "evaluate: 3 geometries, room for 2");
-  EXPECT_EQ(message_of([&] { evaluate(model, vectors.geometries(), two); }), "evaluate: 3 geometries, room for 2");
+  EXPECT_EQ(message_of([&] { evaluate(model, geometries, two); }), "3 geometries, room for 2");
+  EXPECT_EQ(message_of([&] { evaluate(model, vectors.geometries(), two); }), "3 geometries, room for 2");
   EXPECT_EQ(message_of([&] { evaluate(model, geometries, three, {.wavelengths = wavelengths}); }),
-            "evaluate: 3 geometries, 2 wavelengths");
+            "3 geometries, 2 wavelengths");
   EXPECT_EQ(message_of([&] { evaluate(model, geometries, three, {.wavelengths = negative}); }),
             "wavelength -500 nm is not positive");
   EXPECT_EQ(message_of([&] { evaluate(model, geometries, three, {.threads = -1}); }),
-            "evaluate: threads = -1, must be 0 or more");
+            "threads = -1, must be 0 or more");
   const VectorGeometries<double> uneven{vectors.incident(),
                                         {vectors.in[3], std::span(vectors.in[4]).first(2), vectors.in[5]}};
-  EXPECT_EQ(message_of([&] { evaluate(model, uneven, three); }), "evaluate: reflected vectors with 3 x, 2 y and 3 z");
+  EXPECT_EQ(message_of([&] { evaluate(model, uneven, three); }), "reflected vectors with 3 x, 2 y and 3 z");
 }
 
 TEST(Batch, RefusesWavelengthsWhosePowersAreTooLarge) {

@@ -100,7 +100,7 @@ double f11_of(const Model& model, double wavelength) {
 
 // ---- symmetries -----------------------------------------------------------------------------------------------------
 
-// B6: turning the sample turns the axes.
+// Theory 1.2: turning the sample turns the axes.
 RC_GTEST_PROP(Model, OfAnIsotropicSampleTurnsWithTheGeometry, ()) {
   const Family family = *rc::gen::element(Family::isotropic, Family::germer2017);
   const PreparedModel model = prepare(any_model(family, 12), 1);
@@ -423,10 +423,9 @@ TEST(Model, RefusesWavelengthsWhosePowersOverflow) {
 
 TEST(Model, RefusesDirectionsBelowTheHorizonAndAnglesThatAreNone) {
   const PreparedModel model = prepare(diffuser({1}), 1);
-  EXPECT_EQ(message_of([&] { model.evaluate(in_degrees(95, 0, 0, 0)); }),
-            "evaluate: theta_i = 95 degrees, must be in 0…90");
-  EXPECT_EQ(message_of([&] { model.f11(in_degrees(0, 0, 95, 0)); }), "f11: theta_r = 95 degrees, must be in 0…90");
-  EXPECT_EQ(message_of([&] { model.at(Direction{radians(95), 0}); }), "at: theta_i = 95 degrees, must be in 0…90");
+  EXPECT_EQ(message_of([&] { model.evaluate(in_degrees(95, 0, 0, 0)); }), "theta_i = 95 degrees, must be in 0...90");
+  EXPECT_EQ(message_of([&] { model.f11(in_degrees(0, 0, 95, 0)); }), "theta_r = 95 degrees, must be in 0...90");
+  EXPECT_EQ(message_of([&] { model.at(Direction{radians(95), 0}); }), "theta_i = 95 degrees, must be in 0...90");
   const Direction bad_directions[] = {{radians(95), 0}, {-1e-9, 0},     {nan_value, 0},
                                       {infinity, 0},    {0, nan_value}, {0, infinity}};
   const PreparedIncidence incidence = model.at(Direction{});
@@ -460,8 +459,8 @@ TEST(Model, RefusesASpanWithAnotherSizeBeforeItWrites) {
   const std::vector<Geometry> geometries(3);
   const std::vector<Direction> directions(3);
   std::vector<Mueller> out(2, identity());
-  EXPECT_EQ(message_of([&] { model.evaluate(geometries, Frame::xy, out); }), "evaluate: 3 geometries, room for 2");
-  EXPECT_EQ(message_of([&] { incidence.evaluate(directions, Frame::xy, out); }), "evaluate: 3 directions, room for 2");
+  EXPECT_EQ(message_of([&] { model.evaluate(geometries, Frame::xy, out); }), "3 geometries, room for 2");
+  EXPECT_EQ(message_of([&] { incidence.evaluate(directions, Frame::xy, out); }), "3 directions, room for 2");
   EXPECT_EQ(out, std::vector<Mueller>(2, identity()));
 }
 

@@ -447,7 +447,7 @@ RC_GTEST_PROP(LeastSquares, KnowsWhatItsRowsDoNotDetermine, ()) {
   RC_ASSERT(solution.estimable(row));
 }
 
-// Theory 4.2: 1e-8 of the length is the limit.
+// Theory 4.7: 1e-8 of the length is the limit.
 TEST(LeastSquares, CallsEstimableWhatIsOffByLessThanTheLimit) {
   LeastSquares first(2);
   first.add(Numbers{1, 0}, Numbers{1});
@@ -510,12 +510,8 @@ RC_GTEST_PROP(LeastSquares, RestrictedToSomeUnknownsIsTheProblemOfTheirColumns, 
 TEST(LeastSquares, RefusesUnknownsThatThereAreNot) {
   const LeastSquares two(2);
   EXPECT_THROW(two.restricted({}), std::invalid_argument);
-  EXPECT_EQ(message_of([&] { two.restricted(std::array<std::size_t, 1>{2}); }),
-            "LeastSquares: unknown number 2 is not there");
-  EXPECT_EQ(message_of([&] {
-              two.restricted(std::array<std::size_t, 2>{1, 1});
-            }),
-            "LeastSquares: unknown number 1 comes twice");
+  EXPECT_EQ(message_of([&] { two.restricted(std::array<std::size_t, 1>{2}); }), "unknown number 2 is not there");
+  EXPECT_EQ(message_of([&] { two.restricted(std::array<std::size_t, 2>{1, 1}); }), "unknown number 1 comes twice");
 }
 
 // Two groups of rows with λ = 1 and 2, coefficients linear in λ: together they are of full rank, alone they are not.
@@ -546,26 +542,26 @@ TEST(LeastSquares, RefusesBadRowsAndStaysAsItWas) {
     EXPECT_EQ(some.state(), before) << message;
     return message;
   };
-  EXPECT_EQ(add({1, 2, 3}, one, none), "LeastSquares: 3 numbers in 1 rows of 2 unknowns");
-  EXPECT_EQ(add(two, {}, none), "LeastSquares: 2 numbers in 0 rows of 2 unknowns");
-  EXPECT_EQ(add(two, one, two), "LeastSquares: 2 weights for 1 rows");
-  EXPECT_EQ(add({1, nan_value}, one, none), "LeastSquares: row number 2 is not finite");
-  EXPECT_EQ(add({infinity, 1}, one, none), "LeastSquares: row number 1 is not finite");
-  EXPECT_EQ(add(two, {nan_value}, none), "LeastSquares: value number 1 is not finite");
-  EXPECT_EQ(add(two, one, {nan_value}), "LeastSquares: weight number 1 is not finite");
-  EXPECT_EQ(add(two, one, {infinity}), "LeastSquares: weight number 1 is not finite");
-  EXPECT_EQ(add(two, one, negative), "LeastSquares: weight -1e-09 is negative");
+  EXPECT_EQ(add({1, 2, 3}, one, none), "3 numbers in 1 rows of 2 unknowns");
+  EXPECT_EQ(add(two, {}, none), "2 numbers in 0 rows of 2 unknowns");
+  EXPECT_EQ(add(two, one, two), "2 weights for 1 rows");
+  EXPECT_EQ(add({1, nan_value}, one, none), "row number 2 is not finite");
+  EXPECT_EQ(add({infinity, 1}, one, none), "row number 1 is not finite");
+  EXPECT_EQ(add(two, {nan_value}, none), "value number 1 is not finite");
+  EXPECT_EQ(add(two, one, {nan_value}), "weight number 1 is not finite");
+  EXPECT_EQ(add(two, one, {infinity}), "weight number 1 is not finite");
+  EXPECT_EQ(add(two, one, negative), "weight -1e-09 is negative");
   // the last of many rows: nothing of those before it has been taken in
   Numbers rows(2000, 1.0);
   rows.back() = nan_value;
-  EXPECT_EQ(add(rows, Numbers(1000, 1.0), none), "LeastSquares: row number 2000 is not finite");
-  EXPECT_EQ(message_of([&] { some.merge(LeastSquares(3)); }), "LeastSquares: cannot merge 3 unknowns into 2");
+  EXPECT_EQ(add(rows, Numbers(1000, 1.0), none), "row number 2000 is not finite");
+  EXPECT_EQ(message_of([&] { some.merge(LeastSquares(3)); }), "cannot merge 3 unknowns into 2");
   EXPECT_EQ(some.state(), before);
 }
 
 TEST(LeastSquares, RefusesImpossibleSizes) {
-  EXPECT_EQ(message_of([] { LeastSquares(0); }), "LeastSquares: unknowns = 0, must be in 1...2048");
-  EXPECT_EQ(message_of([] { LeastSquares(-3); }), "LeastSquares: unknowns = -3, must be in 1...2048");
+  EXPECT_EQ(message_of([] { LeastSquares(0); }), "unknowns = 0, must be in 1...2048");
+  EXPECT_EQ(message_of([] { LeastSquares(-3); }), "unknowns = -3, must be in 1...2048");
   EXPECT_THROW(LeastSquares(LeastSquares::max_unknowns + 1), std::invalid_argument);
   LeastSquares two(2);
   EXPECT_THROW(two.residual_norm(Numbers{1}), std::invalid_argument);
@@ -593,12 +589,11 @@ TEST(LeastSquares, RefusesNumbersThatAreNoState) {
     changed[place] = number;
     return message_of([&] { LeastSquares::from_state(2, changed); });
   };
-  EXPECT_EQ(refused(3, nan_value), "LeastSquares: state number 4 is not finite");
-  EXPECT_EQ(refused(6, -1), "LeastSquares: a state with -1 rows");
-  EXPECT_EQ(refused(6, 2.5), "LeastSquares: a state with 2.5 rows");
+  EXPECT_EQ(refused(3, nan_value), "state number 4 is not finite");
+  EXPECT_EQ(refused(6, -1), "a state with -1 rows");
+  EXPECT_EQ(refused(6, 2.5), "a state with 2.5 rows");
   EXPECT_NE(refused(6, 1e300), "nothing was thrown");
-  EXPECT_EQ(message_of([&] { LeastSquares::from_state(3, state); }),
-            "LeastSquares: a state of 7 numbers for 3 unknowns");
-  EXPECT_EQ(message_of([&] { LeastSquares::from_state(2, {}); }), "LeastSquares: a state of 0 numbers for 2 unknowns");
+  EXPECT_EQ(message_of([&] { LeastSquares::from_state(3, state); }), "a state of 7 numbers for 3 unknowns");
+  EXPECT_EQ(message_of([&] { LeastSquares::from_state(2, {}); }), "a state of 0 numbers for 2 unknowns");
   EXPECT_THROW(LeastSquares::from_state(0, state), std::invalid_argument);
 }

@@ -174,7 +174,7 @@ TEST(Goniometer, RefusesWhatItCannotBe) {
   for (double GoniometerOptions::*const relative : {&GoniometerOptions::speckle, &GoniometerOptions::gain_change}) {
     options = {};
     options.*relative = 1.001;
-    EXPECT_EQ(message_of([&] { Goniometer(options, 1); }), "goniometer: relative noise of 1.001, at most 1");
+    EXPECT_EQ(message_of([&] { Goniometer(options, 1); }), "relative noise of 1.001, at most 1");
   }
   options = {};
   options.noise.relative = 1e300;

@@ -176,10 +176,9 @@ TEST(OptimalAngles, RiseSymmetricAboutZeroAndAreTheSameEachTime) {
 }
 
 TEST(OptimalAngles, RefusePlatesAndNumbersOfStatesWithoutAny) {
-  EXPECT_EQ(message_of([] { optimal_angles(2, 3); }), "optimal angles: 3 states are not in 4...16");
+  EXPECT_EQ(message_of([] { optimal_angles(2, 3); }), "3 states are not in 4...16");
   EXPECT_THROW(optimal_angles(2, 17), std::invalid_argument);
-  EXPECT_EQ(message_of([] { optimal_angles(pi, 4); }),
-            "optimal angles: a retardance of 180 degrees makes no four independent states");
+  EXPECT_EQ(message_of([] { optimal_angles(pi, 4); }), "a retardance of 180 degrees makes no four independent states");
   EXPECT_THROW(optimal_angles(0, 4), std::invalid_argument);
   EXPECT_THROW(optimal_angles(nan_value, 4), std::invalid_argument);
 }
@@ -299,9 +298,9 @@ TEST(Reduction, RefusesACovarianceThatIsNone) {
   };
   std::vector<double> covariance = some_covariance(32, 1e-3);
   EXPECT_EQ(refusal(covariance), "nothing was thrown");
-  EXPECT_EQ(refusal({1, 2}), "instrument: covariance of 2 numbers, expected 1024");
+  EXPECT_EQ(refusal({1, 2}), "the covariance of the instrument has 2 numbers, expected 1024");
   covariance[1] *= 2;
-  EXPECT_EQ(refusal(covariance), "instrument: the covariance is not symmetric and finite");
+  EXPECT_EQ(refusal(covariance), "the covariance of the instrument is not symmetric and finite");
   covariance[1] = covariance[32] = 2e-6;  // a correlation of 2
   EXPECT_NE(refusal(covariance), "nothing was thrown");
   covariance.assign(covariance.size(), 1e308);  // eigenvalues overflow
@@ -312,14 +311,13 @@ TEST(Reduction, RefusesReadingsAndVariancesThatAreNone) {
   const Reduction reduction(best());
   std::vector<double> values(16, 0.1);
   values[7] = nan_value;
-  EXPECT_EQ(message_of([&] { reduction.mueller(values); }), "reduction: a reading is not finite");
+  EXPECT_EQ(message_of([&] { reduction.mueller(values); }), "a reading is not finite");
   EXPECT_THROW(reduction.from_readings(values), std::invalid_argument);
   values[7] = -0.1;
-  EXPECT_EQ(message_of([&] { reduction.from_readings(values); }), "reduction: a variance of -0.1");
+  EXPECT_EQ(message_of([&] { reduction.from_readings(values); }), "variance -0.1, must be finite and not negative");
   values.pop_back();
-  EXPECT_EQ(message_of([&] { reduction.mueller(values); }), "reduction: 15 readings, the instrument has 16");
-  EXPECT_EQ(message_of([&] { reduction.from_readings(values); }),
-            "reduction: 15 variances, the instrument has 16 readings");
+  EXPECT_EQ(message_of([&] { reduction.mueller(values); }), "15 readings, the instrument has 16");
+  EXPECT_EQ(message_of([&] { reduction.from_readings(values); }), "15 variances, the instrument has 16 readings");
 }
 
 // ---- samples --------------------------------------------------------------------------------------------------------
@@ -343,7 +341,7 @@ TEST(Normalized, CovarianceIsThatOfQuotientsByFiniteDifferences) {
         for (std::size_t k = 0; k < 16; ++k) sum += slope[i].elements[e] * given(i, k) * slope[k].elements[o];
       EXPECT_NEAR(c(e, o), sum, 1e-14);  // variances of 1e-6, slopes to 1e-9
     }
-  EXPECT_EQ(message_of([&] { normalized(given, Mueller{}); }), "M11 is 0, must be positive");
+  EXPECT_EQ(message_of([&] { normalized(given, Mueller{}); }), "M11 = 0, must be positive");
 }
 
 RC_GTEST_PROP(Sample, OfAMatrixIsItsBrdfInTheXyFrame, ()) {
@@ -372,11 +370,12 @@ TEST(Sample, OfAPerfectDiffuserIsOneByPi) {
 
 TEST(Sample, IsNotMadeOfWhatIsNone) {
   const Geometry g{{0.3, 0}, {0.5, 2}};
-  EXPECT_EQ(message_of([&] { sample(example, 0.5, g, 0); }), "sample: a solid angle of 0 sr");
-  EXPECT_EQ(message_of([&] { sample(example, 0.5, g, 6.3); }), "sample: a solid angle of 6.3 sr");
+  EXPECT_EQ(message_of([&] { sample(example, 0.5, g, 0); }), "a solid angle of 0 sr, must be above 0 and at most 2 pi");
+  EXPECT_EQ(message_of([&] { sample(example, 0.5, g, 6.3); }),
+            "a solid angle of 6.3 sr, must be above 0 and at most 2 pi");
   EXPECT_THROW(sample(example, 0.5, g, nan_value), std::invalid_argument);
-  EXPECT_EQ(message_of([&] { sample(Mueller{}, 0.5, g, 1e-4); }), "sample: M11 is 0");
-  EXPECT_EQ(message_of([&] { sample(example, 0.5, {{0.3, 0}, {pi / 2, 2}}, 1e-4); }), "sample: theta_r is 90 degrees");
+  EXPECT_EQ(message_of([&] { sample(Mueller{}, 0.5, g, 1e-4); }), "M11 = 0, must be positive");
+  EXPECT_EQ(message_of([&] { sample(example, 0.5, {{0.3, 0}, {pi / 2, 2}}, 1e-4); }), "theta_r is 90 degrees");
   EXPECT_THROW(sample(example, 0.5, {{0.3, 0}, {2, 2}}, 1e-4), std::invalid_argument);
 }
 

@@ -461,7 +461,7 @@ TEST(Analysis, AgreesWithTheGoldenGeometries) {
     }
 }
 
-// Theory 4.4, to the digits printed there.
+// Theory 6.2.
 TEST(PublishedData, AreAllRealizable) {
   const std::string grid = published("PTFE.data.csv"), random = published("PTFE.data.random.csv");
   if (grid.empty() || random.empty()) GTEST_SKIP() << absent("PTFE.data.csv, PTFE.data.random.csv");

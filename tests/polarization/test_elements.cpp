@@ -76,10 +76,10 @@ RC_GTEST_PROP(Polarizer, PassesLightAlongItsAxisAndItsExtinctionAcross, ()) {
 }
 
 TEST(Polarizer, RefusesWhatItCannotBe) {
-  EXPECT_EQ(message_of([] { polarizer(0, 1.5); }), "polarizer: extinction 1.5 is not in [0, 1]");
+  EXPECT_EQ(message_of([] { polarizer(0, 1.5); }), "extinction 1.5 of a polarizer is not in [0, 1]");
   EXPECT_THROW(polarizer(0, -1e-9), std::invalid_argument);
   EXPECT_THROW(polarizer(0, nan_value), std::invalid_argument);
-  EXPECT_EQ(message_of([] { polarizer(nan_value); }), "polarizer: an angle is not finite");
+  EXPECT_EQ(message_of([] { polarizer(nan_value); }), "an angle of a polarizer is not finite");
   EXPECT_THROW(polarizer(0, 0, nan_value), std::invalid_argument);
 }
 
@@ -100,7 +100,7 @@ RC_GTEST_PROP(Retarder, IsUndoneByTheOppositeOneAndByAQuarterTurn, ()) {
 }
 
 TEST(Retarder, RefusesAnglesThatAreNotFinite) {
-  EXPECT_EQ(message_of([] { retarder(nan_value); }), "retarder: an angle is not finite");
+  EXPECT_EQ(message_of([] { retarder(nan_value); }), "an angle of a retarder is not finite");
   EXPECT_THROW(retarder(1, nan_value), std::invalid_argument);
 }
 

@@ -35,7 +35,7 @@ Mueller any_matrix() {
   return m;
 }
 
-/// B1: the Stokes vector of a field with the complex amplitudes (E1, E2).
+/// docs/conventions.md: the Stokes vector of a field with the complex amplitudes (E1, E2).
 Stokes of_field(std::complex<double> e1, std::complex<double> e2) {
   const std::complex<double> product = std::conj(e1) * e2;
   return {std::norm(e1) + std::norm(e2), std::norm(e1) - std::norm(e2), 2 * product.real(), 2 * product.imag()};

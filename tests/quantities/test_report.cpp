@@ -237,9 +237,9 @@ TEST(Report, RefusesWhatThereIsNothingToSayOf) {
   EXPECT_EQ(message_of([] {
               report(diffuser({0.3, 0.1}));
             }),
-            "report: it does not say to which wavelengths it was fitted: give some");
+            "it does not say to which wavelengths it was fitted: give some");
   EXPECT_EQ(message_of([&] { report(model, std::array{-0.5}); }), "wavelength -500 nm is not positive");
-  EXPECT_EQ(message_of([&] { report(model, std::vector<Sample>{}); }), "compare: no samples");
+  EXPECT_EQ(message_of([&] { report(model, std::vector<Sample>{}); }), "no samples");
   EXPECT_EQ(message_of([] { report(Model{}); }), "model has no modes of element 11");
 }
 

@@ -65,7 +65,7 @@ TEST(Radiometry, ClosedFormHoldsForTheOtherMappingAndTheOtherFamilies) {
     }
 }
 
-// Theory 4.3, from the published coefficients; six digits are printed. The last column is the bihemispherical
+// Theory 5.1, from the published coefficients, to six digits. The last column is the bihemispherical
 // reflectance.
 TEST(Radiometry, PublishedCoefficientsGiveTheReflectancesOfTheTheory) {
   if (published("PTFE.coeff.csv").empty()) GTEST_SKIP() << absent("PTFE.coeff.csv");
@@ -102,7 +102,7 @@ TEST(Radiometry, PublishedCoefficientsGiveTheReflectancesOfTheTheory) {
   }
 }
 
-// Theory 4.3, with eight digits printed.
+// Theory 5.1, to eight digits.
 TEST(Radiometry, PublishedCoefficientsGiveThePolarizedReflectancesOfTheTheory) {
   const std::string file = published("PTFE.532.coeff.csv");
   if (file.empty()) GTEST_SKIP() << absent("PTFE.532.coeff.csv");
@@ -112,7 +112,7 @@ TEST(Radiometry, PublishedCoefficientsGiveThePolarizedReflectancesOfTheTheory) {
   EXPECT_NEAR(directional_hemispherical_reflectance(model, 0.532, incident, {1, -1, 0, 0}), .98428629, 5e-9);
 }
 
-// Theory 4.3: π f at 0:45 and 0:0, five digits printed. They are of the files of single wavelengths.
+// Theory 5.1: π f at 0:45 and 0:0, to five digits. They are of the files of single wavelengths.
 TEST(Radiometry, PublishedCoefficientsGiveTheReflectanceFactorsOfTheTheory) {
   if (published("PTFE.coeff.csv").empty()) GTEST_SKIP() << absent("PTFE.coeff.csv");
   struct Row {
@@ -152,7 +152,7 @@ Direction any_direction(double largest_theta) { return {between(0, largest_theta
 
 constexpr Family families[] = {Family::isotropic, Family::germer2017, Family::anisotropic};
 
-// Theory 4.3. Both are sums of up to 2560 terms, with f11 up to 2 and elements as large in these random models.
+// Theory 5.1. Both are sums of up to 2560 terms, with f11 up to 2 and elements as large in these random models.
 RC_GTEST_PROP(Radiometry, FourNodesAndTwelveAzimuthsAreExactForOrders7And4, ()) {
   const Model model = random_model(Family::isotropic, {7, 4}, 1, *rc::gen::arbitrary<std::uint32_t>());
   const Direction incident = any_direction(pi / 2);
@@ -216,7 +216,7 @@ TEST(Radiometry, BihemisphericalReflectanceIsTheMeanOfTheDirectionalOne) {
     }
 }
 
-// Theory 4.3, from the coefficients of Eq. 9: the only ones that count.
+// Theory 5.1, from the coefficients of Eq. 9: the only ones that count.
 TEST(Radiometry, BihemisphericalReflectanceOfPublishedCoefficientsHasThreeTerms) {
   const Model model = random_model(Family::germer2017, {7, 0}, 0, 5);
   double expected = 0;
@@ -304,7 +304,7 @@ TEST(Radiometry, MeanOverTheHemisphereIsTheClosedForm) {
   EXPECT_EQ(static_cast<std::size_t>(dhr.geometries), mean_rule(beam, all, dhr.nodes).size());
 }
 
-// Theory 4.3, with Legendre's polynomials. R_n^0(ρ) = P_{n/2}(2u − 1), so K_n^0 is that times √((n+1)/2π).
+// Theory 5.1, with Legendre's polynomials. R_n^0(ρ) = P_{n/2}(2u − 1), so K_n^0 is that times √((n+1)/2π).
 TEST(Radiometry, ReflectanceIntoARingIsTheClosedFormWithLegendrePolynomials) {
   const auto p = [](int q, double x) { return q < 0 ? 1 : std::legendre(static_cast<unsigned>(q), x); };
   const auto big_q = [&](int q, double x) { return q == 0 ? x : (p(q + 1, x) - p(q - 1, x)) / (2 * q + 1); };

@@ -74,7 +74,7 @@ TEST(Comparison, RefusesWhatHasNoAnswer) {
   EXPECT_NE(message_of([&] { compare(model, huge); }).find("sample 2: m44"), std::string::npos);
 }
 
-// Theory 2.5: neither model was fitted to the random directions. Printed digits.
+// Theory 2.3: neither model was fitted to the random directions. Printed digits.
 TEST(PublishedComparison, WithRandomDirectionsGivesTheKnownResiduals) {
   const std::string file = published("PTFE.data.random.csv");
   if (file.empty()) GTEST_SKIP() << absent("PTFE.data.random.csv");

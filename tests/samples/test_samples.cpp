@@ -88,7 +88,7 @@ TEST(Samples, ThatAreInvalidAreRefusedWithTheirNumber) {
   };
   EXPECT_EQ(refusal([](Sample& s) { s.wavelength = -0.5; }), "sample 3: wavelength = -500 nm, must be positive");
   EXPECT_EQ(refusal([](Sample& s) { s.geometry.reflected.theta = radians(91); }),
-            "sample 3: theta_r = 91 degrees, must be in 0…90");
+            "sample 3: theta_r = 91 degrees, must be in 0...90");
   EXPECT_EQ(refusal([](Sample& s) { s.f11 = nan_value; }), "sample 3: f11 = nan, must be finite");
   EXPECT_EQ(refusal([](Sample& s) { s.normalized(1, 3) = nan_value; }), "sample 3: m24 = nan, must be finite");
   EXPECT_EQ(refusal([](Sample& s) { s.uncertainty(0, 0) = nan_value; }),
@@ -186,9 +186,8 @@ TEST(RandomGeometries, HaveNoRelationBetweenTheTwoBeams) {
 
 TEST(RandomGeometries, RefuseANegativeCountAndAnglesOutsideTheHemisphere) {
   EXPECT_TRUE(random_geometries(0, 1).empty());
-  EXPECT_EQ(message_of([] { random_geometries(-1, 1); }), "random_geometries: count = -1, must not be negative");
-  EXPECT_EQ(message_of([] { random_geometries(1, 1, radians(91)); }),
-            "random_geometries: theta_max = 91 degrees, must be in (0, 90]");
+  EXPECT_EQ(message_of([] { random_geometries(-1, 1); }), "count = -1, must not be negative");
+  EXPECT_EQ(message_of([] { random_geometries(1, 1, radians(91)); }), "theta_max = 91 degrees, must be in (0, 90]");
   EXPECT_THROW(random_geometries(1, 1, 0), std::invalid_argument);
   EXPECT_NO_THROW(random_geometries(1, 1, radians(90)));
 }

@@ -47,7 +47,7 @@ TEST(Budget, IsTheSumOfItsTermsAndKeepsThem) {
   EXPECT_NEAR(standard_uncertainty(depolarization_gradient(f), b.terms[1].covariance), 0, 1e-10);
 }
 
-// GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.2).
+// GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.6).
 TEST(Budget, OfADetectorAngleHasTheTangentOfTheMeasurementEquation) {
   Model lambertian = material("ptfe-532");
   for (FittedBlock& block : lambertian.blocks)
@@ -147,11 +147,12 @@ TEST(Budget, RefusesTermsThatMakeNoSense) {
   const auto of = [&](const TypeBTerm& term, const Geometry& g) {
     return message_of([&] { effects(term, ptfe.prepared, g); });
   };
-  EXPECT_EQ(of({"plaque", ErrorOf::scale, -0.1}, oblique), "budget: uncertainty -0.1 of plaque, must be in [0, 10]");
+  EXPECT_EQ(of({"plaque", ErrorOf::scale, -0.1}, oblique), "uncertainty -0.1 of plaque, must be in [0, 10]");
   EXPECT_EQ(of({"arm", ErrorOf::theta_r, 0.1}, {{}, {std::acos(0.0), 0}}),
-            "budget: theta_r = 90 degrees, where no measurement tells f11 and a term theta_r is infinite");
+            "theta_r = 90 degrees, where no measurement tells f11 and a term theta_r is infinite");
   EXPECT_THROW(effects({"plaque", ErrorOf::scale, 0.1}, ptfe.prepared, {{2, 0}, {}}), std::invalid_argument);
-  EXPECT_EQ(message_of([] { error_from("phi"); }), "\"phi\": expected scale, theta_i, theta_r, azimuth or calibration");
+  EXPECT_EQ(message_of([] { error_from("phi"); }),
+            "kind of error 'phi' is not one of scale, theta_i, theta_r, azimuth, calibration");
   for (const ErrorOf what :
        {ErrorOf::scale, ErrorOf::theta_i, ErrorOf::theta_r, ErrorOf::azimuth, ErrorOf::calibration})
     EXPECT_EQ(error_from(to_string(what)), what);

@@ -26,7 +26,7 @@ namespace {
 
 const Geometry oblique{{0.8, 0.3}, {0.5, 2.6}};
 
-/// ∫ f11 cos θ_r dΩ_r, exact to rounding for order 7: 5 nodes in u = 1 − cos θ and 12 azimuths (theory 4.3).
+/// ∫ f11 cos θ_r dΩ_r, exact to rounding for order 7: 5 nodes in u = 1 − cos θ and 12 azimuths (theory 5.1).
 double reflectance_of(const PreparedModel& model, const Direction& incident) {
   double sum = 0;
   constexpr int azimuths = 12;
@@ -149,12 +149,12 @@ TEST(Draws, NeedACovarianceACountAndAWavelength) {
   const Model model = material("ptfe-532");
   EXPECT_EQ(message_of([&] { Draws{in_published_form(model)}; }), "the covariance of block 11 is not known");
   EXPECT_NO_THROW(require_semidefinite(in_published_form(model)));
-  EXPECT_EQ(message_of([&] { Draws(model, 1); }), "draws: count = 1, must be in 2...1000000");
+  EXPECT_EQ(message_of([&] { Draws(model, 1); }), "count = 1, must be in 2...1000000");
   EXPECT_THROW(Draws(model, 2).at(-1), std::invalid_argument);
   const PreparedModel prepared = prepare(model, 0.532);
-  EXPECT_EQ(message_of([&] { prepared.with(std::array{1.0}, 1); }), "with: 1 coefficients, expected 142");
+  EXPECT_EQ(message_of([&] { prepared.with(std::array{1.0}, 1); }), "1 coefficients, expected 142");
   EXPECT_EQ(message_of([&] { prepared.with(std::vector<double>(142, std::nan("")), 1); }),
-            "with: a number is not finite");
+            "a coefficient or the reflectance is not finite");
 }
 
 // JCGM 101, 7.7: of M = 1000 values the symmetric interval goes from number 25 to number 975. The shortest one of
@@ -186,16 +186,10 @@ TEST(Distribution, OfWhatDoesNotVaryHasNoSpreadAndNoCorrelation) {
 }
 
 TEST(Distribution, RefusesWhatHasNone) {
-  EXPECT_EQ(message_of([] { distribution(std::array{1.0}); }), "distribution: 1 values, at least 2 are needed");
-  EXPECT_EQ(message_of([] {
-              distribution(std::array{1.0, std::nan("")});
-            }),
-            "distribution: the value nan is not finite");
-  EXPECT_EQ(message_of([] {
-              distribution(std::array{1.0, 2.0}, 1);
-            }),
-            "distribution: coverage 1 is not between 0 and 1");
-  EXPECT_EQ(message_of([] { correlation(std::array{1.0, 2.0}, std::array{1.0}); }), "correlation: 2 and 1 values");
+  EXPECT_EQ(message_of([] { distribution(std::array{1.0}); }), "1 values, at least 2 are needed");
+  EXPECT_EQ(message_of([] { distribution(std::array{1.0, std::nan("")}); }), "the value nan is not finite");
+  EXPECT_EQ(message_of([] { distribution(std::array{1.0, 2.0}, 1); }), "coverage 1 is not between 0 and 1");
+  EXPECT_EQ(message_of([] { correlation(std::array{1.0, 2.0}, std::array{1.0}); }), "2 and 1 values");
   EXPECT_EQ(correlation(std::array{1.0, 2.0}, std::array{5.0, 5.0}), 0);
   EXPECT_EQ(correlation(std::array{1.0, 2.0}, std::array{5.0, 3.0}), -1);
 }

@@ -277,7 +277,7 @@ TEST(Uncertainty, OfTheSandwichWithItsOwnReflectanceIsRightToo) {
   EXPECT_NEAR(reflectance.value(), 1, 0.12);  // one number 200 times: 0.05
 }
 
-// Theory 4.3: statistical u(DHR(0)) .0004 at 532 nm and .0007 at 1064 nm.
+// Theory 5.1: statistical u(DHR(0)) .0004 at 532 nm and .0007 at 1064 nm.
 TEST(Uncertainty, OfTheReflectanceOfPtfeIsThatOfTheTheory) {
   EXPECT_NEAR(prepare_uncertainty(material("ptfe-532"), 0.532).directional_hemispherical_reflectance({0, 0}), .0004,
               5e-5);
@@ -285,8 +285,8 @@ TEST(Uncertainty, OfTheReflectanceOfPtfeIsThatOfTheTheory) {
               5e-5);
 }
 
-// Theory 0.3 and 4.2: the data have one plane of incidence, and the published sets at other azimuths say what they do
-// not.
+// Theory 2.2 and theory 4.7: the data have one plane of incidence, and the published sets at other azimuths say what
+// they do not.
 TEST(Uncertainty, OfThePublishedSetsAsPrintedIsNotEstimableAwayFromThePlaneOfTheData) {
   const auto samples = simulate(material("ptfe-532"), std::array{0.532}, germer2017_grid(), 0.01, 1);
   const Model model = fit(samples, {Family::germer2017, {7, 4}}).model;

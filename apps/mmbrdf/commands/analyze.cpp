@@ -65,7 +65,7 @@ void require_possible(const Stokes& light) {
   try {
     degree_of_polarization(light);
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("--stokes: " + plain_message(error));
+    throw std::invalid_argument(std::string("--stokes: ") + error.what());
   }
 }
 
@@ -78,7 +78,7 @@ std::unique_ptr<Analyzer> analyzer_of(const Model& model, const Options& options
   try {
     analyzer = std::make_unique<Analyzer>(model, analysis);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
+    throw std::runtime_error(base_name(options.model) + ": " + error.what());
   }
   if (!analyzer->unknown_uncertainty().empty()) warn("uncertainties are not known: " + analyzer->unknown_uncertainty());
   return analyzer;

@@ -41,7 +41,7 @@ Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, co
   try {
     return calibrate(file.references, options);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(name + ": " + plain_message(error));
+    throw std::runtime_error(name + ": " + error.what());
   }
 }
 

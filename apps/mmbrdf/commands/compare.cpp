@@ -68,7 +68,7 @@ std::vector<Sample> samples_of(const Model& first, const Model& second, const Op
   try {
     return simulate(second, wavelengths, at);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(base_name(options.second) + ": " + plain_message(error));
+    throw std::runtime_error(base_name(options.second) + ": " + error.what());
   }
 }
 
@@ -188,7 +188,7 @@ Comparison compared(const Model& first, const std::vector<Sample>& samples, cons
   try {
     return compare(first, samples, options.as_printed ? Rotation::as_printed : Rotation::covariant);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(base_name(options.first) + ": " + plain_message(error));
+    throw std::runtime_error(base_name(options.first) + ": " + error.what());
   }
 }
 

@@ -133,7 +133,7 @@ FitResult fitted(const Options& options, long& rows) {
     if (!options.instrument.empty()) add_instrument(result, all, options);
     return result;
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(data_name(options.data) + ": " + plain_message(error));
+    throw std::runtime_error(data_name(options.data) + ": " + error.what());
   }
 }
 

@@ -48,7 +48,7 @@ std::vector<Sample> reduced_file(const Calibration& instrument, const Options& o
       try {
         samples.push_back(reduced(reduction, raw, *options.solid_angle, options.noise));
       } catch (const std::invalid_argument& error) {
-        throw reader.error(plain_message(error));
+        throw reader.error(error.what());
       }
     }
   });

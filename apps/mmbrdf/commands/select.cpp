@@ -58,7 +58,7 @@ std::vector<Partition> partitions_of(const Options& options, std::span<const Sam
     try {
       result.push_back(folds_by_incident_angle(samples));
     } catch (const std::invalid_argument& error) {
-      note(plain_message(error) + "; folds alone decide, and see nothing between the angles measured");
+      note(error.what() + std::string("; folds alone decide, and see nothing between the angles measured"));
     }
     // Without one of two wavelengths no power could be tested.
     if (wavelengths(samples).size() > 2) result.push_back(folds_by_wavelength(samples));
@@ -90,7 +90,7 @@ void select(const Options& options) {
     print({name, to_string(options.weights), static_cast<long>(samples.size()), there, asked, partitions, selection},
           options.format);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(name + ": " + plain_message(error));
+    throw std::runtime_error(name + ": " + error.what());
   }
 }
 

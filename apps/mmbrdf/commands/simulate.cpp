@@ -46,7 +46,7 @@ std::vector<Sample> simulated(const Model& model, const std::vector<double>& wav
   try {
     return simulate(model, wavelengths, geometries(options.grid, options.seed), options.speckle, options.seed);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
+    throw std::runtime_error(base_name(options.model) + ": " + error.what());
   }
 }
 
@@ -80,7 +80,7 @@ void simulate_readings(const Options& options) {
   try {
     simulate_raw(model, wavelengths[0], geometries(options.grid, options.seed), raw);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(base_name(options.model) + ": " + plain_message(error));
+    throw std::runtime_error(base_name(options.model) + ": " + error.what());
   }
   warn_if_outside(model, measured, base_name(options.model));
 }

@@ -235,7 +235,7 @@ void study(Options o) {
   try {
     for (int i = 0; i < o.splits; ++i) splits.push_back(split(q, o, o.seed + static_cast<unsigned long>(i)));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(data_name(o.data) + ": " + plain_message(error));
+    throw std::runtime_error(data_name(o.data) + ": " + error.what());
   }
   Model range;
   range.validity.wavelengths = {q.wavelength};

@@ -143,7 +143,7 @@ void save(const Model& model, const std::string& path) {
   try {
     save_model(path, model);
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(path + ": " + plain_message(error));
+    throw std::runtime_error(path + ": " + error.what());
   }
   if (is_built_in(path)) warn("a built-in model has the name " + path + " and comes first; the file is ./" + path);
 }

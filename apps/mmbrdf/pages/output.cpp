@@ -54,16 +54,6 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string plain_message(const std::exception& error) {
-  const std::string text = error.what();
-  for (const std::string name :
-       {"fit", "simulate", "compare", "subsets", "evaluate", "normalized", "degree_of_polarization", "budget",
-        "to_coefficients_csv", "to_json", "reduced", "common errors", "goniometer"}) {
-    if (text.starts_with(name + ": ")) return text.substr(name.size() + 2);
-  }
-  return text;
-}
-
 std::string element_columns(bool normalized) {
   std::string text;
   for (std::size_t element = 0; element < 16; ++element)

@@ -27,9 +27,6 @@ void note(const std::string& message);
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& words);
 
-/// What an error says, without the name of the library's function that begins some messages.
-std::string plain_message(const std::exception& error);
-
 /// 17 significant digits: reading them gives the same number.
 std::string exact(double value);
 

@@ -200,7 +200,7 @@ class RowsEvaluator {
         }
       }
     } catch (const std::invalid_argument& error) {
-      throw source.error(rows.numbers[row], plain_message(error));
+      throw source.error(rows.numbers[row], error.what());
     }
     if (binary_) append_npy(out);
     return outside;
@@ -262,7 +262,7 @@ Evaluated one_by_one(const AddedColumns& columns) {
       try {
         outside += leaves_known_range(columns.append(out, rows.wavelengths[row], rows.geometries[row])) ? 1 : 0;
       } catch (const std::invalid_argument& error) {
-        throw source.error(rows.numbers[row], plain_message(error));
+        throw source.error(rows.numbers[row], error.what());
       }
       out += '\n';
     }

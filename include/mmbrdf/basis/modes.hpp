@@ -6,7 +6,7 @@
 /// one evaluation serves them all. f11 is in sr⁻¹; the other elements are normalised, m_ij = f_ij / f11.
 ///
 ///   n, k   radial and azimuthal order of the first factor, which Eq. 15 gives to the incident side
-///   m, l   the same of the second factor
+///   m, l   radial and azimuthal order of the second factor
 #pragma once
 
 #include <string>
@@ -19,9 +19,9 @@ namespace mmbrdf {
 /// Which modes a basis has.
 enum class Family {
   isotropic,    ///< spin-weighted modes, k + l = 2 (σ_out + σ_in): exactly rotation-covariant, mirror-symmetric and
-                ///< reciprocal. 142 modes at orders 7, 4. Theory 2.5.
+                ///< reciprocal. 142 modes at orders 7, 4. Theory 2.3.
   germer2017,   ///< the index sets of the published coefficient files, 330 modes at orders 7, 4 (Eqs. 8, 14–16). They
-                ///< hold at phi_i = 0 only, so models are evaluated there and turned (theory 0.3).
+                ///< hold at phi_i = 0 only, so models are evaluated there and turned (theory 2.2).
   anisotropic,  ///< every index: the complete reciprocal expansion, Eqs. 1, 2 and 14–16. 2376 modes at orders 7, 4.
 };
 
@@ -88,10 +88,15 @@ int mode_count(const std::vector<Block>& blocks);
 
 /// Throws std::invalid_argument, naming mode and rule, unless |k| ≤ n ≤ max_order, |l| ≤ m ≤ max_order, n − k and m − l
 /// even, and the family's rules hold:
-///   m11, m22, m33, m44 of germer2017 and anisotropic   (n, k) not before (m, l): n > m, or n = m and (|k|, k) ≥ (|l|,
-///   l); germer2017    n − m even                           m11: k = l ≥ 0 isotropic     m11, m44: k + l = 0, n ≥ m, k
-///   ≥ 0    m14: k + l = 0, k > 0   g, h: k + l = 2
-///                 u: k + l = 4, n > m or n = m and k ≥ l           v: k + l = 0, n ≥ m
+///   family                    function   rule
+///   germer2017, anisotropic   mii        n > m, or n = m and (|k|, k) ≥ (|l|, l): (n, k) does not come before (m, l)
+///   germer2017                all        n − m even
+///                             m11        k = l ≥ 0
+///   isotropic                 m11, m44   k + l = 0, n ≥ m, k ≥ 0
+///                             m14        k + l = 0, k > 0
+///                             g, h       k + l = 2
+///                             u          k + l = 4, n > m, or n = m and k ≥ l
+///                             v          k + l = 0, n ≥ m
 void require_valid(const Mode& mode, Family family);
 
 /// "22 (n, m, k, l) = (4, 2, 4, 2)" for messages.
@@ -104,8 +109,8 @@ std::string to_string(Function function);
 std::string to_string(DiscMapping mapping);
 /// Of row and column, from 0, on or above the diagonal: m11 … m44. Throws std::invalid_argument for others.
 Function function_of(int row, int column);
-Family family_from(const std::string& name);             ///< throws std::invalid_argument for another name
-Function function_from(const std::string& name);         ///< the same
-DiscMapping disc_mapping_from(const std::string& name);  ///< the same
+Family family_from(const std::string& name);  ///< all three throw std::invalid_argument for another name
+Function function_from(const std::string& name);
+DiscMapping disc_mapping_from(const std::string& name);
 
 }  // namespace mmbrdf

@@ -26,7 +26,8 @@ struct DiscPoint {
 
 DiscPoint disc_point(const Direction& direction, DiscMapping mapping);
 
-/// The same from a unit vector, without trigonometry. Not checked: the vector must have length 1 and z ≥ 0.
+/// Point of the unit disc from a unit vector, without trigonometry. Not checked: the vector must have length 1 and z ≥
+/// 0.
 DiscPoint disc_point(const Vector3& unit_vector, DiscMapping mapping);
 
 /// Largest radial order that any function of this library takes.

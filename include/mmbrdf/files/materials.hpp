@@ -14,7 +14,7 @@ namespace mmbrdf {
 /// Their provenance says from which data and with which command each was made.
 std::vector<std::string> materials();
 
-/// Throws std::invalid_argument, with the names there are, for another name.
+/// A built-in model. Throws std::invalid_argument, with the names there are, for another name.
 Model material(std::string_view name);
 
 }  // namespace mmbrdf

@@ -96,7 +96,7 @@ struct Outlier {
 std::vector<Outlier> outliers(const SampleDiagnostics& diagnostics, double threshold = 5);
 
 /// A model alone, at one wavelength: theta_i and theta_r in steps of 2.5 degrees up to theta_max, phi_r − phi_i in
-/// steps of 7.5 degrees from 0 to 180 (theory 4.4).
+/// steps of 7.5 degrees from 0 to 180 (theory 6.2).
 struct ModelDiagnostics {
   struct Extreme {
     double value = 0;

@@ -45,12 +45,12 @@ struct Basis {
 
 enum class Weights {
   none,  ///< every row counts the same
-  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 4.1).
+  speckle,  ///< 1/σ² of the speckle law σ = C √(cos θi / cos θr), relative for f11 and absolute for m_ij (theory 3.3).
             ///< f11 is then fitted twice: the first, unweighted fit tells what σ is relative to.
   data,  ///< 1/u² of the samples' own uncertainties u, all of which must be known: data_weights(), with the reflectance
          ///< of the first, unweighted fit.
   estimated,  ///< 1/σ² of the law that estimate_noise() finds, at each wavelength, in what the first fit leaves of the
-              ///< elements 14 and 41; as above otherwise.
+              ///< elements 14 and 41; relative and absolute as for speckle.
 };
 
 enum class Covariance {
@@ -116,7 +116,8 @@ class FitAccumulator {
   /// As if all of other's samples had been added here. Throws std::invalid_argument for another basis.
   void merge(const FitAccumulator& other);
 
-  /// The same samples at other orders. Throws std::invalid_argument if one is higher than those of the basis.
+  /// An accumulator of the same samples at other orders. Throws std::invalid_argument if one is higher than those of
+  /// the basis.
   FitAccumulator at_orders(const Orders& orders) const;
 
   long samples() const { return samples_; }
@@ -174,7 +175,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis = {}, const Fi
 /// the sample's number, where weight() does or f11 of the model is not positive.
 std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model& model, const NoiseLaw& law);
 
-/// The same for the speckle law with scale 1: w = cos θr / cos θi.
+/// noise_weights() of the speckle law with scale 1: w = cos θr / cos θi.
 std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model);
 
 /// 1/u² of the samples' uncertainties: for f11 / reflectance (reflectance / u)², and turned as at_zero_azimuth() turns
@@ -184,7 +185,8 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
                                   const ReflectanceTable& reflectance = {});
 
 /// The weights of these names, from a fit of the same samples: the f11 and the reflectance of its model, and for
-/// Weights::estimated its noise. Empty for none. Throws as the functions above, and for estimated without noise.
+/// Weights::estimated its noise. Empty for none. Throws as noise_weights() and data_weights(), and for
+/// estimated without noise.
 std::vector<Mueller> fit_weights(std::span<const Sample> samples, const Basis& basis, const FitResult& fitted,
                                  Weights weights);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which orders, and which powers of the wavelength, the data support (theory 4.5).
+/// Which orders, and which powers of the wavelength, the data support (theory 3.4).
 ///
 /// f11 and the other elements are fitted apart, so their orders are chosen apart; the highest power of the wavelength
 /// is one for both. Each candidate is fitted to all samples, and again without each fold of each partition. Of n rows

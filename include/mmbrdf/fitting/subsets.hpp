@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The subset method (Germer 2017, section 5): disjoint parts of the data are fitted apart, and the spread of what the
 /// fits predict is a measure of the uncertainty of one of them. The covariance of a single fit predicts that spread
-/// (theory 4.2), so the method tests the covariance; alone it knows little: with k parts a standard deviation has k − 1
+/// (theory 4.8), so the method tests the covariance; alone it knows little: with k parts a standard deviation has k − 1
 /// degrees of freedom, and what all parts share (scale, angles, misfit of the model) does not show in it.
 #pragma once
 
@@ -38,8 +38,8 @@ using PolarizedCurve = std::vector<PolarizedBrdf>;
 PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries,
                                Rotation rotation = Rotation::covariant);
 
-/// Its standard uncertainty in first order. f_ab is linear in F11, F12, F21, F22 of the sp frame, so
-///   u²(f_ab) = ¼ Σ_ee' c_e c_e' cov(F_e, F_e'),  c = (1, a, b, ab)   (theory 4.2).
+/// Standard uncertainty of polarized_curve() in first order. f_ab is linear in F11, F12, F21, F22 of the sp frame, so
+///   u²(f_ab) = ¼ Σ_ee' c_e c_e' cov(F_e, F_e'),  c = (1, a, b, ab)   (theory 4.8).
 /// Throws std::invalid_argument as prepare_uncertainty does: without covariance, it is not known.
 PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
                                      Rotation rotation = Rotation::covariant);

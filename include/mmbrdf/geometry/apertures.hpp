@@ -57,14 +57,14 @@ class Aperture {
   /// ∫ g cos θ dΩ ≈ Σ weight g(direction), for g smooth on the sphere; where the projected solid angle is 0, the mean
   /// of g. Ports come last, with negative weights. Nodes are within the hemisphere.
   ///   about an axis     `nodes` Gauss–Legendre in 1 − cos α × 4 nodes − 2 equidistant azimuths
-  ///   rings and caps    the same about the normal, where it is exact for polynomials of degree 4 nodes − 3 in the
-  ///                     disc coordinates of DiscMapping::lambert
+  ///   rings and caps    as about an axis, the normal: exact for polynomials of degree 4 nodes − 3 in the disc
+  ///                     coordinates of DiscMapping::lambert
   ///   rectangles        2 nodes × 2 nodes Gauss–Legendre in the angles arctan(X tan half_theta), arctan(Y …)
   /// Throws std::invalid_argument unless 1 ≤ nodes ≤ most_nodes.
   std::vector<WeightedDirection> quadrature(int nodes) const;
   static constexpr int most_nodes = 1000;
 
-  /// The same with weights that add up to 1, for the mean of g weighted with projected solid angle.
+  /// The nodes of quadrature() with weights that add up to 1, for the mean of g weighted with projected solid angle.
   std::vector<WeightedDirection> mean_rule(int nodes) const;
 
  private:

@@ -53,15 +53,15 @@ struct WeightedGeometry {
 };
 
 /// Throws std::invalid_argument, naming the angle in degrees, unless both polar angles are in [0, π/2] and all four
-/// angles are finite. `what` begins the message.
-void require_valid(const Geometry& geometry, const char* what);
+/// angles are finite. `where`, such as "sample 3", begins the message.
+void require_valid(const Geometry& geometry, const char* where = "");
 
 /// Source and detector exchanged.
 Geometry exchanged(const Geometry& geometry);
 
 /// Which axes (e1, e2) the Stokes components refer to, for each of the two beams.
 enum class Frame {
-  xy,                ///< (y, x): the axes at the surface normal, carried along the meridian to the beam (B2). No
+  xy,                ///< (y, x): the axes at the surface normal, carried along the meridian to the beam. No
                      ///< singularity. y ≈ −y_lab for scattered and +y_lab for incident light near the normal.
   sp,                ///< (s, p): s = z × k / |z × k|, p = k × s. At theta = 0, s follows the azimuth that was given.
   scattering_plane,  ///< (⊥, ∥): ⊥ = k_in × k_out / |…| for both beams, ∥ = k × ⊥.
@@ -72,14 +72,14 @@ std::string to_string(Frame frame);
 Frame frame_from(const std::string& name);
 
 /// Angle in radians from the frame's (e1, e2) axes to (y, x), separately for each beam:
-///   M_xy = rotator(scattered) · M_frame · rotator(incident)ᵀ          (B4)
+///   M_xy = rotator(scattered) · M_frame · rotator(incident)ᵀ          (theory 1.1)
 struct FrameAngles {
   double scattered = 0;
   double incident = 0;
 };
 
 /// Singular cases, all decided by the azimuths that were given:
-///   theta = 0 in `sp`          s follows phi, as elsewhere: scattered = −phi_r, incident = +phi_i (B5);
+///   theta = 0 in `sp`          s follows phi, as elsewhere: scattered = −phi_r, incident = +phi_i (theory 1.1);
 ///   |k_in × k_out| < parallel_limit in `scattering_plane`, which is retro-reflection (k_out = −k_in) or light straight
 ///   through (k_out = +k_in, both beams grazing): ⊥ is the s axis of the incident beam, the limit within the plane of
 ///   incidence.
@@ -97,7 +97,7 @@ Mueller change_frame(const Mueller& m, const Geometry& geometry, Frame from, Fra
 MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to);
 inline constexpr double frame_error = 1e-14;
 
-/// The matrix of an isotropic sample at the geometry turned by `angle` about the normal, in the xy frame (B6):
+/// The matrix of an isotropic sample at the geometry turned by `angle` about the normal, in the xy frame (theory 1.2):
 ///   M_xy(phi_i + a, phi_r + a) = R(−a) M_xy(phi_i, phi_r) R(−a).
 Mueller turned(const Mueller& m_xy, double angle);
 

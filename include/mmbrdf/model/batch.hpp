@@ -43,7 +43,7 @@ struct BatchOptions {
 void evaluate(const PreparedModel& model, std::span<const Geometry> geometries, std::span<Mueller> out,
               const BatchOptions& options = {});
 
-/// From unit vectors, one matrix after the other: 16 numbers each, row by row.
+/// Matrices in sr⁻¹, from unit vectors, one matrix after the other: 16 numbers each, row by row.
 void evaluate(const PreparedModel& model, const VectorGeometries<double>& geometries, std::span<Mueller> out,
               const BatchOptions& options = {});
 void evaluate(const PreparedModel& model, const VectorGeometries<double>& geometries, std::span<double> out,
@@ -51,13 +51,13 @@ void evaluate(const PreparedModel& model, const VectorGeometries<double>& geomet
 void evaluate(const PreparedModel& model, const VectorGeometries<float>& geometries, std::span<float> out,
               const BatchOptions& options = {});
 
-/// From unit vectors, one array for each element.
+/// Matrices in sr⁻¹, from unit vectors, one array for each element.
 void evaluate(const PreparedModel& model, const VectorGeometries<double>& geometries, const MuellerColumns<double>& out,
               const BatchOptions& options = {});
 void evaluate(const PreparedModel& model, const VectorGeometries<float>& geometries, const MuellerColumns<float>& out,
               const BatchOptions& options = {});
 
-/// The same for one incident direction. Throws std::invalid_argument if wavelengths are given.
+/// Matrices in sr⁻¹ at one incident direction. Throws std::invalid_argument if wavelengths are given.
 void evaluate(const PreparedIncidence& model, std::span<const Direction> reflected, std::span<Mueller> out,
               const BatchOptions& options = {});
 void evaluate(const PreparedIncidence& model, const UnitVectors<double>& reflected, std::span<Mueller> out,

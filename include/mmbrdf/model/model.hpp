@@ -114,8 +114,8 @@ class PreparedModel {
   /// Throws std::invalid_argument if a polar angle is not in [0, π/2] or an angle is not finite.
   Mueller evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
 
-  /// The same for directions given as unit vectors (z ≥ 0, length 1 to 1e-6); along the normal, phi = 0.
-  /// Throws std::invalid_argument for other vectors.
+  /// The Mueller BRDF in sr⁻¹ for directions given as unit vectors (z ≥ 0, length 1 to 1e-6); along the normal, phi =
+  /// 0. Throws std::invalid_argument for other vectors.
   Mueller evaluate(const Vector3& incident, const Vector3& reflected, Frame frame = Frame::xy) const;
 
   /// One matrix for each geometry, the same to the last bit as one by one. Throws std::invalid_argument if the sizes
@@ -136,7 +136,7 @@ class PreparedModel {
   /// Throws std::invalid_argument for another number of coefficients, or numbers that are not finite.
   PreparedModel with(std::span<const double> coefficients, double reflectance) const;
 
-  /// Contracted once more, for many reflected directions at one incident direction.
+  /// The model at one incident direction, for many reflected ones.
   PreparedIncidence at(const Direction& incident) const;
 
   double wavelength() const { return wavelength_; }
@@ -153,7 +153,7 @@ class PreparedModel {
   void set(std::vector<double> coefficients);
   std::shared_ptr<const Pattern> pattern_;
   std::vector<double> of_modes_;  // coefficients at this wavelength
-  std::vector<double> of_form_;   // the same as the kernel takes them
+  std::vector<double> of_form_;   // the coefficients as the kernel takes them
   double reflectance_ = 1;
   double wavelength_ = 0;
 };

@@ -22,7 +22,7 @@ struct Solution {
   long degrees_of_freedom() const { return rows - rank; }
   /// ‖A x − b‖² / (rows − rank): the estimated variance of a row of unit weight. 0 without degrees of freedom.
   double variance() const;
-  /// Whether the rows determine gᵀx: ‖g − V_r V_rᵀ g‖ ≤ 1e−8 ‖g‖ (theory 4.2).
+  /// Whether the rows determine gᵀx: ‖g − V_r V_rᵀ g‖ ≤ 1e−8 ‖g‖ (theory 4.7).
   bool estimable(std::span<const double> g) const;
 };
 

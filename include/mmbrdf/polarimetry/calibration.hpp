@@ -58,7 +58,7 @@ struct FittedReference {
   double gain = 1;                 ///< empty: of all its readings, with mean 1 over the empty ones
   DiattenuatorRetarder element;    ///< polarizer, wafer: tau, psi and delta
   Mueller expected;                ///< its matrix divided by element 11
-  Mueller measured;                ///< the same from its readings
+  Mueller measured;                ///< the matrix of the reference from its readings
   double eigenvalue_mismatch = 0;  ///< wafer: |λ1 λ2 − |λ3|²| / τ², 0 for one that does not depolarize
 };
 
@@ -124,8 +124,8 @@ inline constexpr double least_identifiability = 1e-4;
 /// above worst_condition; and for readings and noise so far apart that no finite numbers are left.
 Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options);
 
-/// The eight instruments that explain the same readings: the signs of the
-/// components 2, 3 and 4 of all states, W → D W, A → A D.
+/// The eight instruments that explain the same readings: the signs of the components 2, 3 and 4 of all
+/// states, W → D W, A → A D.
 Polarimeter with_signs(const Polarimeter& polarimeter, int s2, int s3, int s4);
 
 }  // namespace mmbrdf

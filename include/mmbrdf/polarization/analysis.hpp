@@ -35,9 +35,9 @@ double polarizance(const Mueller& m);
 double degree_of_polarization(const Stokes& light);
 inline constexpr double stokes_tolerance = 1e-12;  ///< relative to S1
 
-/// The same for M · incident; 0 where there is no light but for rounding, as behind crossed polarizers. May exceed 1
-/// for a matrix that is not realizable. Throws std::invalid_argument for such incident light as above, or if the matrix
-/// makes an intensity below 0 or polarized light without intensity.
+/// Degree of polarization of M · incident; 0 where there is no light but for rounding, as behind crossed polarizers.
+/// May exceed 1 for a matrix that is not realizable. Throws std::invalid_argument for incident light that cannot exist,
+/// or if the matrix makes an intensity below 0 or polarized light without intensity.
 double degree_of_polarization(const Mueller& m, const Stokes& incident);
 
 /// BRDFs between linear polarizations in sr⁻¹; the first letter is the incident polarization.
@@ -47,14 +47,14 @@ struct PolarizedBrdf {
 
 /// f_ab = (M11 + a M12 + b M21 + a b M22) / 2 of a matrix in the sp frame, a = +1 for incident s, −1 for p, and b so
 /// for the scattered light: what a polarizer in front of the source and another in front of the detector leave
-/// (theory 4.2). None is negative for a realizable matrix, and ss + sp + ps + pp = 2 M11.
+/// (theory 6.1). None is negative for a realizable matrix, and ss + sp + ps + pp = 2 M11.
 PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp);
 
 /// Hermitian, 4 × 4, row-major. In units of M.
 using Coherency = std::array<std::complex<double>, 16>;
 
 /// T = ¼ Σ M_ij σ_i ⊗ conj σ_j with σ = {1, diag(1, −1), (0 1; 1 0), (0 −i; i 0)}. tr T = M11, tr T² = ¼ Σ M_ij².
-/// A Jones matrix with rows J has T = ½ v v†, v = (J11, J12, J21, J22). Cloude 1986, theory 4.4.
+/// A Jones matrix with rows J has T = ½ v v†, v = (J11, J12, J21, J22). Cloude 1986, theory 6.1.
 Coherency coherency(const Mueller& m);
 
 /// The inverse: M_ij = tr[T (σ_i ⊗ conj σ_j)]. Only the Hermitian part of T counts.
@@ -99,7 +99,7 @@ struct Projection {
   double change;  ///< √(Σ (matrix − M)_ij²), in units of M; 0 if M was realizable
 };
 
-/// Eigenvalues of T are moved to the nearest point with all ≥ 0 and the same sum (theory 4.4). A realizable matrix
+/// Eigenvalues of T are moved to the nearest point with all ≥ 0 and the same sum (theory 6.2). A realizable matrix
 /// comes back with the same bits, so projecting again changes nothing. With M11 = 0 the result is the zero matrix.
 /// Throws std::invalid_argument if M11 < 0: no realizable matrix has it.
 Projection nearest_realizable(const Mueller& m);

@@ -16,7 +16,7 @@ struct MuellerCovariance {
   double& operator()(std::size_t element, std::size_t other) { return values[16 * element + other]; }
 };
 
-/// Square roots of the diagonal.
+/// Of each element: the square roots of the covariance's diagonal.
 Mueller standard_uncertainty(const MuellerCovariance& covariance);
 
 /// Of the elements of left · M · right, from those of M.

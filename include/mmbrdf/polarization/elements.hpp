@@ -9,7 +9,7 @@
 
 namespace mmbrdf {
 
-/// The same element turned by `azimuth` from e1 towards e2: rotator(−azimuth) · element · rotator(azimuth).
+/// An element turned by `azimuth` from e1 towards e2: rotator(−azimuth) · element · rotator(azimuth).
 Mueller rotated(const Mueller& element, double azimuth);
 
 /// An element that keeps e1 and e2 apart, with amplitudes r1 and r2 on them: r2 / r1 = tan psi · exp(i delta).
@@ -38,10 +38,10 @@ struct Film {
   std::complex<double> substrate_index = 1;
 };
 
-/// Its specular reflection at a wavelength (micrometres) and angle of incidence, in the axes (s, p, k) of each beam: Δ
-/// = π at normal incidence. Fresnel's coefficients of one layer. Throws std::invalid_argument for an angle that is not
-/// in [0, π/2), indices with n ≤ 0 or k < 0, a negative thickness, a wavelength that is not positive, or numbers so
-/// large that no finite reflection is left.
+/// Specular reflection of a film at a wavelength (micrometres) and angle of incidence, in the axes (s, p, k) of each
+/// beam: Δ = π at normal incidence. Fresnel's coefficients of one layer. Throws std::invalid_argument for an angle that
+/// is not in [0, π/2), indices with n ≤ 0 or k < 0, a negative thickness, a wavelength that is not positive, or numbers
+/// so large that no finite reflection is left.
 DiattenuatorRetarder reflection(const Film& film, double wavelength, double theta_i);
 
 }  // namespace mmbrdf

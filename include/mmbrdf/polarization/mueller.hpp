@@ -40,7 +40,7 @@ Mueller transpose(const Mueller& m);
 /// M / M11. Throws std::invalid_argument if M11 is 0 or not finite.
 Mueller normalized(const Mueller& m);
 
-/// R(angle): the same light, described in axes turned by `angle` radians from e1 towards e2 (theory B3).
+/// R(angle): the same light, described in axes turned by `angle` radians from e1 towards e2 (theory 1.1).
 ///   rotator(π/4) * [1, 1, 0, 0] = [1, 0, −1, 0].        Period π; rotator(a)ᵀ = rotator(−a).
 Mueller rotator(double angle);
 
@@ -57,7 +57,7 @@ Mueller exchanged(const Mueller& m);
 /// P M P with P = diag(1, 1, −1, −1): the matrix of the mirror image, at the mirrored geometry.
 Mueller mirrored(const Mueller& m);
 
-/// How Stokes vectors are written elsewhere (theory 1.3). A convention is the sign pattern D of the Stokes
+/// How Stokes vectors are written elsewhere (docs/conventions.md). A convention is the sign pattern D of the Stokes
 /// components relative to this project's; M' = D M D. D changes no modulus, so no test of realizability can find a
 /// wrong one: store the convention with the data.
 enum class StokesConvention {
@@ -71,11 +71,11 @@ enum class StokesConvention {
   p_first_right,
   /// D = (1, −1, 1, 1): axes (p, s), a left-handed pair; S4 = left − right. Avoid.
   p_first_left_handed_axes_left,
-  /// D = (1, −1, 1, −1): as before with S4 = right − left. Avoid.
+  /// D = (1, −1, 1, −1): axes (p, s), a left-handed pair; S4 = right − left. Avoid.
   p_first_left_handed_axes_right,
 };
 
-/// The same matrix written in another convention. convert(M, c, c) = M, and it is its own inverse with from and to
+/// D M D, the matrix as another convention writes it. convert(M, c, c) = M, and it is its own inverse with from and to
 /// exchanged.  convert(M, germer2017, s_first_right) changes the sign of elements 14, 24, 34, 41, 42, 43.
 Mueller convert(const Mueller& m, StokesConvention from, StokesConvention to);
 Stokes convert(const Stokes& s, StokesConvention from, StokesConvention to);

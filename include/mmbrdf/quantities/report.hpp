@@ -23,8 +23,9 @@
 ///                         other elements: element ("11" … "44"), unit ("sr^-1" or "f11"), rms, mean, largest,
 ///                         wavelength_nm, at (compare)
 ///   reciprocity           row by block: block, rows, more_coefficients, rms, rms_without, F, p (symmetry_tests);
-///   mirror_symmetry       rms_without is what is left without the symmetry
-///   dependence_on_phi_i   the same; where the source has one azimuth in the samples, the sentence that says so
+///   mirror_symmetry       rows as for reciprocity; rms_without is what is left without the symmetry
+///   dependence_on_phi_i   rows as for reciprocity, without isotropy; where the source has one azimuth in the samples,
+///                         the sentence that says so
 ///   noise                 row by wavelength whose law is known: wavelength_nm, scale, u_scale, exponent_cos_theta_i,
 ///                         u_exponent_i, exponent_cos_theta_r, u_exponent_r (estimate_noise)
 ///   leverage              row by block: block, rank, largest_leverage, sample, at (sample_diagnostics)

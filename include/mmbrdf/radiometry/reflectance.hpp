@@ -19,15 +19,15 @@ std::vector<double> directional_hemispherical_slopes(const Block& f11, Family fa
                                                      const Direction& incident);
 
 /// Directional-hemispherical reflectance for unpolarized light, ∫ f11 cos θ_r dΩ_r over the hemisphere, reflectance
-/// table included (theory 4.3). Dimensionless. For a reflectance of about 1 exact to dhr_error: the integral of each
+/// table included (theory 5.1). Dimensionless. For a reflectance of about 1 exact to dhr_error: the integral of each
 /// mode is known,
 ///   ∫ R_n^0 cos θ dΩ = π (n = 0), −π/3 (n = 2), else 0 for lambert;   π (n = 0), else 0 for projected.
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident);
 inline constexpr double dhr_error = 1e-14;
 
-/// The same for incident light of any polarization, in the sp frame of the incident beam: s is {1, 1, 0, 0} and p is
-/// {1, −1, 0, 0}. Reflected flux, whatever its polarization, per incident flux. Integrated with hemisphere_nodes.
-/// Throws std::invalid_argument if the light cannot exist (degree_of_polarization).
+/// Directional-hemispherical reflectance for incident light of any polarization, in the sp frame of the incident beam:
+/// s is {1, 1, 0, 0} and p is {1, −1, 0, 0}. Reflected flux, whatever its polarization, per incident flux. Integrated
+/// with hemisphere_nodes. Throws std::invalid_argument if the light cannot exist (degree_of_polarization).
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident,
                                              const Stokes& light_sp);
 

@@ -37,8 +37,9 @@ std::vector<Mueller> residuals(const Model& model, std::span<const Sample> sampl
 /// (what would f_ij / f11 say there?), or for differences whose squares overflow.
 Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation = Rotation::covariant);
 
-/// Second − first model at each of the wavelengths (micrometres) and geometries. Throws as above, and where f11 of the
-/// second is not positive.
+/// Second − first model at each of the wavelengths (micrometres) and geometries. Throws
+/// std::invalid_argument for an invalid model, wavelength or geometry, without geometries, where f11 of either model is
+/// not positive, or for differences whose squares overflow.
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
                    std::span<const Geometry> geometries);
 

@@ -13,7 +13,7 @@
 namespace mmbrdf {
 
 /// σ² = scale² cos^a θi / cos^b θr: absolute for the normalised elements, relative for f11. The number of speckles in
-/// the receiver is proportional to cos θr / cos θi, so speckle alone has a = b = 1 (theory 4.1).
+/// the receiver is proportional to cos θr / cos θi, so speckle alone has a = b = 1 (theory 3.3).
 struct NoiseLaw {
   double scale = 1;               ///< σ at normal incidence and normal reflection
   double incident_exponent = 1;   ///< a

@@ -50,7 +50,7 @@ Sample at_zero_azimuth(const Sample& sample);
 /// tolerance. For angles and wavelengths that a file has rounded. The values must be finite.
 std::vector<std::size_t> grouped(std::span<const double> values, double tolerance);
 
-/// The grid of the published measurement (theory 1.4): theta_i = 0, 15, …, 75 degrees at azimuth π; reflected
+/// The grid of the published measurement (theory 3.1): theta_i = 0, 15, …, 75 degrees at azimuth π; reflected
 /// directions with direction cosines 0.1 (i, j), i² + j² < 100; none closer than 5 degrees to retro-reflection. 1824
 /// geometries, sorted by theta_i, then i, then j, as in the published file.
 std::vector<Geometry> germer2017_grid();

@@ -19,7 +19,7 @@ enum class ErrorOf {
   scale,        ///< all of F by one factor: reference reflectance, solid angle of the receiver, linearity. Relative
   theta_i,      ///< polar angle of the source, radians
   theta_r,      ///< polar angle of the detector, radians. It is in the measurement equation twice: F_measured(θr) =
-                ///< F(θr + d) cos(θr + d) / cos θr, so dF/dd = ∂F/∂θr − tan θr F (theory 4.2)
+                ///< F(θr + d) cos(θr + d) / cos θr, so dF/dd = ∂F/∂θr − tan θr F (theory 4.6)
   azimuth,      ///< phi_r − phi_i, radians
   calibration,  ///< each of the 15 elements m_ij = F_ij / f11, independently: absolute
 };

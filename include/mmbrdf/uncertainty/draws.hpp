@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Uncertainties by propagation of distributions: draws of a model's coefficients, and any quantity over them (GUM
-/// Supplement 1: JCGM 101:2008; theory 4.2). For what is far from linear: eigenvalues, entropy, decompositions, a
+/// Supplement 1: JCGM 101:2008; theory 4.4). For what is far from linear: eigenvalues, entropy, decompositions, a
 /// depolarization near 0.
 ///
 ///   const Draws draws(model, 1000, seed);
@@ -67,12 +67,13 @@ struct Distribution {
   double low = 0, high = 0;       ///< ends of the coverage interval, both among the values
 };
 
-/// Throws std::invalid_argument for fewer than two values, one that is not finite, or unless 0 < coverage < 1.
+/// Mean, standard deviation and coverage interval of drawn values. Throws std::invalid_argument for fewer than two
+/// values, one that is not finite, or unless 0 < coverage < 1.
 Distribution distribution(std::span<const double> values, double coverage = 0.95,
                           Interval interval = Interval::symmetric);
 
-/// Of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws std::invalid_argument if the
-/// counts differ, or as above.
+/// Correlation of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws
+/// std::invalid_argument if the counts differ, for fewer than two values, or one that is not finite.
 double correlation(std::span<const double> values, std::span<const double> others);
 
 }  // namespace mmbrdf

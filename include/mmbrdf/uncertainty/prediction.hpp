@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Standard uncertainties of what a model predicts: the covariance of its coefficients, propagated in first order (GUM;
-/// theory 4.2). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
+/// theory 4.1). They are those of the fit alone: of the noise in the data, and of the misfit as far as it looks like
 /// noise. What all data share (scale, angles, the sample) is not in them. A reflectance table that the fit took from
 /// its data has a covariance and counts; one that was given to it counts as exact.
 #pragma once
@@ -24,12 +24,14 @@ struct MuellerGradient {
 /// The covariance of a model's coefficients at one wavelength. May be used in many threads at once.
 class PreparedUncertainty {
  public:
-  /// Of the Mueller BRDF in sr⁻¹, as PreparedModel::evaluate gives it. Blocks are fitted apart, so for F = f11 m
+  /// Covariance of the Mueller BRDF in sr⁻¹, as PreparedModel::evaluate gives it. Blocks are fitted apart, so for F =
+  /// f11 m
   ///   u²(F) = m² u²(f11) + f11² u²(m);   elements of one block, and all through f11, are correlated.
   /// Throws std::invalid_argument for an invalid geometry.
   MuellerCovariance evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
 
-  /// The same of f11 in sr⁻¹ (element 11) and of the other elements divided by it.
+  /// Covariance of f11 in sr⁻¹ (element 11) and of the other elements divided by it. Throws std::invalid_argument for
+  /// an invalid geometry.
   MuellerCovariance normalized(const Geometry& geometry, Frame frame = Frame::xy) const;
 
   /// Slopes of the Mueller BRDF in sr⁻¹, and of a weighted sum of it over geometries, such as the mean over an
@@ -46,14 +48,14 @@ class PreparedUncertainty {
 
   std::size_t parameters() const;
 
-  /// Whether the data of the fit determine every element there. Where they do not, the uncertainties above are those of
-  /// the part that is determined: too small. The rows of the elements over the coefficients may lie in the combinations
-  /// that the data leave free with at most 1e-8 of their length (theory 4.2). Of a
-  /// deficient fit whose free combinations are not known nothing is. Throws std::invalid_argument for an invalid
-  /// geometry.
+  /// Whether the data of the fit determine every element at a geometry. Where they do not, its uncertainties are those
+  /// of the part that is determined: too small. The rows of the elements over the coefficients may lie in the
+  /// combinations that the data leave free with at most 1e-8 of their length (theory 4.7). Of a deficient fit whose
+  /// free combinations are not known nothing is. Throws std::invalid_argument for an invalid geometry.
   bool estimable(const Geometry& geometry) const;
 
-  /// Of the directional-hemispherical reflectance for unpolarized light. Throws as above.
+  /// Standard uncertainty of the directional-hemispherical reflectance for unpolarized light. Throws
+  /// std::invalid_argument for an invalid direction.
   double directional_hemispherical_reflectance(const Direction& incident) const;
 
  private:
