@@ -20,7 +20,7 @@ struct Arranged {
   int modes = 0;
 
   /// All powers of the wavelength, or only λ⁰ of them.
-  Arranged(const Model& model, Rotation rotation, bool all_powers) : arrangement(mmbrdf::arrangement(model, rotation)) {
+  Arranged(const Model& model, bool all_powers) : arrangement(mmbrdf::arrangement(model)) {
     const std::vector<double> of_modes = by_powers(model);
     const std::size_t count = of_modes.size() / static_cast<std::size_t>(model.powers + 1);
     modes = static_cast<int>(count);
@@ -110,7 +110,9 @@ template <class T>
 void register_variant(const Kernel& kernel, const Variant& v, const char* precision) {
   const std::string name = std::string(v.benchmark) + "/" + kernel.name + "/" + precision + v.name;
   benchmark::RegisterBenchmark(name.c_str(), [&kernel, &v](benchmark::State& state) {
-    const Arranged<T> arranged(bench_model(v.family, v.orders, v.spectral ? 1 : 0), v.rotation, v.spectral);
+    Model model = bench_model(v.family, v.orders, v.spectral ? 1 : 0);
+    model.rotation = v.rotation;
+    const Arranged<T> arranged(model, v.spectral);
     Data<T> data(v.count, v.layout);
     if (v.spectral) {
       data.points.wavelength = data.wavelengths.data();

@@ -32,13 +32,17 @@ class ModelObject : public std::enable_shared_from_this<ModelObject> {
   /// The argument wavelength_nm, or the model's own for None.
   Operand wavelength_operand(const std::optional<Given>& wavelength_nm) const;
 
+  /// The model, or the same as printed: no copy but for the first that is asked for.
+  const Model& turned(bool as_printed) const;
+
   /// At a wavelength in micrometres.
-  PreparedModel prepared(double wavelength, Rotation rotation) const;
+  PreparedModel prepared(double wavelength, bool as_printed) const;
 
  private:
   Model model_;
   mutable std::mutex mutex_;
-  mutable std::map<Rotation, PreparedModel> prepared_;
+  mutable std::optional<Model> printed_;
+  mutable std::map<bool, PreparedModel> prepared_;  // by as_printed
 };
 
 using ModelPointer = std::shared_ptr<ModelObject>;
@@ -49,8 +53,6 @@ std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
 
 /// {nm: reflectance}
 ReflectanceTable reflectance_table(const std::map<double, double>& by_nanometres);
-
-inline Rotation rotation(bool as_printed) { return as_printed ? Rotation::as_printed : Rotation::covariant; }
 
 /// format.format(value), as Python does it.
 inline std::string formatted(const char* format, double value) {

@@ -29,11 +29,11 @@ py::array_t<double> room_for_matrices(const Question& question, const std::optio
 py::object evaluate(const Question& question, Frame frame, int threads, const std::optional<py::array>& given) {
   auto result = room_for_matrices(question, given);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());  // sixteen doubles each
-  Range range(question.model());
+  Range range(question.object());
   without_gil([&] {
     question.each(
         threads, 2048,
-        [&](double wavelength) { return question.model().prepared(wavelength, question.rotation_of_model()); },
+        [&](double wavelength) { return question.prepared(wavelength); },
         [&](const PreparedModel& model, const Some& some) {
           range.count(model.wavelength(), some.geometries);
           if (!some.positions)
@@ -55,13 +55,13 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
   };
   auto result = new_array<double>(question.broadcast(), core);
   double* const out = result.mutable_data();
-  Range range(question.model());
+  Range range(question.object());
   without_gil([&] {
     question.each(
         threads, 64,
         [&](double wavelength) {
-          return Prepared{prepare_uncertainty(question.model().model(), wavelength, question.rotation_of_model()),
-                          question.model().prepared(wavelength, question.rotation_of_model())};
+          return Prepared{prepare_uncertainty(question.model(), wavelength),
+                          question.prepared(wavelength)};
         },
         [&](const Prepared& p, const Some& some) {
           range.count(p.model.wavelength(), some.geometries);
@@ -126,7 +126,7 @@ py::object outside_of(const Question& question) {
           for (std::size_t i = 0; i < some.geometries.size(); ++i) {
             require_valid(some.geometries[i]);
             out[some.position(i)] =
-                static_cast<std::uint8_t>(outside(question.model().model().validity, wavelength, some.geometries[i]));
+                static_cast<std::uint8_t>(outside(question.model().validity, wavelength, some.geometries[i]));
           }
         });
   });
@@ -140,7 +140,7 @@ py::object estimable(const Question& question, int threads) {
     question.each(
         threads, 64,
         [&](double wavelength) {
-          return prepare_uncertainty(question.model().model(), wavelength, question.rotation_of_model());
+          return prepare_uncertainty(question.model(), wavelength);
         },
         [&](const PreparedUncertainty& u, const Some& some) {
           for (std::size_t i = 0; i < some.geometries.size(); ++i)
@@ -157,9 +157,9 @@ py::object evaluate_draws(const Question& question, Frame frame, int count, unsi
   py::array_t<double> result(shape);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());
   const std::size_t size = question.broadcast().size();
-  Range range(question.model());
+  Range range(question.object());
   without_gil([&] {
-    const Draws draws(question.model().model(), count, seed, question.rotation_of_model());
+    const Draws draws(question.model(), count, seed);
     question.each(
         threads, 16, [&](double wavelength) { return draws.at(wavelength); },
         [&](const std::vector<PreparedModel>& models, const Some& some) {

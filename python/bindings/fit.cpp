@@ -34,7 +34,8 @@ struct Request {
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
   if (as_printed && family != "germer2017")
     throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
-  return {family_from(family), {orders.first, orders.second}, disc_mapping_from(mapping), rotation(as_printed)};
+  return {family_from(family), {orders.first, orders.second}, disc_mapping_from(mapping),
+          as_printed ? Rotation::as_printed : Rotation::covariant};
 }
 
 /// Says from what and how the model was made.
@@ -113,7 +114,7 @@ py::dict dict_of(const Difference& d) {
 }
 
 py::dict compared(const ModelObject& model, const Dataset& data, bool as_printed) {
-  const Comparison comparison = without_gil([&] { return compare(model.model(), data.samples, rotation(as_printed)); });
+  const Comparison comparison = without_gil([&] { return compare(model.turned(as_printed), data.samples); });
   py::dict result;
   result["samples"] = comparison.samples;
   result["f11"] = dict_of(comparison.f11);
@@ -182,7 +183,7 @@ void bind_fit(py::module_& m) {
       "residuals",
       [](const ModelObject& model, const Dataset& data, bool as_printed) {
         const std::vector<Mueller> found =
-            without_gil([&] { return residuals(model.model(), data.samples, rotation(as_printed)); });
+            without_gil([&] { return residuals(model.turned(as_printed), data.samples); });
         py::array_t<double> result({static_cast<py::ssize_t>(found.size()), py::ssize_t{4}, py::ssize_t{4}});
         for (std::size_t i = 0; i < found.size(); ++i) Layout<Mueller>::store(found[i], result.mutable_data() + 16 * i);
         return result;

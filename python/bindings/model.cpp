@@ -172,10 +172,18 @@ double ModelObject::wavelength(const std::optional<double>& wavelength_nm) const
   return wavelength_nm ? micrometres(*wavelength_nm) : only_wavelength(model_);
 }
 
-PreparedModel ModelObject::prepared(double wavelength, Rotation rotation) const {
+const Model& ModelObject::turned(bool as_printed) const {
+  if (!as_printed) return model_;
   const std::lock_guard lock(mutex_);
-  auto known = prepared_.find(rotation);
-  if (known == prepared_.end()) known = prepared_.emplace(rotation, prepare(model_, wavelength, rotation)).first;
+  if (!printed_) printed_ = mmbrdf::as_printed(model_);
+  return *printed_;
+}
+
+PreparedModel ModelObject::prepared(double wavelength, bool as_printed) const {
+  const Model& model = turned(as_printed);
+  const std::lock_guard lock(mutex_);
+  auto known = prepared_.find(as_printed);
+  if (known == prepared_.end()) known = prepared_.emplace(as_printed, prepare(model, wavelength)).first;
   return known->second.wavelength() == wavelength ? known->second : known->second.at(wavelength);
 }
 

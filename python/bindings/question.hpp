@@ -61,13 +61,14 @@ class Question {
   Question(ModelObject& model, const std::optional<Given>& wavelength_nm, const Given& theta_i, const Given& phi_i,
            const Given& theta_r, const Given& phi_r, bool as_printed)
       : model_(model.shared_from_this()),
-        rotation_(rotation(as_printed)),
+        as_printed_(as_printed),
         broadcast_(operands(*model_, wavelength_nm, theta_i, phi_i, theta_r, phi_r)),
         one_wavelength_(broadcast_.given(0) == 1) {}
 
   const Broadcast& broadcast() const { return broadcast_; }
-  const ModelObject& model() const { return *model_; }
-  Rotation rotation_of_model() const { return rotation_; }
+  const ModelObject& object() const { return *model_; }
+  const Model& model() const { return model_->turned(as_printed_); }
+  PreparedModel prepared(double wavelength) const { return model_->prepared(wavelength, as_printed_); }
 
   /// use(prepared, some) with prepared = make(wavelength in micrometres), for all positions. Needs no GIL.
   template <class Make, class Use>
@@ -125,7 +126,7 @@ class Question {
   }
 
   ModelPointer model_;
-  Rotation rotation_;
+  bool as_printed_;
   Broadcast broadcast_;
   bool one_wavelength_;
 };

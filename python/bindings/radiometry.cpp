@@ -201,7 +201,7 @@ void bind_curves(py::module_& m) {
       [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
         const double wavelength = o.wavelength(nm);
         const std::vector<Geometry> geometries = curve_geometries(o, wavelength, angles);
-        return polarized(polarized_curve(o.model(), wavelength, geometries, rotation(as_printed)));
+        return polarized(polarized_curve(o.turned(as_printed), wavelength, geometries));
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
       "PolarizedBrdf(ss, sp, ps, pp) in sr^-1 at each geometry, as in the paper's Fig. 6.");
@@ -210,7 +210,7 @@ void bind_curves(py::module_& m) {
       [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
         const double wavelength = o.wavelength(nm);
         const std::vector<Geometry> geometries = curve_geometries(o, wavelength, angles);
-        return polarized(polarized_uncertainty(o.model(), wavelength, geometries, rotation(as_printed)));
+        return polarized(polarized_uncertainty(o.turned(as_printed), wavelength, geometries));
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
       "Its standard uncertainty, of the fit alone.");

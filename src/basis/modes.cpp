@@ -26,8 +26,6 @@ constexpr Named<Function> function_names[] = {
     {Function::m11, "11"}, {Function::m12, "12"}, {Function::m13, "13"}, {Function::m14, "14"}, {Function::m22, "22"},
     {Function::m23, "23"}, {Function::m24, "24"}, {Function::m33, "33"}, {Function::m34, "34"}, {Function::m44, "44"},
     {Function::g, "g"},    {Function::h, "h"},    {Function::u, "u"},    {Function::v, "v"}};
-constexpr Named<Family> family_names[] = {
-    {Family::isotropic, "isotropic"}, {Family::germer2017, "germer2017"}, {Family::anisotropic, "anisotropic"}};
 
 // ---- terms ----------------------------------------------------------------------------------------------------------
 
@@ -374,8 +372,6 @@ std::string to_string(const Mode& mode) {
          ", " + std::to_string(mode.k) + ", " + std::to_string(mode.l) + ")";
 }
 
-std::string to_string(Family family) { return name_of(family_names, family); }
-Family family_from(const std::string& name) { return value_of(family_names, name, "basis"); }
 std::string to_string(Function function) { return name_of(function_names, function); }
 Function function_from(const std::string& name) { return value_of(function_names, name, "function"); }
 

@@ -134,12 +134,14 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
 
 Model read_model(const Field& root) {
   require_format(root, format_name, conventions(), units(),
-                 {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "conventions", "units",
+                 {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "rotation", "conventions", "units",
                   "validity", "reflectance", "blocks", "provenance"});
   Model model;
   model.name = root["name"].text();
   model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });
   model.mapping = checked(root["mapping"], [&] { return disc_mapping_from(root["mapping"].text()); });
+  if (root.has("rotation"))
+    model.rotation = checked(root["rotation"], [&] { return rotation_from(root["rotation"].text()); });
   model.powers = root["powers"].integer();
   if (model.powers < 0) root["powers"].refuse(root["powers"].shown() + " is negative");
   model.blocks = read_blocks(root["blocks"], model.family, model.powers);
@@ -199,6 +201,7 @@ ordered_json model_json(const Model& model) {
                        {"mapping", to_string(model.mapping)},
                        {"conventions", conventions()},
                        {"units", units()}};
+  if (model.rotation != Rotation::covariant) root["rotation"] = to_string(model.rotation);
   require_finite(model.validity.wavelengths, "wavelengths of the validity");
   root["validity"] = {{"wavelengths_um", model.validity.wavelengths},
                       {"theta_i_max_deg", angle_json(model.validity.theta_i_max)},

@@ -101,8 +101,7 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
   std::vector<Normal> normals = empty_normals(model, errors.size());
   std::vector<Mueller> changes(errors.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    // As in the fit: germer2017 is fitted at phi_i = 0.
-    const double turn = model.family == Family::germer2017 ? -samples[s].geometry.incident.phi : 0;
+    const double turn = turns(model) ? -samples[s].geometry.incident.phi : 0;
     for (std::size_t k = 0; k < errors.size(); ++k) changes[k] = turned(errors[k][s], turn);
     const Geometry geometry = turn == 0 ? samples[s].geometry : at_zero_azimuth(samples[s]).geometry;
     const std::array<Units, 2> units{{{reflectance, reflectance}, {values.evaluate(geometry)(0, 0), 1}}};

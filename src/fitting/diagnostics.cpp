@@ -168,7 +168,7 @@ SampleDiagnostics sample_diagnostics(std::span<const Sample> samples, const FitR
   ones.elements.fill(1);
   Table k_i, k_r;
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    const Sample sample = model.family == Family::germer2017 ? at_zero_azimuth(samples[s]) : samples[s];
+    const Sample sample = turns(model) ? at_zero_azimuth(samples[s]) : samples[s];
     zernike_table(order, disc_point(sample.geometry.incident, model.mapping), k_i.data());
     zernike_table(order, disc_point(sample.geometry.reflected, model.mapping), k_r.data());
     for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -177,9 +177,7 @@ Solution FitAccumulator::block_solution(std::size_t block, int powers, const Ref
   return repeated(parts, modes, divisors, factors).solve(Eigen::MatrixXd::Ones(1, 1), rows, rank_tolerance, known);
 }
 
-bool FitAccumulator::turns() const {
-  return basis_.family == Family::germer2017 && basis_.rotation == Rotation::covariant;
-}
+bool FitAccumulator::turns() const { return mmbrdf::turns(basis_); }
 
 bool FitAccumulator::takes_own_reflectance(const FitOptions& options) const {
   return !options.reflectance && wavelengths_.size() > 1;
@@ -207,7 +205,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, Deco
 }
 
 bool FitAccumulator::accepts_minimum_norm(const FitOptions& options) const {
-  return options.minimum_norm || basis_.family == Family::germer2017;
+  return options.minimum_norm || traits(basis_.family).minimum_norm;
 }
 
 int FitAccumulator::chosen_powers(const FitOptions& options) const {
@@ -239,6 +237,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   Model& model = result.model;
   model.family = basis_.family;
   model.mapping = basis_.mapping;
+  model.rotation = basis_.rotation;
   model.powers = powers;
   model.validity = {{}, theta_i_max_, theta_r_max_};
   for (const auto& [wavelength, at] : wavelengths_) model.validity.wavelengths.push_back(wavelength);

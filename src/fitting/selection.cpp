@@ -83,9 +83,9 @@ struct Part {
 
   bool holds(const FittedBlock& fitted) const { return (fitted.block.name == "11") == is_f11; }
 
-  /// Which blocks the data do not determine; germer2017 is never asked.
+  /// Which blocks the data do not determine; families of minimum norm are never asked.
   std::string undetermined(const FitResult& result) const {
-    if (result.model.family == Family::germer2017) return "";
+    if (traits(result.model.family).minimum_norm) return "";
     std::string text;
     for (const FittedBlock& fitted : result.model.blocks)
       if (holds(fitted) && static_cast<std::size_t>(fitted.rank) < fitted.coefficients.size())

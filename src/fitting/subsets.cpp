@@ -67,18 +67,16 @@ std::vector<Geometry> in_plane(double theta_i, std::span<const double> theta_r) 
   return geometries;
 }
 
-PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries,
-                               Rotation rotation) {
-  const PreparedModel prepared = prepare(model, wavelength, rotation);
+PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries) {
+  const PreparedModel prepared = prepare(model, wavelength);
   PolarizedCurve curve;
   for (const Geometry& geometry : geometries)
     curve.push_back(co_and_cross_polarized(prepared.evaluate(geometry, Frame::sp)));
   return curve;
 }
 
-PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
-                                     Rotation rotation) {
-  const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength, rotation);
+PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries) {
+  const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength);
   const auto [ss, sp, ps, pp] = co_and_cross_polarized_gradients();
   PolarizedCurve curve;
   for (const Geometry& geometry : geometries) {

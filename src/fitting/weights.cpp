@@ -97,11 +97,10 @@ std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Mode
 
 std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& basis,
                                   const ReflectanceTable& reflectance) {
-  const bool turns = basis.family == Family::germer2017 && basis.rotation == Rotation::covariant;
   std::vector<Mueller> weights;
   for (const Sample& sample : samples) {
     try {
-      weights.push_back(data_weights_of(turns ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
+      weights.push_back(data_weights_of(turns(basis) ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }
@@ -125,7 +124,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
   accumulator.add(samples);
   FitResult result = accumulator.solved(options);
   if (weights == Weights::estimated)
-    result.noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples, basis.rotation));
+    result.noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples));
   std::vector<Mueller> list = fit_weights(samples, basis, result, weights);
   if (weights != Weights::none) {
     std::vector<NoiseEstimate> noise = std::move(result.noise);
@@ -134,7 +133,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
     result = accumulator.solved(options);
     result.noise = std::move(noise);
   }
-  result.residuals = residuals(result.model, samples, basis.rotation);
+  result.residuals = residuals(result.model, samples);
   if (options.covariance == Covariance::sandwich) {
     list.resize(samples.size(), ones());
     for (std::size_t s = 0; s < samples.size(); ++s) {

@@ -28,12 +28,12 @@ Vector3 normalized(const Vector3& v) {
 
 }  // namespace
 
-PreparedModel prepare(const Model& model, double wavelength, Rotation rotation) {
+PreparedModel prepare(const Model& model, double wavelength) {
   require_valid(model);
   require_wavelength(wavelength);
   auto pattern = std::make_shared<PreparedModel::Pattern>();
   pattern->mapping = model.mapping;
-  pattern->arrangement = arrangement(model, rotation);
+  pattern->arrangement = arrangement(model);
   for (int k = 0; k < zernike_count(pattern->arrangement.order); ++k) pattern->table_norms.push_back(table_norm(k));
   pattern->by_powers = by_powers(model);
   pattern->reflectance = model.reflectance;

@@ -158,6 +158,13 @@ void require_valid(const Model& model) {
   require_valid(model.validity);
 }
 
+bool turns(const Model& model) { return turns(model.family, model.rotation); }
+
+Model as_printed(Model model) {
+  model.rotation = Rotation::as_printed;
+  return model;
+}
+
 int mode_count(const Model& model) {
   std::size_t count = 0;
   for (const FittedBlock& fitted : model.blocks) count += fitted.block.modes.size();

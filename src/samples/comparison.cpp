@@ -39,10 +39,10 @@ void require_positive(double f11, const Sample& sample) {
 
 }  // namespace
 
-std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples, Rotation rotation) {
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples) {
   std::vector<Mueller> result;
   result.reserve(samples.size());
-  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength, rotation); });
+  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength); });
   for (const Sample& sample : samples) {
     const Mueller predicted = prepared(sample.wavelength).evaluate(sample.geometry);
     Mueller difference = sample.normalized - normalized(predicted);
@@ -52,11 +52,11 @@ std::vector<Mueller> residuals(const Model& model, std::span<const Sample> sampl
   return result;
 }
 
-Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation) {
+Comparison compare(const Model& model, std::span<const Sample> samples) {
   if (samples.empty()) throw std::invalid_argument("no samples");
   require_valid(samples);
-  const std::vector<Mueller> differences = residuals(model, samples, rotation);
-  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength, rotation); });
+  const std::vector<Mueller> differences = residuals(model, samples);
+  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength); });
   Comparison result;
   result.samples = static_cast<long>(samples.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {

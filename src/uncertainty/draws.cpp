@@ -114,10 +114,10 @@ void require_semidefinite(const Model& model) {
     if (!fitted.covariance.empty()) square_root(fitted, model.reflectance);
 }
 
-Draws::Draws(const Model& model, int count, unsigned long seed, Rotation rotation) : count_(count) {
+Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) {
   if (count < 2 || count > max_draws)
     throw std::invalid_argument("count = " + std::to_string(count) + ", must be in 2..." + std::to_string(max_draws));
-  Coefficients drawn{prepare(model, 1, rotation), model.powers, model.reflectance, {}, {}};
+  Coefficients drawn{prepare(model, 1), model.powers, model.reflectance, {}, {}};
   for (const FittedBlock& fitted : model.blocks) {
     if (fitted.covariance.empty())
       throw std::invalid_argument("the covariance of block " + fitted.block.name + " is not known");

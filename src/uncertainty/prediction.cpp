@@ -193,14 +193,14 @@ struct PreparedUncertainty::Slopes {
 
 PreparedUncertainty::PreparedUncertainty(std::shared_ptr<const Blocks> blocks) : blocks_(std::move(blocks)) {}
 
-PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation) {
+PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
   require_valid(model);
   require_wavelength(wavelength);
   auto blocks = std::make_shared<PreparedUncertainty::Blocks>();
   const Orders highest = orders(model);
   blocks->order = std::max(highest.f11, highest.other);
   blocks->mapping = model.mapping;
-  blocks->turns = model.family == Family::germer2017 && rotation == Rotation::covariant;
+  blocks->turns = mmbrdf::turns(model);
   for (const FittedBlock& fitted : model.blocks) {
     blocks->list.push_back(block_at(fitted, model, wavelength));
     blocks->list.back().first = blocks->parameters;

@@ -78,4 +78,10 @@ inline double rms(const std::vector<Mueller>& residuals) {
   return std::sqrt(squares / 15 / static_cast<double>(residuals.size()));
 }
 
+/// The model covariant or as printed.
+inline Model either_way(Model model) {
+  model.rotation = *rc::gen::element(Rotation::covariant, Rotation::as_printed);
+  return model;
+}
+
 }  // namespace mmbrdf

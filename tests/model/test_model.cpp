@@ -131,7 +131,7 @@ RC_GTEST_PROP(Model, OfAnIsotropicSampleLooksTheSameInAMirror, ()) {
 RC_GTEST_PROP(Model, IsReciprocal, ()) {
   const Family family = *rc::gen::elementOf(every_family);
   const PreparedModel model =
-      prepare(any_model(family, family == Family::anisotropic ? 5 : 12), 1, Rotation::as_printed);
+      prepare(as_printed(any_model(family, family == Family::anisotropic ? 5 : 12)), 1);
   const Geometry geometry = any_geometry();
   for (const Frame frame : {Frame::xy, Frame::sp})
     RC_ASSERT(deviation(model.evaluate(exchanged(geometry), frame), exchanged(model.evaluate(geometry, frame))) <=
@@ -143,7 +143,7 @@ TEST(Model, AsPrintedChangesWhenTheSampleIsTurned) {
   const Model germer = random_model(Family::germer2017, {7, 4}, 0, 1);
   const Geometry geometry = in_degrees(60, 0, 45, 120);
   const auto change = [&](Rotation rotation) {
-    const PreparedModel model = prepare(germer, 1, rotation);
+    const PreparedModel model = prepare(rotation == Rotation::as_printed ? as_printed(germer) : germer, 1);
     return deviation(model.evaluate(turned_geometry(geometry, 0.5)), turned(model.evaluate(geometry), 0.5));
   };
   EXPECT_LE(change(Rotation::covariant), symmetry_error);
@@ -154,14 +154,14 @@ TEST(Model, AsPrintedChangesWhenTheSampleIsTurned) {
 RC_GTEST_PROP(Model, AsPrintedIsTheSameAtTheAzimuthsOfThePublishedGrid, ()) {
   const Model germer = any_model(Family::germer2017, 8);
   const Geometry geometry{{any_theta(), *rc::gen::element(0.0, pi)}, any_direction()};
-  RC_ASSERT(deviation(prepare(germer, 1, Rotation::as_printed).evaluate(geometry),
+  RC_ASSERT(deviation(prepare(as_printed(germer), 1).evaluate(geometry),
                       prepare(germer, 1).evaluate(geometry)) <= symmetry_error);
 }
 
 RC_GTEST_PROP(Model, OfOtherFamiliesIsTheSameAsPrinted, ()) {
   const Model model = any_model(*rc::gen::element(Family::isotropic, Family::anisotropic), 4, 1);
   const Geometry geometry = any_geometry();
-  RC_ASSERT(prepare(model, 0.5, Rotation::as_printed).evaluate(geometry) == prepare(model, 0.5).evaluate(geometry));
+  RC_ASSERT(prepare(as_printed(model), 0.5).evaluate(geometry) == prepare(model, 0.5).evaluate(geometry));
 }
 
 // The xy axes do not know φi at the normal, and the spin-weighted functions do not either.
@@ -189,14 +189,14 @@ RC_GTEST_PROP(Model, IsTheSumOfItsModesToThePromisedError, ()) {
   const double wavelength = between(0.3, 1.2);
   const Geometry geometry = any_geometry();
   const Mueller expected = sum_in_extended_precision(model, wavelength, geometry);
-  RC_ASSERT(deviation_of_m11(prepare(model, wavelength, Rotation::as_printed).evaluate(geometry), expected) <=
+  RC_ASSERT(deviation_of_m11(prepare(as_printed(model), wavelength).evaluate(geometry), expected) <=
             evaluation_error);
 }
 
 RC_GTEST_PROP(Model, PreparedForOneIncidentDirectionIsTheSame, ()) {
   const Family family = *rc::gen::elementOf(every_family);
   const PreparedModel model =
-      prepare(any_model(family, 4, 2), between(0.3, 1.2), *rc::gen::element(Rotation::covariant, Rotation::as_printed));
+      prepare(either_way(any_model(family, 4, 2)), between(0.3, 1.2));
   const Direction incident = any_direction();
   const PreparedIncidence from_there = model.at(incident);
   RC_ASSERT(from_there.incident() == incident);
@@ -314,10 +314,9 @@ TEST(Model, PowersOfTheWavelengthOfF11AndOfTheOtherElementsAreMultiplied) {
 RC_GTEST_PROP(Model, AtAnotherWavelengthIsAsIfPreparedThere, ()) {
   Model model = any_model(*rc::gen::elementOf(every_family), 4, 3);
   model.reflectance = {{0.4, 0.7}, {0.9, 0.5}};
-  const auto rotation = *rc::gen::element(Rotation::covariant, Rotation::as_printed);
   const double wavelength = between(0.3, 1.2);
-  const PreparedModel moved = prepare(model, between(0.3, 1.2), rotation).at(wavelength),
-                      there = prepare(model, wavelength, rotation);
+  const PreparedModel moved = prepare(model, between(0.3, 1.2)).at(wavelength),
+                      there = prepare(model, wavelength);
   const Geometry geometry = any_geometry();
   RC_ASSERT(moved.wavelength() == wavelength);
   RC_ASSERT(moved.evaluate(geometry) == there.evaluate(geometry));

@@ -53,7 +53,9 @@ std::optional<double> deviation_from_scatmech(const std::string& file, const std
                                               const std::function<Geometry(const Geometry&)>& used) {
   const std::string values = reference("scatmech/" + file), model_file = published(coefficients);
   if (values.empty() || model_file.empty()) return {};
-  const PreparedModel model = prepare(read_coefficients(model_file), 1, rotation);
+  Model read = read_coefficients(model_file);
+  read.rotation = rotation;
+  const PreparedModel model = prepare(read, 1);
   double result = 0;
   const auto rows = read_numbers(values);
   EXPECT_EQ(rows.size(), 500u) << file;

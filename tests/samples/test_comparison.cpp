@@ -82,7 +82,7 @@ TEST(PublishedComparison, WithRandomDirectionsGivesTheKnownResiduals) {
   const Model coefficients = read_coefficients(published("PTFE.532.coeff.csv"));
   EXPECT_NEAR(polarization_rms(compare(material("ptfe-532"), samples)), 0.01131, 5e-6);
   EXPECT_NEAR(polarization_rms(compare(coefficients, samples)), 0.01134, 5e-6);
-  EXPECT_NEAR(polarization_rms(compare(coefficients, samples, Rotation::as_printed)), 0.01753, 5e-6);
+  EXPECT_NEAR(polarization_rms(compare(as_printed(coefficients), samples)), 0.01753, 5e-6);
 }
 
 }  // namespace

@@ -292,7 +292,7 @@ TEST(Uncertainty, OfThePublishedSetsAsPrintedIsNotEstimableAwayFromThePlaneOfThe
   const Model model = fit(samples, {Family::germer2017, {7, 4}}).model;
   const Geometry in_plane{{0.5, 0}, {0.6, 2}}, turned{{0.7, 1}, {0.3, 2.3}};
   const PreparedUncertainty covariant = prepare_uncertainty(model, 0.532);
-  const PreparedUncertainty as_printed = prepare_uncertainty(model, 0.532, Rotation::as_printed);
+  const PreparedUncertainty as_printed = prepare_uncertainty(mmbrdf::as_printed(model), 0.532);
   EXPECT_TRUE(covariant.estimable(in_plane));
   EXPECT_TRUE(covariant.estimable(turned));
   EXPECT_TRUE(as_printed.estimable(in_plane));
@@ -334,7 +334,7 @@ TEST(Uncertainty, WithPowersOfTheWavelengthIsEstimableWhereItIsWithout) {
   ASSERT_EQ(model.powers, 1);
   const Geometry turned{{0.7, 1}, {0.3, 2.3}};
   EXPECT_TRUE(prepare_uncertainty(model, 0.6).estimable(turned));
-  EXPECT_FALSE(prepare_uncertainty(model, 0.6, Rotation::as_printed).estimable(turned));
+  EXPECT_FALSE(prepare_uncertainty(mmbrdf::as_printed(model), 0.6).estimable(turned));
 }
 
 // At normal incidence 14 and 41 have no modes left: rank 0, and a covariance of zeros.

@@ -73,7 +73,6 @@ void require_possible(const Stokes& light) {
 std::unique_ptr<Analyzer> analyzer_of(const Model& model, const Options& options) {
   AnalysisOptions analysis = options.analysis;
   analysis.frame = options.frame;
-  analysis.rotation = options.rotation();
   std::unique_ptr<Analyzer> analyzer;
   try {
     analyzer = std::make_unique<Analyzer>(model, analysis);

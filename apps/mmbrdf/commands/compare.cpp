@@ -110,11 +110,11 @@ struct Report {
   std::string first, second;
   std::vector<double> wavelengths;
   const Comparison& comparison;
-  bool as_printed;
+  Rotation rotation;
 };
 
 std::string text(const Report& report) {
-  std::string text = report.second + " - " + report.first + (report.as_printed ? " as printed" : "") + ": " +
+  std::string text = report.second + " - " + report.first + (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
                      counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) +
                      ", frame xy\n\nelement  unit           rms         mean      largest   at nm  theta_i    phi_i  "
                      "theta_r    phi_r\n";
@@ -141,7 +141,7 @@ std::string csv(const Report& report) {
 std::string json(const Report& report) {
   nlohmann::ordered_json json{{"model", report.first},
                               {"compared_with", report.second},
-                              {"rotation", report.as_printed ? "as_printed" : "covariant"},
+                              {"rotation", to_string(report.rotation)},
                               {"frame", "xy"},
                               {"samples", report.comparison.samples}};
   for (const double wavelength : report.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
@@ -186,7 +186,7 @@ void require_valid(const Options& options) {
 
 Comparison compared(const Model& first, const std::vector<Sample>& samples, const Options& options) {
   try {
-    return compare(first, samples, options.as_printed ? Rotation::as_printed : Rotation::covariant);
+    return compare(first, samples);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.first) + ": " + error.what());
   }
@@ -194,14 +194,17 @@ Comparison compared(const Model& first, const std::vector<Sample>& samples, cons
 
 void compare_them(const Options& options) {
   require_valid(options);
-  const Model first = open_model(options.first);
-  if (options.as_printed) note_unless_printed(first, base_name(options.first));
+  Model first = open_model(options.first);
+  if (options.as_printed) {
+    note_unless_printed(first, base_name(options.first));
+    first.rotation = Rotation::as_printed;
+  }
   const std::vector<Sample> samples = samples_of(first, options);
   if (samples.empty())
     throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": no geometry is within");
   const Comparison comparison = compared(first, samples, options);
   const Report report{base_name(options.first), data_name(options.second), wavelengths(samples), comparison,
-                      options.as_printed};
+                      first.rotation};
   write_text(options.output, (options.format == Format::text  ? text
                               : options.format == Format::csv ? csv
                                                               : json)(report));

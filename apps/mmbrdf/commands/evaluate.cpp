@@ -39,7 +39,7 @@ void print_text(const Answer& a) {
   std::cout << heading(a.place)
             << (a.options.normalized ? "f11 in sr^-1, the other elements divided by it" : "Mueller BRDF in sr^-1")
             << ", frame " << to_string(a.options.frame) << " (" << convention_note(a.options.frame) << ")"
-            << (a.options.as_printed ? ", as printed" : "") << "\nvalidity: " << to_string(a.outside) << '\n';
+            << (a.place.rotation == Rotation::as_printed ? ", as printed" : "") << "\nvalidity: " << to_string(a.outside) << '\n';
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
       const double value = a.mueller(row, column);
@@ -57,7 +57,7 @@ void print_csv(const Answer& a) {
 
 void print_json(const Answer& a) {
   nlohmann::ordered_json json = to_json(a.place);
-  add_frame(json, a.options);
+  add_frame(json, a.options.frame, a.place.rotation);
   json["unit"] = a.options.normalized ? "1" : "sr^-1";
   if (a.options.normalized) {
     json["f11"] = a.mueller(0, 0);
@@ -78,7 +78,7 @@ void evaluate_one(const Options& options) {
   const Model model = model_of(options);
   const double wavelength = wavelength_from(options.wavelength_nm, model);
   const Geometry geometry = geometry_of(options);
-  const PreparedModel prepared = prepare(model, wavelength, options.rotation());
+  const PreparedModel prepared = prepare(model, wavelength);
   const Mueller f = prepared.evaluate(geometry, options.frame);
   const Answer answer{.options = options,
                       .place = place_of(model, options, wavelength),
@@ -99,7 +99,7 @@ void evaluate(const Options& options) {
   const bool binary = is_npy(options.output);
   if (options.format && binary) throw CLI::ValidationError("--format", "csv does not go with an output in .npy");
   const Model model = model_of_rows(options);
-  Evaluated evaluated = evaluated_rows(model, options.frame, options.rotation(), options.normalized, binary);
+  Evaluated evaluated = evaluated_rows(model, options.frame, options.normalized, binary);
   evaluated.threads = options.threads > 0 ? options.threads : available_threads();
   evaluate_file(model, rows_of(options), evaluated);
 }

@@ -51,16 +51,15 @@ struct Split {
 };
 
 Split split(const Question& q, const Options& o, unsigned long seed) {
-  const Rotation rotation = o.basis.rotation;
   const SubsetFits fits = fit_parts(parts(q.samples, o.by_lot() ? random_folds(q.samples.size(), o.parts, seed)
                                                                 : folds_by_row(q.samples.size(), o.parts)),
                                     o.basis, o.fit, o.weights);
   Split result;
   for (const Model& part : fits.parts)
-    result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries, rotation));
+    result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries));
   result.reference = q.reference ? polarized_curve(*q.reference, q.wavelength, q.geometries)
-                                 : polarized_curve(fits.whole, q.wavelength, q.geometries, rotation);
-  result.uncertainty = polarized_uncertainty(fits.whole, q.wavelength, q.geometries, rotation);
+                                 : polarized_curve(fits.whole, q.wavelength, q.geometries);
+  result.uncertainty = polarized_uncertainty(fits.whole, q.wavelength, q.geometries);
   for (PolarizedBrdf& u : result.uncertainty)
     for (double* part : {&u.ss, &u.sp, &u.ps, &u.pp}) *part *= std::sqrt(o.parts);
   result.statistics = subset_statistics(result.curves, result.reference);
@@ -162,7 +161,7 @@ std::string json(const Question& q, const Options& o, const std::vector<Split>& 
                               {"parts", o.parts},
                               {"basis", to_string(o.basis.family)},
                               {"orders", {o.basis.orders.f11, o.basis.orders.other}},
-                              {"rotation", o.as_printed ? "as_printed" : "covariant"},
+                              {"rotation", to_string(o.basis.rotation)},
                               {"weights", to_string(o.weights)},
                               {"wavelength_nm", nanometres(q.wavelength)},
                               {"theta_i_deg", o.theta_i_deg},

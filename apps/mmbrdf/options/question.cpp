@@ -35,8 +35,9 @@ void add_as_printed(CLI::App& app, Question& question) {
 
 Model model_of(const Question& question) {
   Model model = open_model(question.model);
-  if (question.as_printed) note_unless_printed(model, base_name(question.model));
-  return model;
+  if (!question.as_printed) return model;
+  note_unless_printed(model, base_name(question.model));
+  return as_printed(std::move(model));
 }
 
 void require_directions(const Question& question, const std::string& or_else) {
@@ -66,7 +67,8 @@ RowsOfFile rows_of(const Question& question) {
 Place place_of(const Model& model, const Question& question, double wavelength) {
   const bool known = question.wavelength_nm || knows_wavelength(model);
   return {base_name(question.model), known ? std::optional(nanometres(wavelength)) : std::nullopt,
-          question.incident.value_or(DirectionDegrees{}), question.reflected.value_or(DirectionDegrees{})};
+          question.incident.value_or(DirectionDegrees{}), question.reflected.value_or(DirectionDegrees{}),
+          model.rotation};
 }
 
 std::string heading(const Place& place) {
@@ -94,11 +96,11 @@ nlohmann::ordered_json to_json(const Place& place) {
   return json;
 }
 
-void add_frame(nlohmann::ordered_json& json, const Question& question) {
-  json["frame"] = to_string(question.frame);
+void add_frame(nlohmann::ordered_json& json, Frame frame, Rotation rotation) {
+  json["frame"] = to_string(frame);
   json["convention"] = "germer2017";  // see StokesConvention
-  json["convention_note"] = convention_note(question.frame);
-  json["rotation"] = question.as_printed ? "as_printed" : "covariant";
+  json["convention_note"] = convention_note(frame);
+  json["rotation"] = to_string(rotation);
 }
 
 std::string convention_note(Frame frame) {

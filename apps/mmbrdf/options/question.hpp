@@ -19,8 +19,6 @@ struct Question {
   std::optional<DirectionDegrees> incident, reflected;
   Frame frame = Frame::xy;
   bool as_printed = false;
-
-  Rotation rotation() const { return as_printed ? Rotation::as_printed : Rotation::covariant; }
 };
 
 /// Options as `add_question` declares them, for others to be tied to.
@@ -32,7 +30,7 @@ struct QuestionOptions {
 QuestionOptions add_question(CLI::App& app, Question& question, const std::string& done);
 void add_as_printed(CLI::App& app, Question& question);
 
-/// Opens the model; notes where --as-printed changes nothing.
+/// Opens the model, as printed if --as-printed says so; notes where that changes nothing.
 Model model_of(const Question& question);
 
 /// A direction that was not given is wrong usage. `or_else` names what could be given instead of it.
@@ -50,6 +48,7 @@ struct Place {
   std::string model;
   std::optional<double> wavelength_nm;  ///< none: the model does not depend on it, nor say to which it was fitted
   DirectionDegrees incident, reflected;
+  Rotation rotation;
 };
 Place place_of(const Model& model, const Question& question, double wavelength);
 
@@ -62,7 +61,7 @@ std::string fields(const Place& place);
 
 /// Model, wavelength and angles under the names of the columns; the frame, and what it means.
 nlohmann::ordered_json to_json(const Place& place);
-void add_frame(nlohmann::ordered_json& json, const Question& question);
+void add_frame(nlohmann::ordered_json& json, Frame frame, Rotation rotation);
 
 /// What S2 and S4 are, for people: "S2 = s - p, S4 = left - right"
 std::string convention_note(Frame frame);

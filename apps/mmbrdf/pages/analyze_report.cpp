@@ -157,7 +157,7 @@ void print_text(const AnalysisReport& r) {
                  a);
   for (const Quantity& quantity : a.quantities) print_quantity(quantity, a);
   std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
-            << convention_note(r.question.frame) << ")" << (r.question.as_printed ? ", as printed" : "") << '\n';
+            << convention_note(r.question.frame) << ")" << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n';
   print_matrix(a.elements);
   if (a.uncertainties) {
     std::cout << "its standard uncertainties\n";
@@ -169,7 +169,7 @@ void print_text(const AnalysisReport& r) {
 void print_json(const AnalysisReport& r) {
   const Analysis& a = r.analysis;
   nlohmann::ordered_json json = to_json(r.place);
-  add_frame(json, r.question);
+  add_frame(json, r.question.frame, r.place.rotation);
   json["unit"] = "sr^-1";
   json["validity"] = to_string(a.outside);
   json["estimable"] = a.estimable ? nlohmann::ordered_json(*a.estimable) : nullptr;

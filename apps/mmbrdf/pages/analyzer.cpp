@@ -120,12 +120,12 @@ Analyzer::Analyzer(const Model& model, AnalysisOptions options)
       wavelengths_([this](double wavelength) { return prepared(wavelength); }, wavelengths_to_keep(options_.draws)) {
   require_semidefinite(model);
   if (options_.draws > 0 && unknown_uncertainty_.empty())
-    draws_.emplace(model, options_.draws, options_.seed, options_.rotation);
+    draws_.emplace(model, options_.draws, options_.seed);
 }
 
 Analyzer::AtWavelength Analyzer::prepared(double wavelength) const {
-  AtWavelength result{prepare(model_, wavelength, options_.rotation), std::nullopt, {}};
-  if (unknown_uncertainty_.empty()) result.uncertainty = prepare_uncertainty(model_, wavelength, options_.rotation);
+  AtWavelength result{prepare(model_, wavelength), std::nullopt, {}};
+  if (unknown_uncertainty_.empty()) result.uncertainty = prepare_uncertainty(model_, wavelength);
   if (draws_) result.draws = draws_->at(wavelength);
   return result;
 }

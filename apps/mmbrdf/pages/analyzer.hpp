@@ -16,7 +16,6 @@ namespace mmbrdf::program {
 
 struct AnalysisOptions {
   Frame frame = Frame::xy;  ///< of the elements, and of `light`
-  Rotation rotation = Rotation::covariant;
   std::vector<TypeBTerm> terms;
   std::optional<Stokes> light;  ///< that can exist; with it, the degree of polarization of what becomes of it
   int draws = 0;                ///< 0: uncertainties in first order

@@ -161,8 +161,8 @@ void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated
 /// Evaluates rows of one wavelength after the other at once.
 class RowsEvaluator {
  public:
-  RowsEvaluator(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary)
-      : models_([first = prepare(model, 1, rotation)](double wavelength) { return first.at(wavelength); }),
+  RowsEvaluator(const Model& model, Frame frame, bool normalized, bool binary)
+      : models_([first = prepare(model, 1)](double wavelength) { return first.at(wavelength); }),
         frame_(frame),
         normalized_(normalized),
         binary_(binary) {}
@@ -245,9 +245,9 @@ void report_rows(long outside, long rows, const std::string& unknown_range, cons
   if (!unknown_range.empty()) warn(unknown_range);
 }
 
-Evaluated evaluated_rows(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary) {
+Evaluated evaluated_rows(const Model& model, Frame frame, bool normalized, bool binary) {
   return {.names = element_columns(normalized) + ",validity", .binary = binary, .writer = [=, &model] {
-            const auto evaluator = std::make_shared<RowsEvaluator>(model, frame, rotation, normalized, binary);
+            const auto evaluator = std::make_shared<RowsEvaluator>(model, frame, normalized, binary);
             return [evaluator](const GeometrySource& source, const Rows& rows, std::string& out) {
               return evaluator->write(source, rows, out);
             };

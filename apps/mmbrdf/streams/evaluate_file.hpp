@@ -31,7 +31,7 @@ struct Evaluated {
 };
 
 /// The 16 elements, and the validity unless binary.
-Evaluated evaluated_rows(const Model& model, Frame frame, Rotation rotation, bool normalized, bool binary);
+Evaluated evaluated_rows(const Model& model, Frame frame, bool normalized, bool binary);
 
 /// The same of columns that are worked out row by row in one thread.
 Evaluated one_by_one(const AddedColumns& columns);

@@ -12,18 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "mmbrdf/basis/family.hpp"
 #include "mmbrdf/basis/zernike.hpp"
 
 namespace mmbrdf {
-
-/// Which modes a basis has.
-enum class Family {
-  isotropic,    ///< spin-weighted modes, k + l = 2 (σ_out + σ_in): exactly rotation-covariant, mirror-symmetric and
-                ///< reciprocal. 142 modes at orders 7, 4. Theory 2.3.
-  germer2017,   ///< the index sets of the published coefficient files, 330 modes at orders 7, 4 (Eqs. 8, 14–16). They
-                ///< hold at phi_i = 0 only, so models are evaluated there and turned (theory 2.2).
-  anisotropic,  ///< every index: the complete reciprocal expansion, Eqs. 1, 2 and 14–16. 2376 modes at orders 7, 4.
-};
 
 /// The function a mode belongs to. Pairs m_ij name element ij and, by reciprocity, ji. g, h, u and v are the functions
 /// of the isotropic family that several elements share:
@@ -102,14 +94,12 @@ void require_valid(const Mode& mode, Family family);
 /// "22 (n, m, k, l) = (4, 2, 4, 2)" for messages.
 std::string to_string(const Mode& mode);
 
-/// The names used in files and by the program: isotropic, germer2017, anisotropic; 11, 12, …, g, h, u, v; lambert,
+/// The names used in files and by the program: 11, 12, …, g, h, u, v; lambert,
 /// projected.
-std::string to_string(Family family);
 std::string to_string(Function function);
 std::string to_string(DiscMapping mapping);
 /// Of row and column, from 0, on or above the diagonal: m11 … m44. Throws std::invalid_argument for others.
 Function function_of(int row, int column);
-Family family_from(const std::string& name);  ///< all three throw std::invalid_argument for another name
 Function function_from(const std::string& name);
 DiscMapping disc_mapping_from(const std::string& name);
 

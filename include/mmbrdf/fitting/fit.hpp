@@ -34,7 +34,7 @@ namespace mmbrdf {
 
 /// What is fitted: which modes, and how azimuths enter. Samples for germer2017 are turned to phi_i = 0 first, as its
 /// models are evaluated, unless rotation is as_printed: then they are fitted at the azimuths they have, to compare with
-/// what the paper did, and the model must be evaluated so.
+/// what the paper did, and the model is evaluated so.
 struct Basis {
   Family family = Family::isotropic;
   Orders orders;
@@ -42,6 +42,7 @@ struct Basis {
   Rotation rotation = Rotation::covariant;
   friend bool operator==(const Basis&, const Basis&) = default;
 };
+inline bool turns(const Basis& basis) { return turns(basis.family, basis.rotation); }
 
 enum class Weights {
   none,  ///< every row counts the same

@@ -35,14 +35,12 @@ using PolarizedCurve = std::vector<PolarizedBrdf>;
 
 /// What a model predicts at a wavelength (micrometres). Throws std::invalid_argument for an invalid model, wavelength
 /// or geometry.
-PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries,
-                               Rotation rotation = Rotation::covariant);
+PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries);
 
 /// Standard uncertainty of polarized_curve() in first order. f_ab is linear in F11, F12, F21, F22 of the sp frame, so
 ///   u²(f_ab) = ¼ Σ_ee' c_e c_e' cov(F_e, F_e'),  c = (1, a, b, ab)   (theory 4.8).
 /// Throws std::invalid_argument as prepare_uncertainty does: without covariance, it is not known.
-PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
-                                     Rotation rotation = Rotation::covariant);
+PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries);
 
 /// How k curves lie to each other and to a reference. All is relative to the reference.
 struct SubsetStatistics {

@@ -78,6 +78,8 @@ struct Model {
   std::string name;
   Family family = Family::isotropic;
   DiscMapping mapping = DiscMapping::lambert;
+  Rotation rotation = Rotation::covariant;  ///< how the azimuths of the samples entered the fit, and those of a question
+                                            ///< enter an evaluation
   int powers = 0;  ///< highest power of the wavelength
   std::vector<FittedBlock> blocks;
   ReflectanceTable reflectance;
@@ -88,21 +90,18 @@ struct Model {
 /// Throws std::invalid_argument if blocks, coefficient counts or the reflectance table do not fit together.
 void require_valid(const Model& model);
 
+/// Whether it is evaluated at phi_i = 0 and turned.
+bool turns(const Model& model);
+
+/// The model with the azimuths as they are: to compare with other programs, whatever it was fitted to.
+Model as_printed(Model model);
+
 int mode_count(const Model& model);
 int coefficient_count(const Model& model);
 Orders orders(const Model& model);
 
 /// Which of the fitted ranges the question leaves. Angles and wavelengths at the edge are inside (to 1e-9).
 Outside outside(const Validity& validity, double wavelength, const Geometry& geometry);
-
-/// How azimuths enter.
-enum class Rotation {
-  covariant,   ///< as an isotropic sample demands. germer2017 is evaluated at phi_i = 0 and turned: M(phi_i, phi_r) =
-               ///< R(−phi_i) M(0, phi_r − phi_i) R(−phi_i). The other families are evaluated as they are.
-  as_printed,  ///< the published sum at the azimuths given. For comparison with other programs only: for germer2017 the
-               ///< answer then depends on how the sample is turned, since the files lack the sine partners of their
-               ///< modes, and it misses the measured random directions by half as much again (0.0175 against 0.0113).
-};
 
 class PreparedIncidence;
 
@@ -145,7 +144,7 @@ class PreparedModel {
   double reflectance() const { return reflectance_; }
 
  private:
-  friend PreparedModel prepare(const Model&, double, Rotation);
+  friend PreparedModel prepare(const Model&, double);
   friend class PreparedIncidence;
   friend struct Evaluation;
   struct Pattern;  // what is the same for all wavelengths
@@ -180,7 +179,7 @@ class PreparedIncidence {
 
 /// Folds powers of the wavelength (micrometres, positive), norms and the reflectance into flat arrays.
 /// Throws std::invalid_argument for an invalid model or wavelength.
-PreparedModel prepare(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
+PreparedModel prepare(const Model& model, double wavelength);
 
 /// Models that need no wavelength: with highest power 0, and no reflectance table or one with a single node. Returns
 /// their wavelength, or 1 if that is unknown. Throws std::invalid_argument, with the fitted wavelengths, for others.

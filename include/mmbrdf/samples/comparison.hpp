@@ -29,13 +29,12 @@ struct Comparison {
 
 /// Measured − model for each sample, xy frame: f11 in sr⁻¹ (element 11), others m_ij. Throws std::invalid_argument for an
 /// invalid model or geometry.
-std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples,
-                               Rotation rotation = Rotation::covariant);
+std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples);
 
 /// Samples − model, for f11 and for the normalised elements.
 /// Throws std::invalid_argument for an invalid model or sample, without samples, where f11 of the model is not positive
 /// (what would f_ij / f11 say there?), or for differences whose squares overflow.
-Comparison compare(const Model& model, std::span<const Sample> samples, Rotation rotation = Rotation::covariant);
+Comparison compare(const Model& model, std::span<const Sample> samples);
 
 /// Second − first model at each of the wavelengths (micrometres) and geometries. Throws
 /// std::invalid_argument for an invalid model, wavelength or geometry, without geometries, where f11 of either model is

@@ -32,7 +32,7 @@ class Draws {
   /// The same seed gives the same draws, and a longer list begins with the shorter, to rounding. Throws
   /// std::invalid_argument for an invalid model, a block whose covariance is not known or not positive semidefinite, or
   /// unless 2 ≤ count ≤ max_draws.
-  explicit Draws(const Model& model, int count = 1000, unsigned long seed = 0, Rotation rotation = Rotation::covariant);
+  explicit Draws(const Model& model, int count = 1000, unsigned long seed = 0);
   static constexpr int max_draws = 1000000;
 
   int count() const { return count_; }

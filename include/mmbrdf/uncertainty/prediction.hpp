@@ -59,7 +59,7 @@ class PreparedUncertainty {
   double directional_hemispherical_reflectance(const Direction& incident) const;
 
  private:
-  friend PreparedUncertainty prepare_uncertainty(const Model&, double, Rotation);
+  friend PreparedUncertainty prepare_uncertainty(const Model&, double);
   struct Blocks;
   struct Slopes;
   explicit PreparedUncertainty(std::shared_ptr<const Blocks> blocks);
@@ -70,7 +70,7 @@ class PreparedUncertainty {
 /// Throws std::invalid_argument for an invalid model or wavelength (micrometres), a block whose covariance is not
 /// known, a covariance with an eigenvalue below −covariance_tolerance times its largest, or numbers that overflow
 /// at this wavelength.
-PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength, Rotation rotation = Rotation::covariant);
+PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength);
 
 /// Whether the covariance of every block is known: without one of them there is no uncertainty of any prediction.
 bool knows_uncertainty(const Model& model);

@@ -36,7 +36,7 @@ struct Arrangement {
 };
 
 /// Of a valid model.
-Arrangement arrangement(const Model& model, Rotation rotation);
+Arrangement arrangement(const Model& model);
 
 /// The coefficients of the modes for each power of the wavelength, power after power.
 std::vector<double> by_powers(const Model& model);

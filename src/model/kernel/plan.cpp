@@ -107,12 +107,12 @@ std::vector<Shares> straight_shares(const Model& model, Arrangement& result) {
 
 }  // namespace
 
-Arrangement arrangement(const Model& model, Rotation rotation) {
+Arrangement arrangement(const Model& model) {
   Arrangement result;
   const Orders highest = orders(model);
   result.order = std::max(highest.f11, highest.other);
   result.projected = model.mapping == DiscMapping::projected;
-  result.turned = model.family == Family::germer2017 && rotation == Rotation::covariant;
+  result.turned = turns(model);
   std::vector<Shares> shares;
   if (highest.f11 <= 7 && highest.other <= 4) shares = straight_shares(model, result);
   if (shares.empty()) {
