@@ -32,8 +32,7 @@ py::object evaluate(const Question& question, Frame frame, int threads, const st
   Range range(question.object());
   without_gil([&] {
     question.each(
-        threads, 2048,
-        [&](double wavelength) { return question.prepared(wavelength); },
+        threads, 2048, [&](double wavelength) { return question.prepared(wavelength); },
         [&](const PreparedModel& model, const Some& some) {
           range.count(model.wavelength(), some.geometries);
           if (!some.positions)
@@ -60,8 +59,7 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
     question.each(
         threads, 64,
         [&](double wavelength) {
-          return Prepared{prepare_uncertainty(question.model(), wavelength),
-                          question.prepared(wavelength)};
+          return Prepared{prepare_uncertainty(question.model(), wavelength), question.prepared(wavelength)};
         },
         [&](const Prepared& p, const Some& some) {
           range.count(p.model.wavelength(), some.geometries);
@@ -138,10 +136,7 @@ py::object estimable(const Question& question, int threads) {
   auto* const out = result.mutable_data();
   without_gil([&] {
     question.each(
-        threads, 64,
-        [&](double wavelength) {
-          return prepare_uncertainty(question.model(), wavelength);
-        },
+        threads, 64, [&](double wavelength) { return prepare_uncertainty(question.model(), wavelength); },
         [&](const PreparedUncertainty& u, const Some& some) {
           for (std::size_t i = 0; i < some.geometries.size(); ++i)
             out[some.position(i)] = u.estimable(some.geometries[i]);

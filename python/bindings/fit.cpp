@@ -34,7 +34,9 @@ struct Request {
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
   if (as_printed && family != "germer2017")
     throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
-  return {family_from(family), {orders.first, orders.second}, disc_mapping_from(mapping),
+  return {family_from(family),
+          {orders.first, orders.second},
+          disc_mapping_from(mapping),
           as_printed ? Rotation::as_printed : Rotation::covariant};
 }
 

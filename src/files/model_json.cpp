@@ -134,8 +134,8 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
 
 Model read_model(const Field& root) {
   require_format(root, format_name, conventions(), units(),
-                 {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "rotation", "conventions", "units",
-                  "validity", "reflectance", "blocks", "provenance"});
+                 {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "rotation", "conventions",
+                  "units", "validity", "reflectance", "blocks", "provenance"});
   Model model;
   model.name = root["name"].text();
   model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });

@@ -100,7 +100,8 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
   std::vector<Mueller> weights;
   for (const Sample& sample : samples) {
     try {
-      weights.push_back(data_weights_of(turns(basis) ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
+      weights.push_back(
+          data_weights_of(turns(basis) ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }

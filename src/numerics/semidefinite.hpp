@@ -12,14 +12,13 @@
 
 namespace mmbrdf {
 
-/// Eigenvalues, rising, of the covariance of a block. Throws std::invalid_argument, naming it, for one below −tolerance
-/// times the largest.
-inline void require_semidefinite(const Eigen::VectorXd& eigenvalues, const std::string& block, double tolerance) {
+/// Eigenvalues, rising, of the covariance `of` something. Throws std::invalid_argument, naming it, for one below
+/// −tolerance times the largest.
+inline void require_semidefinite(const Eigen::VectorXd& eigenvalues, const std::string& of, double tolerance) {
   const double lowest = eigenvalues(0), highest = std::max(eigenvalues(eigenvalues.size() - 1), 0.0);
   if (!std::isfinite(highest) || !(lowest >= -tolerance * highest))
-    throw std::invalid_argument("the covariance of block " + block +
-                                " is not positive semidefinite: its eigenvalues are " + shortest(lowest) + " to " +
-                                shortest(highest));
+    throw std::invalid_argument("the covariance of " + of + " is not positive semidefinite: its eigenvalues are " +
+                                shortest(lowest) + " to " + shortest(highest));
 }
 
 }  // namespace mmbrdf

@@ -206,7 +206,7 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
     if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
       throw std::invalid_argument("the covariance of the instrument is not symmetric and finite");
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverses->covariance);
-    require_semidefinite(solver.eigenvalues(), "instrument", covariance_tolerance);
+    require_semidefinite(solver.eigenvalues(), "the instrument", covariance_tolerance);
     const double least = 1e-14 * solver.eigenvalues()(size - 1);
     const Index none = (solver.eigenvalues().array() <= least).count();
     inverses->errors =

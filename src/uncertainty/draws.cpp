@@ -54,7 +54,7 @@ MatrixXd joint_covariance(const FittedBlock& fitted, const ReflectanceTable& tab
 MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(joint_covariance(fitted, table));
   const VectorXd& s = solver.eigenvalues();
-  require_semidefinite(s, fitted.block.name, covariance_tolerance);
+  require_semidefinite(s, "block " + fitted.block.name, covariance_tolerance);
   return solver.eigenvectors() * s.cwiseMax(0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
 }
 

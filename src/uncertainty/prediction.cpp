@@ -108,7 +108,7 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
   require_semidefinite(Eigen::SelfAdjointEigenSolver<MatrixXd>(result.covariance, Eigen::EigenvaluesOnly).eigenvalues(),
-                       fitted.block.name, covariance_tolerance);
+                       "block " + fitted.block.name, covariance_tolerance);
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = std::sqrt(squares);
   result.terms.resize(fitted.block.elements.size());

@@ -128,8 +128,7 @@ TEST(PublishedSubsets, GiveThePapersNumbersInThePapersWayAndLessInAnIsotropicOne
   Basis printed;
   printed.family = Family::germer2017;
   printed.rotation = Rotation::as_printed;
-  const SubsetStatistics paper =
-      subset_statistics(curves(fit_parts(thirds, printed).parts), reference);
+  const SubsetStatistics paper = subset_statistics(curves(fit_parts(thirds, printed).parts), reference);
   EXPECT_NEAR(paper.mean_distance, 0.0059, 5e-5);
   EXPECT_NEAR(paper.largest_distance, 0.0264, 5e-5);
   EXPECT_NEAR(paper.mean_deviation, 0.0052, 5e-5);

@@ -92,7 +92,8 @@ struct Arranged {
   int powers = 0;
   T scale = 1;
 
-  Arranged(const Model& model, double wavelength) : arrangement(mmbrdf::arrangement(model)), scale(static_cast<T>(model.reflectance.at(wavelength))) {
+  Arranged(const Model& model, double wavelength)
+      : arrangement(mmbrdf::arrangement(model)), scale(static_cast<T>(model.reflectance.at(wavelength))) {
     const std::vector<double> all = by_powers(model);
     const std::size_t modes = all.size() / static_cast<std::size_t>(model.powers + 1);
     std::vector<double> folded(modes);
@@ -117,8 +118,7 @@ std::vector<Mueller> matrices(const Kernel& kernel, const KernelModel<T>& model,
 }
 
 Mueller reference(const Model& model, double wavelength, const Geometry& g) {
-  if (!turns(model))
-    return sum_in_extended_precision(model, wavelength, g);
+  if (!turns(model)) return sum_in_extended_precision(model, wavelength, g);
   const Geometry at_zero{{g.incident.theta, 0}, {g.reflected.theta, g.reflected.phi - g.incident.phi}};
   return turned(sum_in_extended_precision(model, wavelength, at_zero), g.incident.phi);
 }

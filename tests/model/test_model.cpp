@@ -130,8 +130,7 @@ RC_GTEST_PROP(Model, OfAnIsotropicSampleLooksTheSameInAMirror, ()) {
 // not.
 RC_GTEST_PROP(Model, IsReciprocal, ()) {
   const Family family = *rc::gen::elementOf(every_family);
-  const PreparedModel model =
-      prepare(as_printed(any_model(family, family == Family::anisotropic ? 5 : 12)), 1);
+  const PreparedModel model = prepare(as_printed(any_model(family, family == Family::anisotropic ? 5 : 12)), 1);
   const Geometry geometry = any_geometry();
   for (const Frame frame : {Frame::xy, Frame::sp})
     RC_ASSERT(deviation(model.evaluate(exchanged(geometry), frame), exchanged(model.evaluate(geometry, frame))) <=
@@ -154,8 +153,8 @@ TEST(Model, AsPrintedChangesWhenTheSampleIsTurned) {
 RC_GTEST_PROP(Model, AsPrintedIsTheSameAtTheAzimuthsOfThePublishedGrid, ()) {
   const Model germer = any_model(Family::germer2017, 8);
   const Geometry geometry{{any_theta(), *rc::gen::element(0.0, pi)}, any_direction()};
-  RC_ASSERT(deviation(prepare(as_printed(germer), 1).evaluate(geometry),
-                      prepare(germer, 1).evaluate(geometry)) <= symmetry_error);
+  RC_ASSERT(deviation(prepare(as_printed(germer), 1).evaluate(geometry), prepare(germer, 1).evaluate(geometry)) <=
+            symmetry_error);
 }
 
 RC_GTEST_PROP(Model, OfOtherFamiliesIsTheSameAsPrinted, ()) {
@@ -189,14 +188,12 @@ RC_GTEST_PROP(Model, IsTheSumOfItsModesToThePromisedError, ()) {
   const double wavelength = between(0.3, 1.2);
   const Geometry geometry = any_geometry();
   const Mueller expected = sum_in_extended_precision(model, wavelength, geometry);
-  RC_ASSERT(deviation_of_m11(prepare(as_printed(model), wavelength).evaluate(geometry), expected) <=
-            evaluation_error);
+  RC_ASSERT(deviation_of_m11(prepare(as_printed(model), wavelength).evaluate(geometry), expected) <= evaluation_error);
 }
 
 RC_GTEST_PROP(Model, PreparedForOneIncidentDirectionIsTheSame, ()) {
   const Family family = *rc::gen::elementOf(every_family);
-  const PreparedModel model =
-      prepare(either_way(any_model(family, 4, 2)), between(0.3, 1.2));
+  const PreparedModel model = prepare(either_way(any_model(family, 4, 2)), between(0.3, 1.2));
   const Direction incident = any_direction();
   const PreparedIncidence from_there = model.at(incident);
   RC_ASSERT(from_there.incident() == incident);
@@ -315,8 +312,7 @@ RC_GTEST_PROP(Model, AtAnotherWavelengthIsAsIfPreparedThere, ()) {
   Model model = any_model(*rc::gen::elementOf(every_family), 4, 3);
   model.reflectance = {{0.4, 0.7}, {0.9, 0.5}};
   const double wavelength = between(0.3, 1.2);
-  const PreparedModel moved = prepare(model, between(0.3, 1.2)).at(wavelength),
-                      there = prepare(model, wavelength);
+  const PreparedModel moved = prepare(model, between(0.3, 1.2)).at(wavelength), there = prepare(model, wavelength);
   const Geometry geometry = any_geometry();
   RC_ASSERT(moved.wavelength() == wavelength);
   RC_ASSERT(moved.evaluate(geometry) == there.evaluate(geometry));

@@ -114,7 +114,8 @@ struct Report {
 };
 
 std::string text(const Report& report) {
-  std::string text = report.second + " - " + report.first + (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
+  std::string text = report.second + " - " + report.first +
+                     (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
                      counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) +
                      ", frame xy\n\nelement  unit           rms         mean      largest   at nm  theta_i    phi_i  "
                      "theta_r    phi_r\n";

@@ -39,7 +39,8 @@ void print_text(const Answer& a) {
   std::cout << heading(a.place)
             << (a.options.normalized ? "f11 in sr^-1, the other elements divided by it" : "Mueller BRDF in sr^-1")
             << ", frame " << to_string(a.options.frame) << " (" << convention_note(a.options.frame) << ")"
-            << (a.place.rotation == Rotation::as_printed ? ", as printed" : "") << "\nvalidity: " << to_string(a.outside) << '\n';
+            << (a.place.rotation == Rotation::as_printed ? ", as printed" : "")
+            << "\nvalidity: " << to_string(a.outside) << '\n';
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
       const double value = a.mueller(row, column);

@@ -55,8 +55,7 @@ Split split(const Question& q, const Options& o, unsigned long seed) {
                                                                 : folds_by_row(q.samples.size(), o.parts)),
                                     o.basis, o.fit, o.weights);
   Split result;
-  for (const Model& part : fits.parts)
-    result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries));
+  for (const Model& part : fits.parts) result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries));
   result.reference = q.reference ? polarized_curve(*q.reference, q.wavelength, q.geometries)
                                  : polarized_curve(fits.whole, q.wavelength, q.geometries);
   result.uncertainty = polarized_uncertainty(fits.whole, q.wavelength, q.geometries);

@@ -157,7 +157,8 @@ void print_text(const AnalysisReport& r) {
                  a);
   for (const Quantity& quantity : a.quantities) print_quantity(quantity, a);
   std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
-            << convention_note(r.question.frame) << ")" << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n';
+            << convention_note(r.question.frame) << ")"
+            << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n';
   print_matrix(a.elements);
   if (a.uncertainties) {
     std::cout << "its standard uncertainties\n";

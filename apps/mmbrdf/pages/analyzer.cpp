@@ -119,8 +119,7 @@ Analyzer::Analyzer(const Model& model, AnalysisOptions options)
       unknown_uncertainty_(why_uncertainty_is_unknown(model)),
       wavelengths_([this](double wavelength) { return prepared(wavelength); }, wavelengths_to_keep(options_.draws)) {
   require_semidefinite(model);
-  if (options_.draws > 0 && unknown_uncertainty_.empty())
-    draws_.emplace(model, options_.draws, options_.seed);
+  if (options_.draws > 0 && unknown_uncertainty_.empty()) draws_.emplace(model, options_.draws, options_.seed);
 }
 
 Analyzer::AtWavelength Analyzer::prepared(double wavelength) const {

@@ -87,12 +87,12 @@ struct FrameAngles {
 FrameAngles angles_to_xy(const Geometry& geometry, Frame frame);
 inline constexpr double parallel_limit = 1e-8;
 
-/// The same Mueller matrix in another frame. Exact to frame_error × |largest element|; round trips too. To and from
+/// A Mueller matrix in another frame. Exact to frame_error × |largest element|; round trips too. To and from
 /// scattering_plane the rounding of phi_r − phi_i, some 4e-16, adds up to 8 / |k_in × k_out| times itself.
 /// Throws std::invalid_argument for an invalid geometry.
 Mueller change_frame(const Mueller& m, const Geometry& geometry, Frame from, Frame to);
 
-/// The covariance of its elements, of all sixteen or of f11 and the normalised ones, in another frame.
+/// The covariance of a matrix's elements, of all sixteen or of f11 and the normalised ones, in another frame.
 /// Throws std::invalid_argument for an invalid geometry.
 MuellerCovariance change_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame from, Frame to);
 inline constexpr double frame_error = 1e-14;

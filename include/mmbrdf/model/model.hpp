@@ -78,9 +78,10 @@ struct Model {
   std::string name;
   Family family = Family::isotropic;
   DiscMapping mapping = DiscMapping::lambert;
-  Rotation rotation = Rotation::covariant;  ///< how the azimuths of the samples entered the fit, and those of a question
-                                            ///< enter an evaluation
-  int powers = 0;  ///< highest power of the wavelength
+  Rotation rotation =
+      Rotation::covariant;  ///< how the azimuths of the samples entered the fit, and those of a question
+                            ///< enter an evaluation
+  int powers = 0;           ///< highest power of the wavelength
   std::vector<FittedBlock> blocks;
   ReflectanceTable reflectance;
   Validity validity;

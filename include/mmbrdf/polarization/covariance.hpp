@@ -19,10 +19,11 @@ struct MuellerCovariance {
 /// Of each element: the square roots of the covariance's diagonal.
 Mueller standard_uncertainty(const MuellerCovariance& covariance);
 
-/// Of the elements of left · M · right, from those of M.
+/// Covariance of the elements of left · M · right, from that of the elements of M.
 MuellerCovariance transformed(const MuellerCovariance& covariance, const Mueller& left, const Mueller& right);
 
-/// Of M11 and of the other elements divided by it, from those of M. Throws std::invalid_argument unless M11 is positive.
+/// Covariance of M11 and of the other elements divided by it, from that of the elements of M. Throws
+/// std::invalid_argument unless M11 is positive.
 MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m);
 
 }  // namespace mmbrdf
