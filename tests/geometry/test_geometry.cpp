@@ -460,9 +460,9 @@ struct ScatmechFiles {
 TEST(Frame, ChangesFromXyToSpAgreeWithScatmech) {
   const std::string xy_file = reference("scatmech/PTFE.xyxy.rotation0.csv");
   const std::string sp_file = reference("scatmech/PTFE.psps.rotation0.csv");
-  if (xy_file.empty() || sp_file.empty()) GTEST_SKIP() << absent("PTFE.psps.rotation0.csv");
   const ScatmechFiles files{read_numbers(xy_file), read_numbers(sp_file)};
-  ASSERT_EQ(files.xy.size(), 500U);
+  ASSERT_GE(files.xy.size(), 40U);
+  ASSERT_EQ(files.xy.size(), files.other.size());
   for (std::size_t i = 0; i < files.xy.size(); ++i) {
     Geometry g = source_at_180(files.xy[i]);
     if (files.xy[i][3] == 0) g.reflected.phi = 0;  // at theta_r = 0 SCATMECH takes s = (0, 1, 0)
@@ -474,9 +474,9 @@ TEST(Frame, ChangesFromXyToSpAgreeWithScatmech) {
 TEST(Frame, ChangesFromXyToScatteringPlaneAgreeWithScatmech) {
   const std::string xy_file = reference("scatmech/PTFE.xyxy.rotation0.csv");
   const std::string plane_file = reference("scatmech/PTFE.plane.rotation0.csv");
-  if (xy_file.empty() || plane_file.empty()) GTEST_SKIP() << absent("PTFE.plane.rotation0.csv");
   const ScatmechFiles files{read_numbers(xy_file), read_numbers(plane_file)};
-  ASSERT_EQ(files.xy.size(), 500U);
+  ASSERT_GE(files.xy.size(), 40U);
+  ASSERT_EQ(files.xy.size(), files.other.size());
   for (std::size_t i = 0; i < files.xy.size(); ++i) {
     const Geometry g = source_at_180(files.xy[i]);
     const Mueller m = matrix(files.xy[i]);

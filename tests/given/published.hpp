@@ -26,9 +26,12 @@ inline std::string published(const std::string& file) {
   return existing("MMBRDF_DATA", MMBRDF_SOURCE_DIR "/../shared/data/germer2017", file);
 }
 
-/// Values computed by other programs: SCATMECH, an independent prototype.
+/// Values computed by other programs: SCATMECH, an independent prototype. The whole file in the folder MMBRDF_REFERENCE
+/// or beside the repository, else what of it is in tests/data/; empty if nothing is.
 inline std::string reference(const std::string& file) {
-  return existing("MMBRDF_REFERENCE", MMBRDF_SOURCE_DIR "/../shared/reference", file);
+  const std::string whole = existing("MMBRDF_REFERENCE", MMBRDF_SOURCE_DIR "/../shared/reference", file);
+  const std::string here = std::string(MMBRDF_SOURCE_DIR "/tests/data/") + file;
+  return !whole.empty() ? whole : std::filesystem::exists(here) ? here : "";
 }
 
 /// The line with which a test is skipped.

@@ -94,8 +94,8 @@ void require_valid(const Mode& mode, Family family);
 /// "22 (n, m, k, l) = (4, 2, 4, 2)" for messages.
 std::string to_string(const Mode& mode);
 
-/// The names used in files and by the program: 11, 12, …, g, h, u, v; lambert,
-/// projected.
+/// The names used in files and by the program: 11, 12, …, g, h, u, v; lambert, projected. The opposites throw
+/// std::invalid_argument for another name.
 std::string to_string(Function function);
 std::string to_string(DiscMapping mapping);
 /// Of row and column, from 0, on or above the diagonal: m11 … m44. Throws std::invalid_argument for others.
