@@ -1,149 +1,218 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/model/model.hpp"
-
+// What a model must be, where it holds, and the table of its reflectance. How it is evaluated is in model.cpp.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
-#include <tuple>
-#include <utility>
 
-#include "mmbrdf/model/batch.hpp"
-#include "model/kernel/plan_parts.hpp"
+#include "mmbrdf/model/model.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double edge = 1e-9;  // radians and micrometres: angles that went through degrees are still inside
+
+}  // namespace
+
+void require_wavelength(double wavelength) {
+  if (!(wavelength > 0))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is not positive");
+  if (!(wavelength <= max_wavelength))
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) + " nm is more than a metre");
+}
+
+std::vector<double> ReflectanceTable::weights(double wavelength) const {
+  std::vector<double> result(values.size());
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
+  if (values.empty()) return result;
+  if (above == wavelengths.begin() || above == wavelengths.end()) {
+    result[above == wavelengths.begin() ? 0 : values.size() - 1] = 1;
+    return result;
+  }
+  result[i] = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  result[i - 1] = 1 - result[i];
+  return result;
+}
+
+double ReflectanceTable::at(double wavelength) const {  // weights(), without allocating
+  if (values.empty()) return 1;
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  if (above == wavelengths.begin()) return values.front();
+  if (above == wavelengths.end()) return values.back();
+  const std::size_t i = static_cast<std::size_t>(above - wavelengths.begin());
+  const double weight = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  return (1 - weight) * values[i - 1] + weight * values[i];
+}
+
+void require_valid(const ReflectanceTable& table) {
+  if (table.wavelengths.size() != table.values.size())
+    throw std::invalid_argument("reflectance table: " + std::to_string(table.wavelengths.size()) + " wavelengths, " +
+                                std::to_string(table.values.size()) + " values");
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    require_wavelength(table.wavelengths[i]);
+    if (i > 0 && table.wavelengths[i] <= table.wavelengths[i - 1])
+      throw std::invalid_argument("reflectance table: wavelength " + shortest(in_nanometres(table.wavelengths[i])) +
+                                  " nm does not rise");
+    if (!(table.values[i] > 0) || !std::isfinite(table.values[i]))
+      throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not positive");
+  }
+  const std::size_t count = table.values.size();
+  if (!table.covariance.empty() && table.covariance.size() != count * count)
+    throw std::invalid_argument("reflectance table: covariance of " + std::to_string(table.covariance.size()) +
+                                " numbers, expected " + std::to_string(count * count));
+  if (table.covariance.empty() && !table.covariance_with_f11.empty())
+    throw std::invalid_argument("reflectance table: a covariance with the coefficients, but none of its own");
+  for (const auto& list : {table.covariance, table.covariance_with_f11})
+    if (!std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }))
+      throw std::invalid_argument("reflectance table: a covariance is not finite");
+}
+
+std::string to_string(Outside outside) {
+  std::string result;
+  const auto append = [&](Outside reason, const char* name) {
+    if (outside & reason) result.append(result.empty() ? "" : "+").append(name);
+  };
+  append(outside_theta_i, "theta_i");
+  append(outside_theta_r, "theta_r");
+  append(outside_wavelength, "wavelength");
+  append(unknown_range, "unknown");
+  return result.empty() ? "ok" : result;
+}
+
+bool leaves_known_range(Outside outside) { return (outside & ~static_cast<unsigned>(unknown_range)) != 0; }
 
 namespace {
 
-/// A vector of length 1 to 1e-6 with exactly that length.
-Vector3 normalized(const Vector3& v) {
-  const double length = std::hypot(v[0], v[1], v[2]);
-  if (!(std::abs(length - 1) < 1e-6) || v[2] < 0)
-    throw std::invalid_argument("(" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) +
-                                ") is not a unit vector with z >= 0");
-  return {v[0] / length, v[1] / length, v[2] / length};
+void require_valid(const Validity& validity) {
+  double last = 0;
+  for (const double wavelength : validity.wavelengths) {
+    require_wavelength(wavelength);
+    if (wavelength <= last)
+      throw std::invalid_argument("validity: wavelength " + shortest(in_nanometres(wavelength)) + " nm does not rise");
+    last = wavelength;
+  }
+  for (const std::optional<double>& theta : {validity.theta_i_max, validity.theta_r_max})
+    if (theta && !(*theta >= 0 && *theta <= pi / 2 + edge))
+      throw std::invalid_argument("validity: polar angle " + shortest(in_degrees(*theta)) +
+                                  " degrees is not in [0, 90]");
+}
+
+/// The numbers of a block, of which there are `count` coefficients.
+void require_valid(const FittedBlock& fitted, std::size_t count) {
+  const std::string where = "block " + fitted.block.name + ": ";
+  const auto require_size = [&](const std::vector<double>& list, std::size_t expected, const std::string& what) {
+    if (list.size() != expected)
+      throw std::invalid_argument(where + what + std::to_string(list.size()) + " numbers, expected " +
+                                  std::to_string(expected));
+  };
+  if (fitted.coefficients.size() != count)
+    throw std::invalid_argument(where + std::to_string(fitted.coefficients.size()) + " coefficients, expected " +
+                                std::to_string(count));
+  if (fitted.rank < 0 || static_cast<std::size_t>(fitted.rank) > count)
+    throw std::invalid_argument(where + "rank " + std::to_string(fitted.rank) + " of " + std::to_string(count));
+  const std::size_t free = count - static_cast<std::size_t>(fitted.rank);
+  if (!fitted.null_space.empty()) require_size(fitted.null_space, free * count, "null space of ");
+  if (!fitted.covariance.empty()) require_size(fitted.covariance, count * count, "covariance of ");
+  for (const auto* list : {&fitted.coefficients, &fitted.covariance, &fitted.null_space})
+    if (!std::all_of(list->begin(), list->end(), [](double x) { return std::isfinite(x); }))
+      throw std::invalid_argument(where + "a number is not finite");
+  for (std::size_t i = 0; i < (fitted.covariance.empty() ? 0 : count); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (fitted.covariance[i * count + j] != fitted.covariance[j * count + i])
+        throw std::invalid_argument(where + "covariance is not symmetric at " + std::to_string(i + 1) + ", " +
+                                    std::to_string(j + 1));
 }
 
 }  // namespace
 
-PreparedModel prepare(const Model& model, double wavelength) {
-  require_valid(model);
-  require_wavelength(wavelength);
-  auto pattern = std::make_shared<PreparedModel::Pattern>();
-  pattern->mapping = model.mapping;
-  pattern->arrangement = arrangement(model);
-  for (int k = 0; k < zernike_count(pattern->arrangement.order); ++k) pattern->table_norms.push_back(table_norm(k));
-  pattern->by_powers = by_powers(model);
-  pattern->reflectance = model.reflectance;
-  pattern->validity = model.validity;
+void require_valid(const Model& model) {
+  if (model.powers < 0 || model.powers > max_power)
+    throw std::invalid_argument("highest power of the wavelength " + std::to_string(model.powers) + " is not in 0..." +
+                                std::to_string(max_power));
+  std::vector<Mode> modes;
   for (const FittedBlock& fitted : model.blocks)
-    for (const Mode& mode : fitted.block.modes) {
-      for (const Term& term : terms(mode, model.family)) pattern->terms.push_back(term);
-      pattern->terms_end.push_back(pattern->terms.size());
-    }
-  return PreparedModel(std::move(pattern), wavelength);
+    modes.insert(modes.end(), fitted.block.modes.begin(), fitted.block.modes.end());
+  const std::vector<Block> expected = blocks(model.family, modes);
+  if (expected.empty() || expected.front().name != "11")
+    throw std::invalid_argument("model has no modes of element 11");
+  if (expected.size() != model.blocks.size())
+    throw std::invalid_argument("model: modes are not in the blocks of the family");
+  for (std::size_t b = 0; b < expected.size(); ++b) {
+    const FittedBlock& fitted = model.blocks[b];
+    if (fitted.block.modes != expected[b].modes || fitted.block.elements != expected[b].elements)
+      throw std::invalid_argument("block " + fitted.block.name + ": modes are not in canonical order");
+    require_valid(fitted, fitted.block.modes.size() * (static_cast<std::size_t>(model.powers) + 1));
+  }
+  require_valid(model.reflectance);
+  const std::size_t with_f11 = model.reflectance.covariance.empty()
+                                   ? 0
+                                   : model.reflectance.values.size() * model.blocks.front().coefficients.size();
+  if (model.reflectance.covariance_with_f11.size() != with_f11)
+    throw std::invalid_argument("reflectance table: covariance with the coefficients of " +
+                                std::to_string(model.reflectance.covariance_with_f11.size()) + " numbers, expected " +
+                                std::to_string(with_f11));
+  require_valid(model.validity);
 }
 
-PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength)
-    : pattern_(std::move(pattern)), reflectance_(pattern_->reflectance.at(wavelength)), wavelength_(wavelength) {
-  const std::size_t modes = pattern_->modes();
-  std::vector<double> coefficients(modes);
-  double power = 1;
-  for (std::size_t first = 0; first < pattern_->by_powers.size(); first += modes, power *= wavelength)
-    for (std::size_t q = 0; q < modes; ++q) coefficients[q] += power * pattern_->by_powers[first + q];
-  for (const double coefficient : coefficients)
-    if (!std::isfinite(coefficient))
-      throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) +
-                                  " nm: its powers are too large");
-  set(std::move(coefficients));
+bool turns(const Model& model) { return turns(model.family, model.rotation); }
+
+Model as_printed(Model model) {
+  model.rotation = Rotation::as_printed;
+  return model;
 }
 
-void PreparedModel::set(std::vector<double> coefficients) {
-  of_modes_ = std::move(coefficients);
-  of_form_ = pattern_->arrangement.coefficients(of_modes_);
+int mode_count(const Model& model) {
+  std::size_t count = 0;
+  for (const FittedBlock& fitted : model.blocks) count += fitted.block.modes.size();
+  return static_cast<int>(count);
 }
 
-PreparedModel PreparedModel::at(double wavelength) const {
-  require_wavelength(wavelength);
-  return PreparedModel(pattern_, wavelength);
+int coefficient_count(const Model& model) {
+  std::size_t count = 0;
+  for (const FittedBlock& fitted : model.blocks) count += fitted.coefficients.size();
+  return static_cast<int>(count);
 }
 
-PreparedModel PreparedModel::with(std::span<const double> coefficients, double reflectance) const {
-  if (coefficients.size() != pattern_->modes())
-    throw std::invalid_argument(std::to_string(coefficients.size()) + " coefficients, expected " +
-                                std::to_string(pattern_->modes()));
-  bool finite = std::isfinite(reflectance);
-  for (const double a : coefficients) finite = finite && std::isfinite(a);
-  if (!finite) throw std::invalid_argument("a coefficient or the reflectance is not finite");
-  PreparedModel result = *this;
-  result.reflectance_ = reflectance;
-  result.set({coefficients.begin(), coefficients.end()});
-  return result;
+Orders orders(const Model& model) {
+  std::vector<Block> list;
+  for (const FittedBlock& fitted : model.blocks) list.push_back(fitted.block);
+  return orders(list);
 }
 
-PreparedIncidence PreparedModel::at(const Direction& incident) const { return PreparedIncidence(*this, incident); }
-
-Outside PreparedModel::outside(const Geometry& geometry) const {
-  return mmbrdf::outside(pattern_->validity, wavelength_, geometry);
+Outside outside(const Validity& validity, double wavelength, const Geometry& geometry) {
+  unsigned result = inside;
+  if (!validity.theta_i_max || !validity.theta_r_max || validity.wavelengths.empty()) result |= unknown_range;
+  if (geometry.incident.theta > validity.theta_i_max.value_or(pi / 2) + edge) result |= outside_theta_i;
+  if (geometry.reflected.theta > validity.theta_r_max.value_or(pi / 2) + edge) result |= outside_theta_r;
+  if (!validity.wavelengths.empty() &&
+      (wavelength < validity.wavelengths.front() - edge || wavelength > validity.wavelengths.back() + edge))
+    result |= outside_wavelength;
+  return static_cast<Outside>(result);
 }
 
-KernelModel<double> Evaluation::model(const PreparedModel& prepared) {
-  return kernel_model<double>(prepared.pattern_->arrangement, prepared.of_form_, 0, prepared.reflectance_);
+double only_wavelength(const Model& model) {
+  const std::size_t known = model.validity.wavelengths.size();
+  if (model.powers == 0 && known <= 1 && model.reflectance.values.size() <= 1)
+    return known == 1 ? model.validity.wavelengths.front() : 1.0;
+  std::string list;
+  for (const double wavelength : model.validity.wavelengths)
+    list += (list.empty() ? ", fitted at " : ", ") + shortest(in_nanometres(wavelength));
+  throw std::invalid_argument("the model depends on the wavelength" + list + (list.empty() ? "" : " nm") +
+                              ": give one");
 }
 
-const PreparedPattern& Evaluation::pattern(const PreparedModel& prepared) { return *prepared.pattern_; }
-
-Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
-  Mueller m;
-  evaluate(std::span(&geometry, 1), frame, std::span(&m, 1));
-  return m;
+std::vector<double> known_wavelengths(const Model& model) {
+  if (!model.validity.wavelengths.empty()) return model.validity.wavelengths;
+  if (!model.reflectance.wavelengths.empty()) return model.reflectance.wavelengths;
+  return model.powers == 0 ? std::vector{1.0} : std::vector<double>{};
 }
 
-Mueller PreparedModel::evaluate(const Vector3& incident, const Vector3& reflected, Frame frame) const {
-  const Vector3 to_source = normalized(incident), to_detector = normalized(reflected);  // exact, and the messages
-  if (frame != Frame::xy) return evaluate({direction(to_source), direction(to_detector)}, frame);
-  const auto one = [](const double& value) { return std::span(&value, 1); };
-  const auto vector = [&](const Vector3& v) { return UnitVectors<double>{one(v[0]), one(v[1]), one(v[2])}; };
-  Mueller m;
-  mmbrdf::evaluate(*this, {vector(to_source), vector(to_detector)}, std::span(&m, 1));
-  return m;
-}
-
-void PreparedModel::evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const {
-  mmbrdf::evaluate(*this, geometries, out, {.frame = frame});
-}
-
-double PreparedModel::f11(const Geometry& geometry) const {
-  require_valid(geometry);
-  return evaluate(geometry)(0, 0);
-}
-
-PreparedIncidence::PreparedIncidence(const PreparedModel& model, const Direction& incident)
-    : pattern_(model.pattern_), reflectance_(model.reflectance_), incident_(incident) {
-  require_valid(Geometry{incident, {}});
-  of_form_ = incidence_coefficients(*pattern_, model.of_modes_, incident);
-}
-
-KernelModel<double> Evaluation::model(const PreparedIncidence& prepared) {
-  KernelModel<double> result =
-      kernel_model<double>(prepared.pattern_->arrangement, prepared.of_form_, 0, prepared.reflectance_);
-  result.form = incidence_form(prepared.pattern_->arrangement);
-  result.count = static_cast<int>(prepared.of_form_.size());
-  result.turned_by[0] = std::cos(prepared.incident_.phi);
-  result.turned_by[1] = std::sin(prepared.incident_.phi);
-  return result;
-}
-
-Mueller PreparedIncidence::evaluate(const Direction& reflected, Frame frame) const {
-  Mueller m;
-  evaluate(std::span(&reflected, 1), frame, std::span(&m, 1));
-  return m;
-}
-
-void PreparedIncidence::evaluate(std::span<const Direction> reflected, Frame frame, std::span<Mueller> out) const {
-  mmbrdf::evaluate(*this, reflected, out, {.frame = frame});
+bool knows_wavelength(const Model& model) {
+  return !model.validity.wavelengths.empty() || !model.reflectance.wavelengths.empty();
 }
 
 }  // namespace mmbrdf

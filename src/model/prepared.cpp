@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/model/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "mmbrdf/model/batch.hpp"
+#include "model/kernel/plan_parts.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+
+namespace {
+
+/// A vector of length 1 to 1e-6 with exactly that length.
+Vector3 normalized(const Vector3& v) {
+  const double length = std::hypot(v[0], v[1], v[2]);
+  if (!(std::abs(length - 1) < 1e-6) || v[2] < 0)
+    throw std::invalid_argument("(" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) +
+                                ") is not a unit vector with z >= 0");
+  return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+}  // namespace
+
+PreparedModel prepare(const Model& model, double wavelength) {
+  require_valid(model);
+  require_wavelength(wavelength);
+  auto pattern = std::make_shared<PreparedModel::Pattern>();
+  pattern->mapping = model.mapping;
+  pattern->arrangement = arrangement(model);
+  for (int k = 0; k < zernike_count(pattern->arrangement.order); ++k) pattern->table_norms.push_back(table_norm(k));
+  pattern->by_powers = by_powers(model);
+  pattern->reflectance = model.reflectance;
+  pattern->validity = model.validity;
+  for (const FittedBlock& fitted : model.blocks)
+    for (const Mode& mode : fitted.block.modes) {
+      for (const Term& term : terms(mode, model.family)) pattern->terms.push_back(term);
+      pattern->terms_end.push_back(pattern->terms.size());
+    }
+  return PreparedModel(std::move(pattern), wavelength);
+}
+
+PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength)
+    : pattern_(std::move(pattern)), reflectance_(pattern_->reflectance.at(wavelength)), wavelength_(wavelength) {
+  const std::size_t modes = pattern_->modes();
+  std::vector<double> coefficients(modes);
+  double power = 1;
+  for (std::size_t first = 0; first < pattern_->by_powers.size(); first += modes, power *= wavelength)
+    for (std::size_t q = 0; q < modes; ++q) coefficients[q] += power * pattern_->by_powers[first + q];
+  for (const double coefficient : coefficients)
+    if (!std::isfinite(coefficient))
+      throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) +
+                                  " nm: its powers are too large");
+  set(std::move(coefficients));
+}
+
+void PreparedModel::set(std::vector<double> coefficients) {
+  of_modes_ = std::move(coefficients);
+  of_form_ = pattern_->arrangement.coefficients(of_modes_);
+}
+
+PreparedModel PreparedModel::at(double wavelength) const {
+  require_wavelength(wavelength);
+  return PreparedModel(pattern_, wavelength);
+}
+
+PreparedModel PreparedModel::with(std::span<const double> coefficients, double reflectance) const {
+  if (coefficients.size() != pattern_->modes())
+    throw std::invalid_argument(std::to_string(coefficients.size()) + " coefficients, expected " +
+                                std::to_string(pattern_->modes()));
+  bool finite = std::isfinite(reflectance);
+  for (const double a : coefficients) finite = finite && std::isfinite(a);
+  if (!finite) throw std::invalid_argument("a coefficient or the reflectance is not finite");
+  PreparedModel result = *this;
+  result.reflectance_ = reflectance;
+  result.set({coefficients.begin(), coefficients.end()});
+  return result;
+}
+
+PreparedIncidence PreparedModel::at(const Direction& incident) const { return PreparedIncidence(*this, incident); }
+
+Outside PreparedModel::outside(const Geometry& geometry) const {
+  return mmbrdf::outside(pattern_->validity, wavelength_, geometry);
+}
+
+KernelModel<double> Evaluation::model(const PreparedModel& prepared) {
+  return kernel_model<double>(prepared.pattern_->arrangement, prepared.of_form_, 0, prepared.reflectance_);
+}
+
+const PreparedPattern& Evaluation::pattern(const PreparedModel& prepared) { return *prepared.pattern_; }
+
+Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
+  Mueller m;
+  evaluate(std::span(&geometry, 1), frame, std::span(&m, 1));
+  return m;
+}
+
+Mueller PreparedModel::evaluate(const Vector3& incident, const Vector3& reflected, Frame frame) const {
+  const Vector3 to_source = normalized(incident), to_detector = normalized(reflected);  // exact, and the messages
+  if (frame != Frame::xy) return evaluate({direction(to_source), direction(to_detector)}, frame);
+  const auto one = [](const double& value) { return std::span(&value, 1); };
+  const auto vector = [&](const Vector3& v) { return UnitVectors<double>{one(v[0]), one(v[1]), one(v[2])}; };
+  Mueller m;
+  mmbrdf::evaluate(*this, {vector(to_source), vector(to_detector)}, std::span(&m, 1));
+  return m;
+}
+
+void PreparedModel::evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const {
+  mmbrdf::evaluate(*this, geometries, out, {.frame = frame});
+}
+
+double PreparedModel::f11(const Geometry& geometry) const {
+  require_valid(geometry);
+  return evaluate(geometry)(0, 0);
+}
+
+PreparedIncidence::PreparedIncidence(const PreparedModel& model, const Direction& incident)
+    : pattern_(model.pattern_), reflectance_(model.reflectance_), incident_(incident) {
+  require_valid(Geometry{incident, {}});
+  of_form_ = incidence_coefficients(*pattern_, model.of_modes_, incident);
+}
+
+KernelModel<double> Evaluation::model(const PreparedIncidence& prepared) {
+  KernelModel<double> result =
+      kernel_model<double>(prepared.pattern_->arrangement, prepared.of_form_, 0, prepared.reflectance_);
+  result.form = incidence_form(prepared.pattern_->arrangement);
+  result.count = static_cast<int>(prepared.of_form_.size());
+  result.turned_by[0] = std::cos(prepared.incident_.phi);
+  result.turned_by[1] = std::sin(prepared.incident_.phi);
+  return result;
+}
+
+Mueller PreparedIncidence::evaluate(const Direction& reflected, Frame frame) const {
+  Mueller m;
+  evaluate(std::span(&reflected, 1), frame, std::span(&m, 1));
+  return m;
+}
+
+void PreparedIncidence::evaluate(std::span<const Direction> reflected, Frame frame, std::span<Mueller> out) const {
+  mmbrdf::evaluate(*this, reflected, out, {.frame = frame});
+}
+
+}  // namespace mmbrdf
