@@ -3,7 +3,7 @@
 
 #include <mmbrdf/files/materials.hpp>
 #include <mmbrdf/geometry/geometry.hpp>
-#include <mmbrdf/model/model.hpp>
+#include <mmbrdf/model/prepared.hpp>
 
 #include <cstdio>
 

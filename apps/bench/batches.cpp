@@ -5,6 +5,7 @@
 #include "bench.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/batch.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::bench {

@@ -6,6 +6,7 @@
 
 #include "bench.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "models.hpp"
 
@@ -15,20 +16,20 @@ namespace {
 /// A model as a kernel takes it, in the precision T.
 template <class T>
 struct Arranged {
-  Arrangement arrangement;
+  Plan plan;
   std::vector<T> coefficients;
   int modes = 0;
 
   /// All powers of the wavelength, or only λ⁰ of them.
-  Arranged(const Model& model, bool all_powers) : arrangement(mmbrdf::arrangement(model)) {
+  Arranged(const Model& model, bool all_powers) : plan(mmbrdf::plan(model)) {
     const std::vector<double> of_modes = by_powers(model);
     const std::size_t count = of_modes.size() / static_cast<std::size_t>(model.powers + 1);
     modes = static_cast<int>(count);
     for (std::size_t first = 0; first < (all_powers ? of_modes.size() : count); first += count)
-      for (const double a : arrangement.coefficients(std::span(of_modes).subspan(first, count)))
+      for (const double a : plan.coefficients(std::span(of_modes).subspan(first, count)))
         coefficients.push_back(static_cast<T>(a));
   }
-  KernelModel<T> model(int powers) const { return kernel_model<T>(arrangement, coefficients, powers, T(1)); }
+  KernelModel<T> model(int powers) const { return kernel_model<T>(plan, coefficients, powers, T(1)); }
 };
 
 enum class Layout { columns, matrices };

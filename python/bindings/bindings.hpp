@@ -15,7 +15,7 @@
 
 #include "arrays.hpp"
 #include "mmbrdf/model/description.hpp"
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 namespace mmbrdf::python {
 

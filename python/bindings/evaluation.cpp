@@ -2,6 +2,7 @@
 // Models at many wavelengths and geometries.
 #include <pybind11/stl.h>
 
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"

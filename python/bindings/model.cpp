@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Models: what they are, where they come from, where they go.
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

@@ -13,6 +13,7 @@
 #include "instrument.hpp"
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
 #include "mmbrdf/polarimetry/judgement.hpp"
 #include "mmbrdf/polarization/elements.hpp"

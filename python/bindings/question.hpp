@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 namespace mmbrdf::python {
 

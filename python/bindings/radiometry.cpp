@@ -10,6 +10,7 @@
 
 #include "dataset.hpp"
 #include "mmbrdf/fitting/subsets.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "question.hpp"
 

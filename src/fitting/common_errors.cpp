@@ -8,6 +8,7 @@
 #include <string>
 
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "text/numbers.hpp"
 

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "numerics/eigen_index.hpp"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/numerics/quadrature.hpp"
 
 namespace mmbrdf {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "text/numbers.hpp"

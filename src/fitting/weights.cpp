@@ -9,6 +9,7 @@
 
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "text/names.hpp"
 #include "text/numbers.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/model/batch.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "model/kernel/kernels.hpp"
+#include "model/kernel/plan.hpp"
 #include "numerics/threads.hpp"
 #include "text/numbers.hpp"
 
@@ -97,7 +99,7 @@ class Question {
     const PreparedPattern& pattern = Evaluation::pattern(prepared);
     std::vector<double> all;
     for (std::size_t first = 0; first < pattern.by_powers.size(); first += pattern.modes()) {
-      const auto power = pattern.arrangement.coefficients(std::span(pattern.by_powers).subspan(first, pattern.modes()));
+      const auto power = pattern.plan.coefficients(std::span(pattern.by_powers).subspan(first, pattern.modes()));
       all.insert(all.end(), power.begin(), power.end());
     }
     reflectance = &pattern.reflectance;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a model must be, where it holds, and the table of its reflectance. How it is evaluated is in model.cpp.
+#include "mmbrdf/model/model.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
 
-#include "mmbrdf/model/model.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,8 @@
 #include <utility>
 
 #include "mmbrdf/model/batch.hpp"
-#include "model/kernel/plan_parts.hpp"
+#include "model/kernel/plan.hpp"
+#include "model/kernel/plan_incidence.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -33,8 +34,8 @@ PreparedModel prepare(const Model& model, double wavelength) {
   require_wavelength(wavelength);
   auto pattern = std::make_shared<PreparedModel::Pattern>();
   pattern->mapping = model.mapping;
-  pattern->arrangement = arrangement(model);
-  for (int k = 0; k < zernike_count(pattern->arrangement.order); ++k) pattern->table_norms.push_back(table_norm(k));
+  pattern->plan = plan(model);
+  for (int k = 0; k < zernike_count(pattern->plan.order); ++k) pattern->table_norms.push_back(table_norm(k));
   pattern->by_powers = by_powers(model);
   pattern->reflectance = model.reflectance;
   pattern->validity = model.validity;
@@ -62,7 +63,7 @@ PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wave
 
 void PreparedModel::set(std::vector<double> coefficients) {
   of_modes_ = std::move(coefficients);
-  of_form_ = pattern_->arrangement.coefficients(of_modes_);
+  of_form_ = pattern_->plan.coefficients(of_modes_);
 }
 
 PreparedModel PreparedModel::at(double wavelength) const {
@@ -90,7 +91,7 @@ Outside PreparedModel::outside(const Geometry& geometry) const {
 }
 
 KernelModel<double> Evaluation::model(const PreparedModel& prepared) {
-  return kernel_model<double>(prepared.pattern_->arrangement, prepared.of_form_, 0, prepared.reflectance_);
+  return kernel_model<double>(prepared.pattern_->plan, prepared.of_form_, 0, prepared.reflectance_);
 }
 
 const PreparedPattern& Evaluation::pattern(const PreparedModel& prepared) { return *prepared.pattern_; }
@@ -128,8 +129,8 @@ PreparedIncidence::PreparedIncidence(const PreparedModel& model, const Direction
 
 KernelModel<double> Evaluation::model(const PreparedIncidence& prepared) {
   KernelModel<double> result =
-      kernel_model<double>(prepared.pattern_->arrangement, prepared.of_form_, 0, prepared.reflectance_);
-  result.form = incidence_form(prepared.pattern_->arrangement);
+      kernel_model<double>(prepared.pattern_->plan, prepared.of_form_, 0, prepared.reflectance_);
+  result.form = incidence_form(prepared.pattern_->plan);
   result.count = static_cast<int>(prepared.of_form_.size());
   result.turned_by[0] = std::cos(prepared.incident_.phi);
   result.turned_by[1] = std::sin(prepared.incident_.phi);

@@ -6,7 +6,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "polarimetry/calibration_parts.hpp"
+#include "polarimetry/calibration_refinement.hpp"
+#include "polarimetry/eigenvalue_calibration.hpp"
+#include "polarimetry/wafer_signs.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the sources of calibration.hpp share.
+/// What the steps of a calibration hand on: the eigenvalue method, the signs of wafers, the refinement.
 #pragma once
 
 #include <Eigen/Core>
@@ -41,38 +41,5 @@ Mueller reference_matrix(const Unknowns& unknowns, std::span<const Reference> re
 
 /// Polarizer with transmittance 1 along its axis and this leak of the amplitude across it. Smooth where that is 0.
 Mueller leaky_polarizer(double azimuth, double leak_real, double leak_imaginary);
-
-/// The eigenvalue method. Throws std::invalid_argument for what it cannot solve.
-Unknowns solve_linear(std::span<const Reference> references, const CalibrationOptions& options);
-
-/// A wafer as readings show it, with or without the signs of cos 2ψ and of Δ.
-struct SeenWafer {
-  std::size_t reference = 0;  ///< its place
-  DiattenuatorRetarder element;
-  bool has_side = false, has_sign = false;
-};
-
-/// Gives wafers that have none the signs that are stated with them, and else those of the film at the thickness that
-/// fits them best. Throws std::invalid_argument for a film that fits no wafers with these signs, or only without them.
-void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> references,
-                const CalibrationOptions& options);
-
-/// Throws std::invalid_argument unless what the references were found to be has the signs that are stated, and those of
-/// the film and of no other instrument. Sets the thickness and misfit of the film.
-void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options);
-
-/// psi and delta of a matrix that is, nearly, one of a diattenuator-retarder; tau is its element 11.
-DiattenuatorRetarder element_of(const Mueller& m);
-
-struct Refinement {
-  std::vector<double> covariance;  ///< of W and A
-  double chi_squared = 0;
-};
-
-/// Maximum likelihood, from a start near to it.
-Refinement refine(Unknowns& unknowns, std::span<const Reference> references, const CalibrationOptions& options);
-
-/// Readings less unknowns; the scale that A and W share does not count.
-long degrees_of_freedom(std::span<const Reference> references, const CalibrationOptions& options);
 
 }  // namespace mmbrdf::calibration

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "polarimetry/calibration_refinement.hpp"
+
 // Maximum likelihood of all unknowns at once: Σ (B − g A M W)² / σ², by Levenberg and Marquardt with the derivatives
 // dB = dA M W + A dM W + A M dW. The scale that A and W share, and that of the gains, are held by two more rows.
 #include <Eigen/QR>
@@ -6,7 +8,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "polarimetry/calibration_parts.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {

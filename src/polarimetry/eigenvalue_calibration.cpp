@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "polarimetry/eigenvalue_calibration.hpp"
+
 // With B0 that of the empty beam, C_i = B0⁻¹ B_i = W⁻¹ M_i W has the eigenvalues of M_i, from which M_i is known but
 // for the polarizer's azimuth; then M_i W − W C_i = 0 is linear in W. With more than four states all is first projected
 // to the four directions that B0 spans. The stacked equations are solved by their singular values: the eigenvalues of
@@ -13,7 +15,7 @@
 #include <stdexcept>
 
 #include "numerics/golden_section.hpp"
-#include "polarimetry/calibration_parts.hpp"
+#include "polarimetry/wafer_signs.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "polarimetry/wafer_signs.hpp"
+
 // Which of the eight instruments it is. Eigenvalues tell ψ but for its side of 45 degrees, and |Δ|. What is stated, or
 // a film whose thickness is fitted to what is known, gives each wafer the two signs from which the equations are
 // solved. Then the readings themselves have signs, of all wafers together: they must be those that were stated, and
@@ -11,7 +13,6 @@
 #include <tuple>
 
 #include "numerics/golden_section.hpp"
-#include "polarimetry/calibration_parts.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {

@@ -12,6 +12,7 @@
 #include "mmbrdf/fitting/diagnostics.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/samples/comparison.hpp"

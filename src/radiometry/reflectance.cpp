@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "text/numbers.hpp"
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mmbrdf/model/at_wavelengths.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "text/numbers.hpp"
 

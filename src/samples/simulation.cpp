@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/noise.hpp"
 #include "numerics/random.hpp"
 #include "text/numbers.hpp"

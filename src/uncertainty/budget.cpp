@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/uncertainty/budget.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/uncertainty/draws.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include "given/published.hpp"
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 namespace mmbrdf {
 namespace {

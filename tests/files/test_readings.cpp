@@ -10,6 +10,7 @@
 #include "given/cases.hpp"
 #include "given/files.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
 
 namespace mmbrdf {

@@ -18,6 +18,7 @@
 #include "given/random_model.hpp"
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 

@@ -13,6 +13,7 @@
 #include "given/random_model.hpp"
 #include "given/reference_sum.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 using namespace mmbrdf;

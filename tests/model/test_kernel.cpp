@@ -16,7 +16,9 @@
 #include "given/random_model.hpp"
 #include "given/reference_sum.hpp"
 #include "mmbrdf/model/batch.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "model/kernel/kernels.hpp"
+#include "model/kernel/plan.hpp"
 
 using namespace mmbrdf;
 
@@ -87,21 +89,21 @@ void run(const Kernel& kernel, const KernelModel<float>& model, const KernelPoin
 /// With the coefficients of all powers of the wavelength, or those of one wavelength.
 template <class T>
 struct Arranged {
-  Arrangement arrangement;
+  Plan plan;
   std::vector<T> coefficients;
   int powers = 0;
   T scale = 1;
 
   Arranged(const Model& model, double wavelength)
-      : arrangement(mmbrdf::arrangement(model)), scale(static_cast<T>(model.reflectance.at(wavelength))) {
+      : plan(mmbrdf::plan(model)), scale(static_cast<T>(model.reflectance.at(wavelength))) {
     const std::vector<double> all = by_powers(model);
     const std::size_t modes = all.size() / static_cast<std::size_t>(model.powers + 1);
     std::vector<double> folded(modes);
     for (std::size_t i = 0; i < all.size(); ++i)
       folded[i % modes] += all[i] * std::pow(wavelength, static_cast<double>(i / modes));
-    for (const double a : arrangement.coefficients(folded)) coefficients.push_back(static_cast<T>(a));
+    for (const double a : plan.coefficients(folded)) coefficients.push_back(static_cast<T>(a));
   }
-  KernelModel<T> model() const { return kernel_model<T>(arrangement, coefficients, powers, scale); }
+  KernelModel<T> model() const { return kernel_model<T>(plan, coefficients, powers, scale); }
 };
 
 /// Row by row.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a model must be, and where it is valid.
+#include "mmbrdf/model/model.hpp"
+
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -10,7 +12,7 @@
 
 #include "given/cases.hpp"
 #include "given/random_model.hpp"
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 using namespace mmbrdf;
 

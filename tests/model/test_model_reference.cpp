@@ -16,7 +16,7 @@
 
 #include "given/published.hpp"
 #include "mmbrdf/files/io.hpp"
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 using namespace mmbrdf;
 

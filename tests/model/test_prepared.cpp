@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -2,7 +2,7 @@
 // Succeeds when an installed mmbrdf compiles, links and gives a plausible value: near 1/pi for sintered PTFE.
 
 #include <mmbrdf/files/materials.hpp>
-#include <mmbrdf/model/model.hpp>
+#include <mmbrdf/model/prepared.hpp>
 
 int main() {
   const auto model = mmbrdf::material("ptfe");

@@ -8,6 +8,7 @@
 
 #include "given/cases.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 using namespace mmbrdf;
 

@@ -17,6 +17,7 @@
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"

@@ -11,6 +11,7 @@
 #include "given/random_model.hpp"
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/numerics/quadrature.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 

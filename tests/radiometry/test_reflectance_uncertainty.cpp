@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 
 namespace mmbrdf {

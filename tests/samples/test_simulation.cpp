@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 #include <gtest/gtest.h>

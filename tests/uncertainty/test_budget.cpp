@@ -11,6 +11,7 @@
 
 #include "given/cases.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
 

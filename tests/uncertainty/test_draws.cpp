@@ -14,6 +14,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/numerics/quadrature.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/polarization/gradients.hpp"

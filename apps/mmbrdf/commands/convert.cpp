@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "mmbrdf/fitting/projection.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"

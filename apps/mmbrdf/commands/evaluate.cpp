@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "command.hpp"
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "options/files.hpp"
 #include "options/question.hpp"
 #include "pages/describe.hpp"

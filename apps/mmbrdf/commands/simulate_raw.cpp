@@ -4,6 +4,7 @@
 
 #include "command.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"

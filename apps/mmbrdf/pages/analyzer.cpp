@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "pages/output.hpp"
 

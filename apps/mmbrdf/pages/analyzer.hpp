@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"

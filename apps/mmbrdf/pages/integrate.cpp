@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"

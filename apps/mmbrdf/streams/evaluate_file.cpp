@@ -13,6 +13,7 @@
 
 #include "mmbrdf/files/io.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "options/files.hpp"
 #include "pages/output.hpp"
 #include "streams/in_order.hpp"

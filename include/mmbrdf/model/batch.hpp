@@ -11,7 +11,7 @@
 #include <array>
 #include <span>
 
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 namespace mmbrdf {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/calibration.hpp"
 
 namespace mmbrdf {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mmbrdf/geometry/apertures.hpp"
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 
 namespace mmbrdf {
 /// Slopes of the directional-hemispherical reflectance over the coefficients of the modes of element 11, for one power

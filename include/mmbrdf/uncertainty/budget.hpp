@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {

@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {

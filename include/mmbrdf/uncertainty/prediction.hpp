@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/covariance.hpp"
 
 namespace mmbrdf {

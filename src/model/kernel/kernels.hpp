@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The kernels that were compiled in, and how a model is arranged for them.
+/// The kernels that were compiled in.
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "mmbrdf/model/model.hpp"
 #include "model/kernel/kernel.hpp"
 
 namespace mmbrdf {
@@ -15,75 +13,5 @@ std::span<const Kernel* const> kernels();
 
 /// The first that runs here.
 const Kernel& best_kernel();
-
-/// How the coefficients of a model become those of its form.
-struct Arrangement {
-  struct Share {
-    int coefficient;
-    double weight;
-  };
-  Form form = Form::pairs;
-  bool projected = false, turned = false;
-  int count = 0;                           ///< coefficients of the form
-  std::vector<Share> shares;               ///< what each mode gives to them, mode after mode
-  std::vector<std::size_t> shares_end{0};  ///< shares of mode q: shares_end[q] … shares_end[q + 1]
-  int order = 0;                           ///< highest radial order
-  std::vector<KernelPair> pairs;
-  std::vector<PairRun> runs;
-
-  /// Coefficients of the form from those of the modes, which are as many as modes.
-  std::vector<double> coefficients(std::span<const double> of_modes) const;
-};
-
-/// Of a valid model.
-Arrangement arrangement(const Model& model);
-
-/// The coefficients of the modes for each power of the wavelength, power after power.
-std::vector<double> by_powers(const Model& model);
-
-/// All of a prepared model that does not depend on the wavelength.
-struct PreparedPattern {
-  Arrangement arrangement;
-  std::vector<double> by_powers;          ///< coefficients of the modes, power after power
-  std::vector<Term> terms;                ///< of the modes, mode after mode
-  std::vector<std::size_t> terms_end{0};  ///< terms of mode q: terms_end[q] … terms_end[q + 1]
-  std::vector<double> table_norms;        ///< of K, which the kernel's table does not have
-  DiscMapping mapping;
-  ReflectanceTable reflectance;
-  Validity validity;
-
-  std::size_t modes() const { return terms_end.size() - 1; }
-};
-
-/// For the kernel; refers to `arrangement` and `coefficients`. All powers: not folded.
-template <class T>
-KernelModel<T> kernel_model(const Arrangement& arrangement, std::span<const T> coefficients, int powers, T scale) {
-  return {.form = arrangement.form,
-          .projected = arrangement.projected,
-          .turned = arrangement.turned,
-          .turned_by = {1, 0},
-          .list = {arrangement.order, arrangement.pairs.data(), arrangement.runs.data(),
-                   static_cast<int>(arrangement.runs.size())},
-          .coefficients = coefficients.data(),
-          .powers = powers,
-          .count = arrangement.count,
-          .scale = scale};
-}
-
-/// The form for one incident direction.
-Form incidence_form(const Arrangement& arrangement);
-
-/// Its coefficients, from those of the modes.
-std::vector<double> incidence_coefficients(const PreparedPattern& pattern, std::span<const double> of_modes,
-                                           const Direction& incident);
-
-struct PreparedModel::Pattern : PreparedPattern {};
-
-/// What the kernel is asked for a prepared model, in double precision. For model.cpp and batch.cpp.
-struct Evaluation {
-  static KernelModel<double> model(const PreparedModel& prepared);
-  static KernelModel<double> model(const PreparedIncidence& prepared);
-  static const PreparedPattern& pattern(const PreparedModel& prepared);
-};
 
 }  // namespace mmbrdf

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "model/kernel/plan.hpp"
+
 // How the coefficients of a model become those of a form of the kernel: the choice of the form, and Form::pairs.
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "model/kernel/plan_parts.hpp"
+#include "model/kernel/plan_germer2017.hpp"
+#include "model/kernel/plan_isotropic.hpp"
 
 namespace mmbrdf {
 
@@ -67,7 +70,7 @@ std::vector<std::vector<int>> in_parts(const std::vector<int>& targets) {
   return parts;
 }
 
-void arrange_pairs(const Model& model, Arrangement& result, std::vector<Shares>& shares) {
+void arrange_pairs(const Model& model, Plan& result, std::vector<Shares>& shares) {
   const auto uses = pair_uses(model);
   std::map<std::vector<int>, std::vector<std::pair<int, int>>> classes;  // pairs that feed the same sums
   for (const auto& [pair, list] : uses)
@@ -90,7 +93,7 @@ void arrange_pairs(const Model& model, Arrangement& result, std::vector<Shares>&
 }
 
 /// For models of one of the straight-line forms; else nothing.
-std::vector<Shares> straight_shares(const Model& model, Arrangement& result) {
+std::vector<Shares> straight_shares(const Model& model, Plan& result) {
   std::vector<Shares> shares;
   if (model.family == Family::anisotropic) return shares;
   for (const FittedBlock& fitted : model.blocks)
@@ -107,8 +110,8 @@ std::vector<Shares> straight_shares(const Model& model, Arrangement& result) {
 
 }  // namespace
 
-Arrangement arrangement(const Model& model) {
-  Arrangement result;
+Plan plan(const Model& model) {
+  Plan result;
   const Orders highest = orders(model);
   result.order = std::max(highest.f11, highest.other);
   result.projected = model.mapping == DiscMapping::projected;
@@ -126,7 +129,7 @@ Arrangement arrangement(const Model& model) {
   return result;
 }
 
-std::vector<double> Arrangement::coefficients(std::span<const double> of_modes) const {
+std::vector<double> Plan::coefficients(std::span<const double> of_modes) const {
   std::vector<double> result(size(count));
   for (std::size_t q = 0; q < of_modes.size(); ++q)
     for (std::size_t i = shares_end[q]; i < shares_end[q + 1]; ++i)

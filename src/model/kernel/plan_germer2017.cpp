@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "model/kernel/plan_germer2017.hpp"
+
 // How modes of the published index sets become the coefficients of kernel_germer2017.hpp. An element above the diagonal
 // is S-sum + D-sum; a product x = a(i) b(r) is (S + D)/2, the exchanged one (S − D)/2.
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
-
-#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "model/kernel/plan_incidence.hpp"
+
 // How a model at one incident direction becomes the coefficients of kernel_incidence.hpp.
 #include <algorithm>
 #include <array>
@@ -14,7 +16,7 @@ std::size_t size(int n) { return static_cast<std::size_t>(n); }
 /// For each element and each K(reflected) the factor of that K without its norm.
 std::array<std::vector<double>, 16> factors(const PreparedPattern& pattern, std::span<const double> of_modes,
                                             const DiscPoint& incident) {
-  const int order = pattern.arrangement.order;
+  const int order = pattern.plan.order;
   std::array<double, zernike_count(max_order)> k_i;
   zernike_table(order, incident, k_i.data());
   std::array<std::vector<double>, 16> result;
@@ -77,16 +79,15 @@ std::vector<double> plane_coefficients(const std::array<std::vector<double>, 16>
 
 }  // namespace
 
-Form incidence_form(const Arrangement& arrangement) {
-  const bool covariant =
-      arrangement.form == Form::isotropic || (arrangement.form == Form::germer2017 && arrangement.turned);
+Form incidence_form(const Plan& plan) {
+  const bool covariant = plan.form == Form::isotropic || (plan.form == Form::germer2017 && plan.turned);
   return covariant ? Form::plane : Form::functions;
 }
 
 std::vector<double> incidence_coefficients(const PreparedPattern& pattern, std::span<const double> of_modes,
                                            const Direction& incident) {
-  const bool plane = incidence_form(pattern.arrangement) == Form::plane;
-  const double phi = plane || pattern.arrangement.turned ? 0 : incident.phi;
+  const bool plane = incidence_form(pattern.plan) == Form::plane;
+  const double phi = plane || pattern.plan.turned ? 0 : incident.phi;
   const auto f = factors(pattern, of_modes, disc_point(Direction{incident.theta, phi}, pattern.mapping));
   if (plane) return plane_coefficients(f);
   std::vector<double> result(16 * f[0].size());

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "model/kernel/plan_isotropic.hpp"
+
 // How modes of the isotropic family become powers of t, s, p, d and c (kernel_isotropic.hpp).
 #include <algorithm>
 #include <cstdlib>
-
-#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 

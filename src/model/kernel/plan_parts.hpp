@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parts of arrangement(): for arrangement*.cpp alone.
+/// Polynomials in which plans are written.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <vector>
 
-#include "model/kernel/kernels.hpp"
+#include "model/kernel/plan.hpp"
 
 namespace mmbrdf {
 
-using Shares = std::vector<Arrangement::Share>;
+using Shares = std::vector<Plan::Share>;
 using Radial = std::vector<double>;  ///< coefficients by powers of t
 
 /// Q of R_n^k = ρ^k Q(t), t = 2ρ² − 1, k ≥ 0.
@@ -36,14 +35,5 @@ Polynomial imaginary_power(int k);
 
 /// Shares of a polynomial in the list of a symmetric function of some order that begins at `first`.
 void add_symmetric(Shares& shares, int first, int order, const Polynomial& polynomial);
-
-/// What a mode gives to the coefficients of Form::isotropic. Its orders must be within 7, 4.
-Shares isotropic_shares(const Mode& mode);
-
-/// The same for Form::germer2017; nothing if that form does not have the mode.
-std::optional<Shares> germer2017_shares(const Mode& mode);
-
-/// K without its norm is what Form::pairs and Form::functions have; the norm by the position in the table.
-double table_norm(int index);
 
 }  // namespace mmbrdf

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Signs that the readings of a wafer leave open.
+#pragma once
+
+#include "polarimetry/calibration_parts.hpp"
+
+namespace mmbrdf::calibration {
+
+/// A wafer as readings show it, with or without the signs of cos 2ψ and of Δ.
+struct SeenWafer {
+  std::size_t reference = 0;  ///< its place
+  DiattenuatorRetarder element;
+  bool has_side = false, has_sign = false;
+};
+
+/// Gives wafers that have none the signs that are stated with them, and else those of the film at the thickness that
+/// fits them best. Throws std::invalid_argument for a film that fits no wafers with these signs, or only without them.
+void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> references,
+                const CalibrationOptions& options);
+
+/// Throws std::invalid_argument unless what the references were found to be has the signs that are stated, and those of
+/// the film and of no other instrument. Sets the thickness and misfit of the film.
+void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options);
+
+/// psi and delta of a matrix that is, nearly, one of a diattenuator-retarder; tau is its element 11.
+DiattenuatorRetarder element_of(const Mueller& m);
+
+}  // namespace mmbrdf::calibration
