@@ -10,7 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 

@@ -13,8 +13,8 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/projection.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 

@@ -11,11 +11,13 @@
 
 #include "dataset.hpp"
 #include "instrument.hpp"
-#include "mmbrdf/files/io.hpp"
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/files/instrument_file.hpp"
+#include "mmbrdf/files/readings_file.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
 #include "mmbrdf/polarimetry/judgement.hpp"
+#include "mmbrdf/polarimetry/measurement.hpp"
 #include "mmbrdf/polarization/elements.hpp"
 
 namespace mmbrdf::python {

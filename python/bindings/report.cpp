@@ -9,7 +9,7 @@
 #include <ostream>
 
 #include "dataset.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/write_file.hpp"
 
 namespace mmbrdf::python {
 

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
-#include <istream>
+#include "mmbrdf/files/csv.hpp"
 
-#include "mmbrdf/files/io.hpp"
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <system_error>
+
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -45,6 +50,15 @@ Direction direction(const CsvReader& reader, int theta_column, int phi_column) {
 }
 
 }  // namespace
+
+std::ifstream open_input(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw std::runtime_error(path + ": is a folder, not a file");
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
+  return in;
+}
 
 CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::move(name)), line_(longest_line + 1) {
   if (!read_row()) throw std::runtime_error(name_ + ": empty file, without a header line");

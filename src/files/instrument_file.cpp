@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/files/instrument_file.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
 
 #include "files/json_field.hpp"
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/files/write_file.hpp"
 #include "text/json_text.hpp"
 #include "text/numbers.hpp"
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {

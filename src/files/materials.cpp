@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "files/embedded_materials.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/model_file.hpp"
 
 namespace mmbrdf {
 

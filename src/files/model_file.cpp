@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/files/model_file.hpp"
+
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
 
 #include "files/json_field.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/coefficients_file.hpp"
+#include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/text/units.hpp"
 #include "text/json_text.hpp"
 #include "text/numbers.hpp"
 
@@ -213,6 +224,26 @@ ordered_json model_json(const Model& model) {
   return root;
 }
 
+/// All that a text file holds.
+std::string contents(const std::string& path) {
+  std::ifstream in = open_input(path);
+  std::string text;
+  std::vector<char> piece(1 << 16);
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    if (text.find('\0', text.size() - static_cast<std::size_t>(in.gcount())) != std::string::npos)
+      throw std::runtime_error(path + ": binary file, not a model");
+  }
+  if (in.bad()) throw std::runtime_error(path + ": read error");
+  return text;
+}
+
+bool is_csv(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending == ".csv";
+}
+
 }  // namespace
 
 Model model_from_json(std::string_view text, const std::string& name) {
@@ -227,6 +258,24 @@ std::string to_json(const Model& model) {
   } catch (const json::exception& e) {  // text that is not UTF-8
     throw std::invalid_argument("name or provenance of the model: " + std::string(e.what()));
   }
+}
+
+Model load_model(const std::string& path) {
+  const std::string text = contents(path);
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first == std::string::npos) throw std::runtime_error(path + ": empty file, without a model");
+  if (text[first] == '{') {
+    Model model = model_from_json(text, path);
+    if (model.name.empty()) model.name = std::filesystem::path(path).stem().string();
+    return model;
+  }
+  std::istringstream lines(text);
+  return read_coefficients(lines, path);
+}
+
+void save_model(const std::string& path, const Model& model) {
+  const std::string text = is_csv(path) ? to_coefficients_csv(model) : to_json(model);
+  write_file(path, [&](std::ostream& out) { out << text; });
 }
 
 }  // namespace mmbrdf

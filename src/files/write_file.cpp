@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/files/write_file.hpp"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,8 +12,6 @@
 #include <ostream>
 #include <streambuf>
 #include <system_error>
-
-#include "mmbrdf/files/io.hpp"
 
 namespace mmbrdf {
 namespace {

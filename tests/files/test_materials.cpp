@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "given/published.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/prepared.hpp"
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "given/files.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/model_file.hpp"
 
 namespace mmbrdf {
 namespace {

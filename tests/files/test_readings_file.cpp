@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/instrument_file.hpp"
+#include "mmbrdf/files/readings_file.hpp"
+#include "mmbrdf/polarimetry/measurement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/coefficients_file.hpp"
+#include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/files/model_file.hpp"
+#include "mmbrdf/files/readings_file.hpp"
+#include "mmbrdf/files/samples_file.hpp"
+#include "mmbrdf/polarimetry/measurement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +16,6 @@
 #include "given/cases.hpp"
 #include "given/files.hpp"
 #include "given/published.hpp"
-#include "mmbrdf/files/readings.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -9,7 +9,9 @@
 #include <csignal>
 
 #include "given/files.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/model_file.hpp"
+#include "mmbrdf/files/samples_file.hpp"
+#include "mmbrdf/files/write_file.hpp"
 
 namespace mmbrdf {
 namespace {

@@ -8,7 +8,8 @@
 #include "given/cases.hpp"
 #include "given/published.hpp"
 #include "given/random_model.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/coefficients_file.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 

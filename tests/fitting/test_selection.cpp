@@ -11,7 +11,7 @@
 #include "given/cases.hpp"
 #include "given/published.hpp"
 #include "given/random_model.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "given/published.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/coefficients_file.hpp"
 #include "mmbrdf/model/prepared.hpp"
 
 using namespace mmbrdf;

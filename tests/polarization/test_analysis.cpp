@@ -20,7 +20,7 @@
 
 #include "given/published.hpp"
 #include "given/random_mueller.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 
 using namespace mmbrdf;
 

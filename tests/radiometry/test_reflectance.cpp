@@ -9,7 +9,7 @@
 #include "given/cases.hpp"
 #include "given/published.hpp"
 #include "given/random_model.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/coefficients_file.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/numerics/quadrature.hpp"

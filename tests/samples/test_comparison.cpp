@@ -10,8 +10,9 @@
 #include "given/cases.hpp"
 #include "given/published.hpp"
 #include "given/random_model.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/coefficients_file.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {

@@ -13,8 +13,8 @@
 
 #include "given/cases.hpp"
 #include "given/published.hpp"
-#include "mmbrdf/files/io.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "command.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "options/files.hpp"

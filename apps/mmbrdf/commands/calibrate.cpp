@@ -6,7 +6,8 @@
 #include <memory>
 
 #include "command.hpp"
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/instrument_file.hpp"
+#include "mmbrdf/files/readings_file.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "options/polarimetry.hpp"

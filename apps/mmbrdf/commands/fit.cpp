@@ -9,7 +9,7 @@
 #include <span>
 
 #include "command.hpp"
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/instrument_file.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"

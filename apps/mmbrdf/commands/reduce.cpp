@@ -8,8 +8,11 @@
 #include <optional>
 
 #include "command.hpp"
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/instrument_file.hpp"
+#include "mmbrdf/files/readings_file.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/polarimetry/measurement.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"

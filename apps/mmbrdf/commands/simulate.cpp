@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "command.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "options/arguments.hpp"

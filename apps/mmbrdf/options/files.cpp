@@ -11,8 +11,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/files/model_file.hpp"
+#include "mmbrdf/files/samples_file.hpp"
+#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "options/arguments.hpp"
 #include "pages/output.hpp"

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "mmbrdf/files/readings.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/polarimetry/judgement.hpp"
 
 namespace mmbrdf::program {

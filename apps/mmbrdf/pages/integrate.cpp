@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "command.hpp"
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"

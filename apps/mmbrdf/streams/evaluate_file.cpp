@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "options/files.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <streambuf>
 
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/csv.hpp"
 #include "pages/output.hpp"
 #include "streams/npy.hpp"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Files of a polarimeter: its readings of references and of samples, a reading in each row, and the instrument that a
-/// calibration gives. The layouts are described in docs/formats.md.
+/// Files of a polarimeter's readings of references and of samples, a reading in each row (docs/formats.md).
 ///
 /// A reading is (intensity − dark) / (monitor · gain). Reading a file throws std::runtime_error with "file:line: …" and
 /// the value that is wrong: also for an intensity at or above `saturation` or below its dark signal, for a state that
@@ -12,11 +11,11 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "mmbrdf/files/io.hpp"
+#include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/polarimetry/calibration.hpp"
+#include "mmbrdf/polarimetry/measurement.hpp"
 
 namespace mmbrdf {
 
@@ -46,21 +45,6 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
 void write_references(const std::string& path, const ReferenceFile& file);
 void write_references(std::ostream& out, const ReferenceFile& file);
 
-/// What an instrument with these readings measured of a sample.
-struct RawMeasurement {
-  double wavelength = 0;  ///< micrometres
-  Geometry geometry;
-  std::vector<double> readings;  ///< in the order of polarimeter.hpp
-};
-
-/// The sample that a measurement stands for, in Frame::xy as all samples: sample() of its matrix, with the standard
-/// uncertainties that independent noise of the readings, of this law, gives f11 (sr⁻¹) and the normalised elements.
-/// What the instrument is uncertain by is not among them: it is the same error in all samples (instrument_errors()).
-/// Throws std::invalid_argument as Reduction::mueller() and sample() do; for a noise that is negative or not finite;
-/// and where it is so large that an uncertainty is not finite.
-Sample reduced(const Reduction& reduction, const RawMeasurement& measurement, double solid_angle,
-               const ReadingNoise& noise);
-
 /// Measurements of a file one at a time, in constant memory: the rows of one measurement must be adjacent.
 class RawReader {
  public:
@@ -82,12 +66,5 @@ class RawReader {
 /// Throws std::invalid_argument for a measurement with another number of readings than there are states.
 void write_raw(const std::string& path, const StateCounts& states, std::span<const RawMeasurement> measurements);
 void write_raw(std::ostream& out, const StateCounts& states, std::span<const RawMeasurement> measurements);
-
-/// Instruments in JSON, read back to the same bits but for angles. What the references turned out to be is not kept.
-/// Reading throws std::runtime_error with "name: field: …"; writing std::invalid_argument for what cannot be read back.
-Calibration calibration_from_json(std::string_view text, const std::string& name);
-std::string to_json(const Calibration& calibration);
-Calibration load_instrument(const std::string& path);
-void save_instrument(const std::string& path, const Calibration& calibration);
 
 }  // namespace mmbrdf

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Tables of comma-separated values, row by row, and the columns of geometries in them (docs/formats.md).
+#pragma once
+
+#include <array>
+#include <fstream>
+#include <iosfwd>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mmbrdf/geometry/geometry.hpp"
+
+namespace mmbrdf {
+
+/// Opens a file for reading. Throws std::runtime_error, naming the path and the reason, if that fails or it is a
+/// folder.
+std::ifstream open_input(const std::string& path);
+
+/// Rows of comma-separated fields under a header line, one at a time, in constant memory. LF or CRLF; empty lines and
+/// lines that begin with # are passed over; a UTF-8 byte order mark too. Fields are not quoted; blanks around them do
+/// not count.
+class CsvReader {
+ public:
+  /// Reads the header. `name` stands for the file in messages. Throws std::runtime_error for an empty file, a binary
+  /// one, a first row of numbers (no header), or a column name given twice. `in` must outlive the reader.
+  CsvReader(std::istream& in, std::string name);
+
+  /// A file without a header line, whose columns are these.
+  CsvReader(std::istream& in, std::string name, std::vector<std::string> columns);
+
+  /// Rows of the same file as `whole` that are behind so many lines of it: for pieces of it in several threads.
+  CsvReader(std::istream& in, const CsvReader& whole, long lines_before);
+
+  CsvReader(const CsvReader&) = delete;
+  CsvReader& operator=(const CsvReader&) = delete;
+
+  const std::vector<std::string>& columns() const { return columns_; }
+
+  /// Position of the column with one of these names, or −1. Throws std::runtime_error if two columns have one.
+  int find(std::span<const std::string_view> names) const;
+
+  /// Reads the next row; false at the end. Throws std::runtime_error for a row with more or fewer fields than columns,
+  /// for one of more than longest_line bytes, and for control characters: the file is binary.
+  bool next();
+  static constexpr int longest_line = 65535;
+
+  /// The row as it stands in the file, without its line end. Valid until next().
+  std::string_view text() const { return text_; }
+
+  /// A field of the row without surrounding blanks. Valid until next().
+  std::string_view field(int column) const { return fields_[static_cast<std::size_t>(column)]; }
+
+  /// A field as a finite number. Throws std::runtime_error with line, column and text for anything else.
+  double number(int column) const;
+
+  /// "file:line: " + text, as an error to throw.
+  [[nodiscard]] std::runtime_error error(const std::string& text) const;
+
+  /// Of the row, from 1.
+  long line() const { return line_number_; }
+
+ private:
+  bool read_line();
+  bool read_row();
+
+  std::istream& in_;
+  std::string name_;
+  std::vector<char> line_;
+  std::string_view text_;
+  long line_number_ = 0;
+  std::vector<std::string> columns_;
+  std::vector<std::string_view> fields_;
+};
+
+/// Finds the columns of wavelength and angles under any of their documented names and units, and reads them.
+/// Polar angles may be negative as in the published data, and come back unfolded. Throws std::runtime_error if a column
+/// is missing or there twice, a polar angle leaves [−90, 90] degrees, or a wavelength is not positive.
+class GeometryColumns {
+ public:
+  /// Without a wavelength column, `wavelength` (micrometres) is used for each row if it is positive.
+  explicit GeometryColumns(const CsvReader& reader, double wavelength = 0);
+  Geometry geometry(const CsvReader& reader) const;
+  double wavelength(const CsvReader& reader) const;
+
+ private:
+  int wavelength_column_ = -1;
+  double units_per_micrometre_ = 1;
+  double wavelength_ = 0;
+  std::array<int, 4> angles_{};  // theta_i, phi_i, theta_r, phi_r
+};
+
+}  // namespace mmbrdf
