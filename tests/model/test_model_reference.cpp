@@ -90,6 +90,17 @@ TEST(ModelReference, ScatmechSumsAsPrinted) {
   }
 }
 
+// Coefficients made for this test, every function of orders 7 and 4 at two powers of the wavelength.
+TEST(ModelReference, ScatmechSumsCoefficientsThatAreInTheTree) {
+  const Model made = as_printed(read_coefficients(reference("scatmech/made.coeff.csv")));
+  EXPECT_EQ(orders(made), (Orders{7, 4}));
+  const PreparedModel model = prepare(made, 1);
+  const auto rows = read_numbers(reference("scatmech/made.xyxy.csv"));
+  EXPECT_EQ(rows.size(), 40u);
+  for (const auto& row : rows)
+    EXPECT_LE(deviation(model.at(row[0]).evaluate(geometry_of(row)), matrix_of(row)), scatmech_error) << row[0];
+}
+
 TEST(ModelReference, ScatmechOfAnUnturnedSampleInAllFrames) {
   const std::pair<const char*, Frame> files[] = {{"PTFE.xyxy.rotation0.csv", Frame::xy},
                                                  {"PTFE.psps.rotation0.csv", Frame::sp},
