@@ -32,9 +32,10 @@ struct Request {
 };
 
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
-  if (as_printed && family != "germer2017")
+  const Family its_family = family_from(family);
+  if (as_printed && !traits(its_family).at_zero_azimuth)
     throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
-  return {family_from(family),
+  return {its_family,
           {orders.first, orders.second},
           disc_mapping_from(mapping),
           as_printed ? Rotation::as_printed : Rotation::covariant};
@@ -153,7 +154,7 @@ constexpr const char* fit_doc =
     "weights      'none', 'speckle', 'data' (1/u^2 of the samples) or 'estimated'\n"
     "covariance   'residuals' or 'sandwich', for noise that is not as the weights say\n"
     "minimum_norm accept data that do not determine every coefficient (germer2017: always)\n"
-    "as_printed   germer2017 at the azimuths the samples have, to compare only\n"
+    "as_printed   germer2017 at the azimuths the samples have, to compare only; the model keeps it\n"
     "instrument   Calibration that measured all samples: its uncertainty is added to the covariance, its file to the "
     "provenance\n\n"
     "Raises ValueError for data that do not determine the model: the message says what is free.";

@@ -93,7 +93,8 @@ std::string text(double value) {
 std::string representation(const ModelObject& object) {
   const Model& model = object.model();
   const Orders order = orders(model);
-  std::string shown = "<mmbrdf.Model '" + model.name + "': " + to_string(model.family) + ", orders (" +
+  std::string shown = "<mmbrdf.Model '" + model.name + "': " + to_string(model.family) +
+                      (model.rotation == Rotation::as_printed ? " as printed" : "") + ", orders (" +
                       std::to_string(order.f11) + ", " + std::to_string(order.other) + "), " +
                       std::to_string(coefficient_count(model)) + " coefficients";
   const std::vector<double>& at = model.validity.wavelengths;
@@ -138,6 +139,9 @@ void bind_properties(ModelClass& c) {
       .def_property_readonly(
           "mapping", [](const ModelObject& o) { return to_string(o.model().mapping); },
           "'lambert' (Eq. 6) or 'projected' (Eq. 7)")
+      .def_property_readonly(
+          "as_printed", [](const ModelObject& o) { return o.model().rotation == Rotation::as_printed; },
+          "Whether it was fitted, and is evaluated, at the azimuths as they are: fit(..., as_printed=True)")
       .def_property_readonly(
           "powers", [](const ModelObject& o) { return o.model().powers; }, "Highest power of the wavelength")
       .def_property_readonly(
@@ -252,7 +256,7 @@ ModelClass bind_model(py::module_& m) {
        },
        py::arg("path"),
        "Writes JSON, or the published coefficient layout if the path ends in .csv, which has no place for\n"
-       "covariance, range and provenance. Raises OSError if it cannot be written; nothing is half-written.")
+       "covariance, range, provenance and as_printed. Raises OSError if it cannot be written; nothing is half-written.")
       .def(
           "to_json", [](const ModelObject& o) { return to_json(o.model()); }, "The text of a model file")
       .def_static(

@@ -81,7 +81,7 @@ def labelled(
         "axes": f"{_AXES[frame]} of each beam",
         "convention": "germer2017: S2 = first axis - second axis, S4 = left - right, time factor exp(-i omega t)",
         "directions": "away from the sample; forward scattering is phi_r - phi_i = 180 degrees",
-        "as_printed": int(as_printed),  # netCDF has no truth values
+        "as_printed": int(as_printed or model.as_printed),  # netCDF has no truth values
         "model": model.name,
         "software": f"mmbrdf {__version__}",
     }

@@ -15,12 +15,13 @@ constexpr Named<Rotation> rotation_names[] = {{Rotation::covariant, "covariant"}
 FamilyTraits traits(Family family) {
   switch (family) {
     case Family::germer2017:
-      return {.at_zero_azimuth = true, .minimum_norm = true};
+      return {.at_zero_azimuth = true, .minimum_norm = true, .published_form = true};
     case Family::isotropic:
+      return {.at_zero_azimuth = false, .minimum_norm = false, .published_form = true};
     case Family::anisotropic:
       break;
   }
-  return {.at_zero_azimuth = false, .minimum_norm = false};
+  return {.at_zero_azimuth = false, .minimum_norm = false, .published_form = false};
 }
 
 bool turns(Family family, Rotation rotation) {

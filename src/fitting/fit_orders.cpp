@@ -11,7 +11,7 @@ namespace mmbrdf {
 
 std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
   const auto same = [](const Block& ours, const FittedBlock& theirs) { return ours.modes == theirs.block.modes; };
-  if (model.family != basis_.family || model.mapping != basis_.mapping ||
+  if (model.family != basis_.family || model.mapping != basis_.mapping || mmbrdf::turns(model) != turns() ||
       !std::equal(blocks_.begin(), blocks_.end(), model.blocks.begin(), model.blocks.end(), same))
     throw std::invalid_argument("the model has another basis");
   std::array<ElementFit, 16> result;

@@ -62,7 +62,7 @@ std::optional<std::pair<Mode, double>> published_mode(const Term& term) {
 Model in_published_form(const Model& model) {
   require_valid(model);
   if (model.family == Family::germer2017) return model;
-  if (model.family != Family::isotropic)
+  if (!traits(model.family).published_form)
     throw std::invalid_argument("a model of the " + to_string(model.family) + " family has no published form");
   std::map<std::tuple<Function, int, int, int, int>, std::vector<double>> found;  // a coefficient for each power
   const auto key = [](const Mode& mode) { return std::tuple(mode.function, mode.n, mode.m, mode.k, mode.l); };
@@ -80,6 +80,7 @@ Model in_published_form(const Model& model) {
       }
   Model result = model;
   result.family = Family::germer2017;
+  result.rotation = Rotation::covariant;  // no matter what it was: the isotropic family is evaluated as it is
   result.reflectance = {model.reflectance.wavelengths, model.reflectance.values};
   result.blocks.clear();
   for (Block& block : blocks(Family::germer2017, modes)) {

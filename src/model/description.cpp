@@ -20,10 +20,10 @@ std::string limit(const std::string& name, const std::optional<double>& most) {
 
 std::string basis_line(const Model& model) {
   const Orders order = orders(model);
-  return to_string(model.family) + ", orders " + std::to_string(order.f11) + "," + std::to_string(order.other) +
-         ", wavelength power" + (model.powers == 0 ? " 0" : "s 0 to " + std::to_string(model.powers)) + ", " +
-         to_string(model.mapping) + " mapping: " + counted(mode_count(model), "mode") + ", " +
-         counted(coefficient_count(model), "coefficient");
+  return to_string(model.family) + (model.rotation == Rotation::as_printed ? " as printed" : "") + ", orders " +
+         std::to_string(order.f11) + "," + std::to_string(order.other) + ", wavelength power" +
+         (model.powers == 0 ? " 0" : "s 0 to " + std::to_string(model.powers)) + ", " + to_string(model.mapping) +
+         " mapping: " + counted(mode_count(model), "mode") + ", " + counted(coefficient_count(model), "coefficient");
 }
 
 std::string angles_line(const Validity& validity) {

@@ -250,7 +250,8 @@ SampleDiagnostics refitted(const Model& model, std::span<const Sample> samples) 
   options.minimum_norm = true;
   if (!model.reflectance.values.empty() && wavelengths(samples).size() > 1)
     options.reflectance = ReflectanceTable{model.reflectance.wavelengths, model.reflectance.values};
-  return sample_diagnostics(samples, fit(samples, {model.family, orders(model), model.mapping}, options));
+  return sample_diagnostics(samples,
+                            fit(samples, {model.family, orders(model), model.mapping, model.rotation}, options));
 }
 
 Field leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {

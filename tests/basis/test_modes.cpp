@@ -542,6 +542,18 @@ TEST(Modes, AreNotValidTogetherWithTheirTwins) {
   }
 }
 
+// ---- families -------------------------------------------------------------------------------------------------------
+
+// The published sets alone hold at one azimuth, and are turned there unless they are taken as printed.
+TEST(Families, AreTurnedWhereTheyHoldAtOneAzimuthAndNotAsPrinted) {
+  for (const Family family : every_family) {
+    EXPECT_EQ(turns(family, Rotation::covariant), family == Family::germer2017) << to_string(family);
+    EXPECT_FALSE(turns(family, Rotation::as_printed)) << to_string(family);
+    EXPECT_EQ(traits(family).minimum_norm, family == Family::germer2017) << to_string(family);
+    EXPECT_EQ(traits(family).published_form, family != Family::anisotropic) << to_string(family);
+  }
+}
+
 // ---- names ----------------------------------------------------------------------------------------------------------
 
 TEST(Modes, AreNamedByFunctionAndIndices) {
@@ -549,8 +561,10 @@ TEST(Modes, AreNamedByFunctionAndIndices) {
   EXPECT_EQ(to_string(Mode{g, 2, 0, 2, 0}), "g (n, m, k, l) = (2, 0, 2, 0)");
 }
 
-TEST(Modes, NamesOfFamiliesFunctionsAndMappingsComeBack) {
+TEST(Modes, NamesOfFamiliesRotationsFunctionsAndMappingsComeBack) {
   for (const Family family : every_family) EXPECT_EQ(family_from(to_string(family)), family);
+  for (const Rotation rotation : {Rotation::covariant, Rotation::as_printed})
+    EXPECT_EQ(rotation_from(to_string(rotation)), rotation);
   for (const Function function : every_function) EXPECT_EQ(function_from(to_string(function)), function);
   for (const DiscMapping mapping : {DiscMapping::lambert, DiscMapping::projected})
     EXPECT_EQ(disc_mapping_from(to_string(mapping)), mapping);
@@ -562,6 +576,7 @@ TEST(Modes, NamesOfFamiliesFunctionsAndMappingsComeBack) {
 TEST(Modes, NamesThatDoNotExistAreRefusedWithThoseThatDo) {
   EXPECT_EQ(message_of([] { family_from("Isotropic"); }),
             "basis 'Isotropic' is not one of isotropic, germer2017, anisotropic");
+  EXPECT_EQ(message_of([] { rotation_from("printed"); }), "rotation 'printed' is not one of covariant, as_printed");
   EXPECT_EQ(message_of([] { function_from("21"); }),
             "function '21' is not one of 11, 12, 13, 14, 22, 23, 24, 33, 34, 44, g, h, u, v");
   EXPECT_EQ(message_of([] { disc_mapping_from(""); }), "mapping '' is not one of lambert, projected");

@@ -50,6 +50,7 @@ void expect_same(const Model& a, const Model& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.family, b.family);
   EXPECT_EQ(a.mapping, b.mapping);
+  EXPECT_EQ(a.rotation, b.rotation);
   EXPECT_EQ(a.powers, b.powers);
   ASSERT_EQ(a.blocks.size(), b.blocks.size());
   for (std::size_t i = 0; i < a.blocks.size(); ++i) {
@@ -109,6 +110,20 @@ TEST(Json, OfEveryFamilyIsReadBackToTheSameBits) {
       const Model model = any_model(family, seed);
       expect_same(model_from_json(to_json(model), "m.json"), model);
     }
+}
+
+TEST(Json, SaysHowAzimuthsEnterOnlyWhereTheyEnterAsPrinted) {
+  Model model = any_model(Family::germer2017);
+  const std::string covariant = to_json(model);
+  EXPECT_EQ(covariant.find("rotation"), std::string::npos);  // files of before are what they were, and are read
+  model.rotation = Rotation::as_printed;
+  const std::string printed = to_json(model), line = "\n  \"rotation\": \"as_printed\",";
+  expect_same(model_from_json(printed, "m.json"), model);
+  EXPECT_EQ(with(printed, line, ""), covariant);
+  expect_same(model_from_json(with(printed, "as_printed", "covariant"), "m.json"), any_model(Family::germer2017));
+  EXPECT_EQ(refusal(with(printed, "as_printed", "printed")),
+            "m.json: rotation: rotation 'printed' is not one of covariant, as_printed");
+  EXPECT_EQ(refusal(with(printed, "\"as_printed\"", "true")), "m.json: rotation: must be a string, not true");
 }
 
 TEST(Json, WithoutWhatIsUnknownIsReadBackWithoutIt) {

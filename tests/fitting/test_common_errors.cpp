@@ -68,11 +68,19 @@ TEST(CommonErrors, OfAnInstrumentHaveTheCovarianceOfItsReduction) {
   }
 }
 
-// With f11 as it is, and divided by a reflectance that is given.
+// With f11 as it is, and divided by a reflectance that is given; of samples that are turned, and as they are.
 TEST(CommonErrors, MoveTheModelAsAFitToTheChangedSamplesMoves) {
-  for (const auto& [family, reflectance] :
-       {std::pair(Family::isotropic, 1.), {Family::germer2017, 1.}, {Family::isotropic, 0.6}}) {
-    const Basis basis{family, {5, 3}};
+  struct Case {
+    Family family;
+    Rotation rotation;
+    double reflectance;
+  };
+  for (const auto& [family, rotation, reflectance] : {Case{Family::isotropic, Rotation::covariant, 1},
+                                                      {Family::germer2017, Rotation::covariant, 1},
+                                                      {Family::germer2017, Rotation::as_printed, 1},
+                                                      {Family::isotropic, Rotation::covariant, 0.6}}) {
+    const Basis basis{family, {5, 3}, DiscMapping::lambert, rotation};
+    int compared = 0;
     FitOptions options;
     if (reflectance != 1) options.reflectance = ReflectanceTable{{0.4, 0.8}, {0.9 * reflectance, 2 * reflectance}};
     const std::vector<Sample> samples = simulated();
@@ -99,6 +107,7 @@ TEST(CommonErrors, MoveTheModelAsAFitToTheChangedSamplesMoves) {
     for (std::size_t b = 0; b < before.blocks.size(); ++b) {
       const std::size_t size = before.blocks[b].coefficients.size();
       if (before.blocks[b].rank < static_cast<int>(size)) continue;
+      ++compared;
       std::vector<double> added(size * size), expected(size * size);
       double scale = 0;
       for (std::size_t i = 0; i < size; ++i)
@@ -112,6 +121,7 @@ TEST(CommonErrors, MoveTheModelAsAFitToTheChangedSamplesMoves) {
         }
       EXPECT_LT(largest_difference(added, expected), 1e-9 * scale) << before.blocks[b].block.name;
     }
+    EXPECT_GT(compared, 0) << to_string(family) << ' ' << to_string(rotation);
   }
 }
 

@@ -259,8 +259,10 @@ TEST(SampleDiagnostics, HaveLeveragesThatAddUpToTheRank) {
   std::vector<Mueller> weights(samples.size());
   for (std::size_t s = 0; s < samples.size(); ++s)
     for (std::size_t e = 0; e < 16; ++e) weights[s].elements[e] = static_cast<double>((s + 3 * e) % 5);  // also 0
-  for (const Family family : {Family::isotropic, Family::germer2017}) {
-    FitAccumulator all({family, small_orders, DiscMapping::lambert});
+  for (const auto& [family, rotation] : {std::pair(Family::isotropic, Rotation::covariant),
+                                         {Family::germer2017, Rotation::covariant},
+                                         {Family::germer2017, Rotation::as_printed}}) {
+    FitAccumulator all({family, small_orders, DiscMapping::lambert, rotation});
     all.add(samples, weights);
     const SampleDiagnostics found = sample_diagnostics(samples, all.solve(), weights);
     ASSERT_EQ(found.leverage.size(), family == Family::isotropic ? 6U : 10U);

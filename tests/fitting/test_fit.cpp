@@ -331,6 +331,10 @@ TEST(Fit, ThePublishedSetsCanBeFittedAtTheAzimuthsAsTheyAre) {
   for (const Mueller& residual : printed.residuals)
     for (std::size_t e = 1; e < 16; ++e) squares += residual.elements[e] * residual.elements[e];
   EXPECT_NEAR(std::sqrt(squares / (15.0 * 1760)), polarization_rms(printed), 1e-12);
+  EXPECT_EQ(turned.model.rotation, Rotation::covariant);
+  EXPECT_EQ(printed.model.rotation, Rotation::as_printed);
+  EXPECT_EQ(residuals(printed.model, samples), printed.residuals);  // it is evaluated as it was fitted
+  EXPECT_NE(residuals(turned.model, samples), residuals(as_printed(turned.model), samples));
 }
 
 TEST(Fit, AnElementWithoutModesHasItsSamplesAsResiduals) {

@@ -69,6 +69,10 @@ TEST(FitAccumulator, AtLowerOrdersIsTheFitAtTheseOrders) {
   low.add(samples);
   EXPECT_THROW(low.at_orders({4, 2}), std::invalid_argument);
   EXPECT_THROW(low.misfit(random_model(Family::isotropic, {3, 1}, 0, 1)), std::invalid_argument);
+  const FitAccumulator turned({Family::germer2017, {3, 1}});
+  const Model germer = random_model(Family::germer2017, {3, 1}, 0, 1);
+  EXPECT_NO_THROW(turned.misfit(germer));
+  EXPECT_EQ(message_of([&] { turned.misfit(as_printed(germer)); }), "the model has another basis");
 }
 
 // Each fold predicted, by the ordinary functions, from a fit to the others.

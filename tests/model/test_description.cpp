@@ -17,6 +17,8 @@ TEST(Description, SaysWhatTheModesAre) {
             "isotropic, orders 7,4, wavelength powers 0 to 1, lambert mapping: 142 modes, 284 coefficients");
   EXPECT_EQ(basis_line(diffuser({1})),
             "isotropic, orders 0,0, wavelength power 0, lambert mapping: 1 mode, 1 coefficient");
+  EXPECT_EQ(basis_line(as_printed(random_model(Family::germer2017, {7, 4}, 0, 1))),
+            "germer2017 as printed, orders 7,4, wavelength power 0, lambert mapping: 330 modes, 330 coefficients");
 }
 
 TEST(Description, SaysOfTheRangeWhatIsKnown) {

@@ -344,10 +344,11 @@ TEST(ReflectanceTable, MultipliesEveryElementOfTheMatrix) {
 // ---- the published form ---------------------------------------------------------------------------------------------
 
 RC_GTEST_PROP(Model, InPublishedFormIsTheSameModel, ()) {
-  Model model = any_model(Family::isotropic, 6, 1);
+  Model model = either_way(any_model(Family::isotropic, 6, 1));
   model.reflectance = {{0.4, 0.7}, {0.9, 0.5}};
   const Model published_form = in_published_form(model);
   RC_ASSERT(published_form.family == Family::germer2017);
+  RC_ASSERT(published_form.rotation == Rotation::covariant);
   RC_ASSERT(published_form.mapping == model.mapping);
   RC_ASSERT(published_form.powers == model.powers);
   RC_ASSERT(published_form.name == model.name);
@@ -373,6 +374,7 @@ TEST(Model, InPublishedFormOfOrders7And4HasModesOfThePublishedSetOnly) {
 TEST(Model, InPublishedFormIsKeptIfItHasItAndRefusedIfItCannotHaveIt) {
   const Model germer = random_model(Family::germer2017, {4, 2}, 1, 1);
   const Model kept = in_published_form(germer);
+  EXPECT_EQ(in_published_form(as_printed(germer)).rotation, Rotation::as_printed);
   ASSERT_EQ(kept.blocks.size(), germer.blocks.size());
   for (std::size_t b = 0; b < kept.blocks.size(); ++b)
     EXPECT_EQ(kept.blocks[b].coefficients, germer.blocks[b].coefficients);

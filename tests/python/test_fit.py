@@ -135,6 +135,34 @@ def test_a_fit_says_how_well_it_fits(samples):
     assert "1824 samples" in repr(result)
 
 
+def test_a_fit_as_printed_is_evaluated_as_it_was_fitted(ptfe, tmp_path):
+    data = mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(600, seed=5))
+    result = mmbrdf.fit(data, "germer2017", (4, 2), as_printed=True)
+    turned = mmbrdf.fit(data, "germer2017", (4, 2)).model
+    model = result.model
+    assert model.as_printed and not turned.as_printed
+    assert repr(model).startswith("<mmbrdf.Model '': germer2017 as printed, orders (4, 2), ")
+    f = model.evaluate(532, *data.geometry)
+    np.testing.assert_allclose(data.f11 - f[:, 0, 0], result.residuals[:, 0, 0], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(mmbrdf.residuals(model, data), result.residuals, rtol=0, atol=0)
+    assert mmbrdf.compare(model, data)["m22"]["rms"] == pytest.approx(result.rms[1, 1], rel=1e-9)
+    model.save(tmp_path / "model.json")
+    for same in (mmbrdf.load(tmp_path / "model.json"), pickle.loads(pickle.dumps(model)), copy.deepcopy(model)):
+        assert same.as_printed and same == model
+        np.testing.assert_array_equal(same.evaluate(532, *data.geometry), f)
+        u = same.evaluate_uncertainty(532, *data.geometry)
+        np.testing.assert_array_equal(u, same.evaluate_uncertainty(532, *data.geometry, as_printed=True))
+    # Asked as printed, a turned model is another function, as before; so is what coefficients alone are read as.
+    assert (
+        np.abs(turned.evaluate(532, *data.geometry, as_printed=True) - turned.evaluate(532, *data.geometry)).max()
+        > 1e-4
+    )
+    model.save(tmp_path / "model.csv")
+    coefficients = mmbrdf.load(tmp_path / "model.csv")
+    assert not coefficients.as_printed
+    np.testing.assert_allclose(coefficients.evaluate(532, *data.geometry, as_printed=True), f, rtol=0, atol=1e-12)
+
+
 def test_a_fit_to_a_model_without_noise_is_that_model(ptfe):
     data = mmbrdf.simulate(ptfe, [351, 532, 633, 1064], mmbrdf.random_geometries(500, seed=1))
     result = mmbrdf.fit(data, reflectance=ptfe.reflectance)

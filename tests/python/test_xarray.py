@@ -62,6 +62,9 @@ def test_attributes_say_how_it_was_evaluated(ptfe, tmp_path):
     plain = labelled(ptfe, 532, 45, 0, 30, 180)
     assert plain.attrs["as_printed"] == 0 and "terms" not in plain.attrs
     assert labelled(ptfe, 532, 45, 0, 30, 180, as_printed=True).attrs["as_printed"] == 1
+    data = mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(300, seed=5))
+    printed = mmbrdf.fit(data, "germer2017", (4, 2), as_printed=True).model
+    assert labelled(printed, 532, 45, 0, 30, 180).attrs["as_printed"] == 1
     of_the_fit = labelled(ptfe, 532, 45, 0, 30, 180, quantity="uncertainty")
     assert of_the_fit.attrs["terms"] == "{}"
     terms = {"scale": 0.003, "theta_i_deg": 0.1}

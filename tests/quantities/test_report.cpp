@@ -156,6 +156,20 @@ TEST(Report, HasTheNumbersOfTheSamplesToTheLastBit) {
   EXPECT_EQ(json["leverage"][3]["sample"], block.largest + 1);
 }
 
+TEST(Report, OfAModelAsPrintedHasTheLeverageOfTheRowsThatWereFitted) {
+  const std::vector<Sample> samples = measured(material("ptfe-532"));
+  const Basis basis{Family::germer2017, {4, 2}, DiscMapping::lambert, Rotation::as_printed};
+  const FitResult result = fit(samples, basis);
+  const Json json = report(result.model, samples);
+  EXPECT_TRUE(json["model"]["basis"].get<std::string>().starts_with("germer2017 as printed, orders 4,2, "));
+  const SampleDiagnostics diagnostics = sample_diagnostics(samples, result);
+  for (std::size_t b = 0; b < diagnostics.leverage.size(); ++b) {
+    const SampleDiagnostics::Leverage& block = diagnostics.leverage[b];
+    EXPECT_EQ(json["leverage"][b]["rank"], block.rank) << block.block;
+    EXPECT_EQ(json["leverage"][b]["largest_leverage"].get<double>(), block.values[block.largest]) << block.block;
+  }
+}
+
 TEST(Report, WarnsOfAModelThatIsNotPhysical) {
   Model model = material("ptfe-532");
   for (double& a : model.blocks.back().coefficients) a *= 3;  // of 44

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "command.hpp"
 #include "mmbrdf/model/description.hpp"
@@ -198,7 +199,7 @@ void compare_them(const Options& options) {
   Model first = open_model(options.first);
   if (options.as_printed) {
     note_unless_printed(first, base_name(options.first));
-    first.rotation = Rotation::as_printed;
+    first = as_printed(std::move(first));
   }
   const std::vector<Sample> samples = samples_of(first, options);
   if (samples.empty())

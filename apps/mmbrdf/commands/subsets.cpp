@@ -188,7 +188,7 @@ void require_valid(const Options& o) {
   for (const double theta : {o.theta_r_deg.front(), o.theta_r_deg.back()})
     if (std::abs(theta) > 90)
       throw std::invalid_argument("--range: " + shortest(theta) + " is not in [-90, 90] degrees");
-  if (o.as_printed && o.basis.family != Family::germer2017)
+  if (o.as_printed && !traits(o.basis.family).at_zero_azimuth)
     throw CLI::ValidationError("--as-printed", "goes with --basis germer2017");
   if (o.parts < 2 || o.parts > max_folds)
     throw std::invalid_argument("--k " + std::to_string(o.parts) + ": is not in 2..." + std::to_string(max_folds));

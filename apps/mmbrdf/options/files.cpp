@@ -171,6 +171,7 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
   lose(named, "the name");
   lose(!validity.wavelengths.empty(), "the fitted wavelengths");
   lose(validity.theta_i_max || validity.theta_r_max, "the fitted angles");
+  lose(traits(model.family).at_zero_azimuth && !turns(model), "how azimuths enter (ask it with --as-printed)");
   lose(has_covariance(model), "the covariance");
   lose(model.provenance.contains("attribution"), "the attribution");
   lose(!model.provenance.empty(), "the provenance");

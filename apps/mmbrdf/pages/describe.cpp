@@ -33,13 +33,14 @@ nlohmann::ordered_json basis_json(const Model& model) {
   nlohmann::ordered_json json{{"basis", to_string(model.family)}, {"orders", {order.f11, order.other}},
                               {"powers", model.powers},           {"mapping", to_string(model.mapping)},
                               {"modes", mode_count(model)},       {"coefficients", coefficient_count(model)}};
+  if (model.rotation == Rotation::as_printed) json["rotation"] = to_string(model.rotation);
   json["wavelengths_nm"] = nlohmann::ordered_json::array();
   for (const double wavelength : model.validity.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
   return json;
 }
 
 void note_unless_printed(const Model& model, const std::string& name) {
-  if (model.family != Family::germer2017)
+  if (!traits(model.family).at_zero_azimuth)
     note("--as-printed changes nothing: " + name + " is of the basis " + to_string(model.family) + ", not germer2017");
 }
 

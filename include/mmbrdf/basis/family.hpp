@@ -28,6 +28,7 @@ enum class Rotation {
 struct FamilyTraits {
   bool at_zero_azimuth;  ///< holds at phi_i = 0 only: is evaluated there and turned, unless as_printed
   bool minimum_norm;     ///< the data never determine every mode: fits take the smallest solution
+  bool published_form;   ///< its models can be written, exactly, in the modes of the published files
 };
 FamilyTraits traits(Family family);
 

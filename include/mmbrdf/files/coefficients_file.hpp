@@ -18,9 +18,9 @@ Model read_coefficients(const std::string& path);
 Model read_coefficients(std::istream& in, const std::string& name);
 
 /// The published layout, which SCATMECH reads; of an isotropic model its published form. Reading a published file and
-/// writing it gives the same bytes, but for the line ends. Reflectance table, validity and covariance have no place in
-/// it: the caller must say so. Throws std::invalid_argument for a model that has no published form: an anisotropic one,
-/// or another mapping than lambert.
+/// writing it gives the same bytes, but for the line ends. Reflectance table, validity, covariance and rotation have no
+/// place in it: the caller must say so. Throws std::invalid_argument for a model that has no published form: an
+/// anisotropic one, or another mapping than lambert.
 std::string to_coefficients_csv(const Model& model);
 
 }  // namespace mmbrdf

@@ -82,8 +82,8 @@ struct SampleDiagnostics {
   std::vector<Mueller> studentized;
 };
 
-/// Of the samples and weights that the result was fitted to, with Rotation::covariant. Throws std::invalid_argument for
-/// samples that do not fit to it in number.
+/// Of the samples and weights that the result was fitted to, turned if the fit turned them. Throws
+/// std::invalid_argument for samples that do not fit to it in number.
 SampleDiagnostics sample_diagnostics(std::span<const Sample> samples, const FitResult& result,
                                      std::span<const Mueller> weights = {});
 

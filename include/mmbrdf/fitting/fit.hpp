@@ -129,7 +129,8 @@ class FitAccumulator {
   FitResult solve(const FitOptions& options = {}) const;
 
   /// How well a model, of whatever data, fits the samples: their f11 is divided by its reflectance.
-  /// Throws std::invalid_argument for a model of another basis.
+  /// Throws std::invalid_argument for a model of another basis, or of the same where one turns samples and the other
+  /// does not.
   std::array<ElementFit, 16> misfit(const Model& model) const;
 
  private:

@@ -9,7 +9,8 @@
 
 namespace mmbrdf {
 
-/// "isotropic, orders 7,4, wavelength powers 0 to 1, lambert mapping: 142 modes, 284 coefficients"
+/// "isotropic, orders 7,4, wavelength powers 0 to 1, lambert mapping: 142 modes, 284 coefficients"; for
+/// Rotation::as_printed "germer2017 as printed, orders …"
 std::string basis_line(const Model& model);
 
 /// "theta_i <= 75, theta_r <= 81.87 degrees", or "not known"
