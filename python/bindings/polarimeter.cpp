@@ -155,7 +155,7 @@ std::vector<Sample> reduced_file(const std::filesystem::path& path, const Calibr
   RawReader reader(in, path.string(), {p.generator.size(), p.analyzer.size()}, saturation);
   std::vector<Sample> samples;
   for (RawMeasurement raw; reader.next(raw);) {
-    if (std::abs(raw.wavelength - instrument.wavelength) > wavelength_resolution)
+    if (!same_wavelength(raw.wavelength, instrument.wavelength))
       throw std::invalid_argument(reader.error("another wavelength than that of the instrument").what());
     samples.push_back(reduced(reduction, raw, solid_angle, noise));
   }

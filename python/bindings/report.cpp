@@ -10,6 +10,7 @@
 
 #include "dataset.hpp"
 #include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/fitting/leverage.hpp"
 
 namespace mmbrdf::python {
 

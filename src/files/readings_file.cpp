@@ -230,7 +230,7 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
       result.wavelength = wavelength;
       first_line = reader.line();
     }
-    if (std::abs(wavelength - result.wavelength) > wavelength_resolution)
+    if (!same_wavelength(wavelength, result.wavelength))
       throw reader.error("wavelength_nm: " + shortest(in_nanometres(wavelength)) + ", but " +
                          shortest(in_nanometres(result.wavelength)) + " in line " + std::to_string(first_line) +
                          ": a calibration is of one wavelength");
@@ -331,8 +331,7 @@ bool RawReader::next(RawMeasurement& measurement) {
   const long number = s.reading.measurement, first = s.reader.line();
   Collected collected;
   while (s.waiting && s.reading.measurement == number) {
-    require_same(s.reader, number, std::abs(s.row.wavelength - measurement.wavelength) <= wavelength_resolution,
-                 "wavelength", first);
+    require_same(s.reader, number, same_wavelength(s.row.wavelength, measurement.wavelength), "wavelength", first);
     require_same(s.reader, number, s.row.geometry == measurement.geometry, "direction", first);
     collected.add(s.reader, s.reading);
     s.last_line = s.reader.line();

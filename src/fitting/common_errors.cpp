@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -26,7 +27,7 @@ void require_fitting(const Model& model, std::span<const Sample> samples, std::s
     throw std::invalid_argument("the reflectance that f11 is divided by comes from samples of its own");
   if (samples.empty()) throw std::invalid_argument("no samples");
   for (const Sample& sample : samples)
-    if (std::abs(sample.wavelength - samples[0].wavelength) > wavelength_resolution)
+    if (!same_wavelength(sample.wavelength, samples[0].wavelength))
       throw std::invalid_argument("samples of more than one wavelength");
   for (const SampleChanges& error : errors)
     if (error.size() != samples.size())
@@ -120,7 +121,7 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
 void require_measured_by(std::span<const Sample> samples, const Calibration& instrument, const std::string& name) {
   if (instrument.covariance.empty()) throw std::invalid_argument(name + ": a linear calibration, without a covariance");
   for (const Sample& sample : samples)
-    if (std::abs(sample.wavelength - instrument.wavelength) > wavelength_resolution)
+    if (!same_wavelength(sample.wavelength, instrument.wavelength))
       throw std::invalid_argument(name + ": of " + rounded(nanometres(instrument.wavelength), 10) +
                                   " nm, but there are data at " + rounded(nanometres(sample.wavelength), 10) + " nm");
 }

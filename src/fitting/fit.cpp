@@ -6,9 +6,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/shared_rows.hpp"
+#include "text/names.hpp"
 #include "text/numbers.hpp"
 
 // For each wavelength and element there is one triangle (LeastSquares) over the modes of the element's block. The fit
@@ -18,6 +21,11 @@
 
 namespace mmbrdf {
 namespace {
+
+constexpr Named<Weights> weights_names[] = {
+    {Weights::none, "none"}, {Weights::speckle, "speckle"}, {Weights::data, "data"}, {Weights::estimated, "estimated"}};
+constexpr Named<Covariance> covariance_names[] = {{Covariance::residuals, "residuals"},
+                                                  {Covariance::sandwich, "sandwich"}};
 
 constexpr double involved = 1e-6;       // least part of a free combination for which a mode is named
 constexpr std::size_t most_named = 24;  // modes in a message of one line
@@ -100,6 +108,28 @@ SharedRows repeated(std::span<const std::vector<SharedRows>> parts, std::size_t 
       result.add(rows, Shape::triangle);
     }
   return result;
+}
+
+Mueller ones() {
+  Mueller result;
+  result.elements.fill(1);
+  return result;
+}
+
+/// The law at each fitted wavelength, from what a first fit leaves.
+std::vector<NoiseEstimate> noise_at_wavelengths(const Model& first, std::span<const Sample> samples,
+                                                std::span<const Mueller> left) {
+  const std::size_t count = first.validity.wavelengths.size();
+  std::vector<std::vector<Sample>> samples_at(count);
+  std::vector<std::vector<Mueller>> left_at(count);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const std::size_t at = wavelength_index(first.validity.wavelengths, samples[s].wavelength);
+    samples_at[at].push_back(samples[s]);
+    left_at[at].push_back(left[s]);
+  }
+  std::vector<NoiseEstimate> laws;
+  for (std::size_t at = 0; at < count; ++at) laws.push_back(estimate_noise(samples_at[at], left_at[at]));
+  return laws;
 }
 
 }  // namespace
@@ -295,5 +325,40 @@ ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const doub
   fit.rms = fit.weight > 0 ? std::sqrt(fit.chi_squared / fit.weight) : 0;
   return fit;
 }
+
+FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
+  FitAccumulator accumulator(basis);
+  accumulator.add(samples);
+  FitResult result = accumulator.solved(options);
+  if (weights == Weights::estimated)
+    result.noise = noise_at_wavelengths(result.model, samples, residuals(result.model, samples));
+  std::vector<Mueller> list = fit_weights(samples, basis, result, weights);
+  if (weights != Weights::none) {
+    std::vector<NoiseEstimate> noise = std::move(result.noise);
+    accumulator = FitAccumulator(basis);
+    accumulator.add(samples, list);
+    result = accumulator.solved(options);
+    result.noise = std::move(noise);
+  }
+  result.residuals = residuals(result.model, samples);
+  if (options.covariance == Covariance::sandwich) {
+    list.resize(samples.size(), ones());
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      const double phi_i = samples[s].geometry.incident.phi;
+      Mueller r = accumulator.turns() ? turned(result.residuals[s], -phi_i) : result.residuals[s];
+      r(0, 0) /= result.model.reflectance.at(samples[s].wavelength);
+      for (std::size_t e = 0; e < 16; ++e) list[s].elements[e] *= list[s].elements[e] * r.elements[e] * r.elements[e];
+    }
+    FitAccumulator squares(basis);
+    squares.add(samples, list);
+    accumulator.use_sandwich(result, options, squares);
+  }
+  return result;
+}
+
+std::string to_string(Weights weights) { return name_of(weights_names, weights); }
+Weights weights_from(const std::string& name) { return value_of(weights_names, name, "weights"); }
+std::string to_string(Covariance covariance) { return name_of(covariance_names, covariance); }
+Covariance covariance_from(const std::string& name) { return value_of(covariance_names, name, "covariance"); }
 
 }  // namespace mmbrdf

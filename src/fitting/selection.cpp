@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/fitting/selection.hpp"
+#include "mmbrdf/fitting/weights.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/fitting/symmetry.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +10,6 @@
 #include <stdexcept>
 #include <unsupported/Eigen/SpecialFunctions>
 
-#include "mmbrdf/fitting/diagnostics.hpp"
 #include "text/numbers.hpp"
 
 // Functions that break a symmetry are the terms of modes, with other signs or in other elements. With Z(i,r) =
@@ -142,7 +143,7 @@ LeastSquares rows_at(const Problem& problem, double wavelength, const Block& blo
   Table k_i, k_r;
   for (std::size_t s = 0; s < problem.samples.size(); ++s) {
     const Sample sample = with_harmonics ? at_zero_azimuth(problem.samples[s]) : problem.samples[s];
-    if (std::abs(sample.wavelength - wavelength) > wavelength_resolution) continue;
+    if (!same_wavelength(sample.wavelength, wavelength)) continue;
     zernike_table(problem.order, disc_point(sample.geometry.incident, problem.mapping), k_i.data());
     zernike_table(problem.order, disc_point(sample.geometry.reflected, problem.mapping), k_r.data());
     std::vector<double> rows(block.elements.size() * width), values, weights;

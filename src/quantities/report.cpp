@@ -9,10 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/fitting/diagnostics.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/leverage.hpp"
+#include "mmbrdf/fitting/symmetry.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/samples/comparison.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/fitting/partition.hpp"
+#include "mmbrdf/samples/partition.hpp"
 
 #include <algorithm>
 #include <map>

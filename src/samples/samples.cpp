@@ -17,8 +17,6 @@ namespace {
 
 constexpr double counts = 1e-12;  // coefficient of a rotation: below it is the rounding of a sine that is 0
 
-bool same_wavelength(double a, double b) { return std::abs(a - b) <= wavelength_resolution; }
-
 void require_wavelength(const Sample& sample, std::size_t index) {
   if (sample.wavelength > 0 && std::isfinite(sample.wavelength)) return;
   throw std::invalid_argument("sample " + std::to_string(index + 1) +
@@ -80,6 +78,13 @@ Direction random_direction(std::mt19937_64& engine, double theta_max) {
 }
 
 }  // namespace
+
+bool same_wavelength(double a, double b) { return std::abs(a - b) <= wavelength_resolution; }
+
+std::size_t wavelength_index(std::span<const double> wavelengths, double wavelength) {
+  const auto same = [=](double other) { return same_wavelength(wavelength, other); };
+  return static_cast<std::size_t>(std::find_if(wavelengths.begin(), wavelengths.end(), same) - wavelengths.begin());
+}
 
 std::vector<double> wavelengths(std::span<const Sample> samples) {
   std::vector<double> sorted;

@@ -14,6 +14,7 @@
 #include "given/cases.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"

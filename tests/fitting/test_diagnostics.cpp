@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/fitting/diagnostics.hpp"
+#include "mmbrdf/fitting/leverage.hpp"
+#include "mmbrdf/fitting/symmetry.hpp"
+#include "mmbrdf/quantities/trust.hpp"
+#include "mmbrdf/samples/mirror_pairs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -17,6 +17,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 

@@ -16,6 +16,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 

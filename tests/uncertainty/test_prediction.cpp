@@ -16,6 +16,7 @@
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/simulation.hpp"

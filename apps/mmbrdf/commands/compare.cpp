@@ -35,8 +35,7 @@ std::vector<double> common_wavelengths(const Model& first, const Model& second) 
   if (a.empty() || b.empty()) return a.empty() ? b : a;
   std::vector<double> common;
   std::copy_if(a.begin(), a.end(), std::back_inserter(common), [&](double one) {
-    return std::any_of(b.begin(), b.end(),
-                       [=](double other) { return std::abs(one - other) <= wavelength_resolution; });
+    return std::any_of(b.begin(), b.end(), [=](double other) { return same_wavelength(one, other); });
   });
   return common;
 }

@@ -44,7 +44,7 @@ std::vector<Sample> reduced_file(const Calibration& instrument, const Options& o
   read_input(options.raw, [&](std::istream& in, const std::string& name) {
     RawReader reader(in, name, {p.generator.size(), p.analyzer.size()}, options.saturation);
     for (RawMeasurement raw; reader.next(raw);) {
-      if (std::abs(raw.wavelength - instrument.wavelength) > wavelength_resolution) {
+      if (!same_wavelength(raw.wavelength, instrument.wavelength)) {
         throw reader.error("wavelength_nm: " + brief(nanometres(raw.wavelength)) + ", but the instrument is of " +
                            brief(nanometres(instrument.wavelength)) + " nm");
       }

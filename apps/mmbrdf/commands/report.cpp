@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "mmbrdf/fitting/leverage.hpp"
 #include "mmbrdf/quantities/report.hpp"
+#include "mmbrdf/samples/mirror_pairs.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"

@@ -98,14 +98,13 @@ void read_samples_at(const std::string& path, const std::optional<std::vector<do
   constexpr std::size_t some =
       8192;  // the published data come in one piece, so that their wavelengths are folded together
   const std::vector<double> wanted = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
-  const auto near = [](double a, double b) { return std::abs(a - b) <= wavelength_resolution; };
   std::set<double> there;
   std::vector<Sample> samples;
   read_input(path, [&](std::istream& in, const std::string& name) {
     SampleReader reader(in, name);
     for (Sample sample; reader.next(sample);) {
       there.insert(sample.wavelength);
-      const auto is_it = [&](double wavelength) { return near(wavelength, sample.wavelength); };
+      const auto is_it = [&](double wavelength) { return same_wavelength(wavelength, sample.wavelength); };
       if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) samples.push_back(sample);
       if (samples.size() == some) {
         use(samples);

@@ -33,7 +33,7 @@
 #include <vector>
 
 #include "mmbrdf/fitting/fit.hpp"
-#include "mmbrdf/fitting/partition.hpp"
+#include "mmbrdf/samples/partition.hpp"
 
 namespace mmbrdf {
 

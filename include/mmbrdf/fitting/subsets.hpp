@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mmbrdf/fitting/fit.hpp"
-#include "mmbrdf/fitting/partition.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/samples/partition.hpp"
 
 namespace mmbrdf {
 

@@ -33,6 +33,12 @@ std::string sample_element(std::size_t element);
 std::vector<double> wavelengths(std::span<const Sample> samples);
 inline constexpr double wavelength_resolution = 1e-7;  ///< micrometres; files give at most 0.1 pm
 
+/// Whether they differ by no more than that.
+bool same_wavelength(double a, double b);
+
+/// Which of these wavelengths it is, counted from 0; their number if it is none of them.
+std::size_t wavelength_index(std::span<const double> wavelengths, double wavelength);
+
 /// Only the samples at these wavelengths, in the order they had. Throws std::invalid_argument, with the wavelengths
 /// there are, if one of them has no sample, and as wavelengths() does.
 std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<const double> wavelengths);
