@@ -3,9 +3,11 @@
 #include <iostream>
 
 #include "command.hpp"
+#include "mmbrdf/files/readings_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/polarimetry/measurement.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "options/polarimetry.hpp"

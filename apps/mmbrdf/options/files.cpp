@@ -114,7 +114,7 @@ void read_samples_at(const std::string& path, const std::optional<std::vector<do
   });
   use(samples);
   for (const double wavelength : wanted) {
-    if (std::none_of(there.begin(), there.end(), [&](double one) { return near(one, wavelength); })) {
+    if (std::none_of(there.begin(), there.end(), [&](double one) { return same_wavelength(one, wavelength); })) {
       throw std::runtime_error(data_name(path) + ": has samples at " +
                                nanometre_list(std::vector<double>(there.begin(), there.end())) + ", not at all of " +
                                nanometre_list(wanted));

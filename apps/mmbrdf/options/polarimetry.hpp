@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/polarimetry/judgement.hpp"
 
 namespace mmbrdf::program {
