@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/model/batch.hpp"
 #include "mmbrdf/model/prepared.hpp"
-#include "mmbrdf/polarimetry/measurement.hpp"
 
 #include <algorithm>
 #include <cmath>
