@@ -125,7 +125,7 @@ void bind_gradients(py::module_& m) {
       "the same frame, as Model.covariance() gives it.");
 }
 
-void bind_parts(py::module_& m) {
+void bind_sums(py::module_& m) {
   m.def(
       "co_and_cross_polarized",
       [](const Given& mueller) {
@@ -165,6 +165,9 @@ void bind_parts(py::module_& m) {
         return over_matrices(mueller, [](const Mueller& f) { return nearest_realizable(f).matrix; });
       },
       py::arg("mueller"), "The realizable matrices closest in the sum of squares, with the same M11.");
+}
+
+void bind_factors(py::module_& m) {
   m.def(
       "lu_chipman",
       [](const Given& mueller) {
@@ -201,7 +204,8 @@ void bind_parts(py::module_& m) {
 void bind_analysis(py::module_& m) {
   bind_quantities(m);
   bind_gradients(m);
-  bind_parts(m);
+  bind_sums(m);
+  bind_factors(m);
 }
 
 }  // namespace mmbrdf::python

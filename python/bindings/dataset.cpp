@@ -201,18 +201,7 @@ void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
           "known");
 }
 
-}  // namespace
-
-std::vector<Geometry> geometries_from(const py::sequence& angles) {
-  if (angles.size() != 4)
-    throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
-                                " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
-  return all_geometries(angles[0], angles[1], angles[2], angles[3]);
-}
-
-py::object dataset_object(std::vector<Sample> samples) { return py::cast(pointer(std::move(samples))); }
-
-void bind_dataset(py::module_& m) {
+void bind_class(py::module_& m) {
   py::class_<Dataset, DatasetPointer> c(
       m, "Dataset",
       "Measured or simulated samples: N matrices, each at its own wavelength and geometry. It does not change.\n\n"
@@ -251,6 +240,9 @@ void bind_dataset(py::module_& m) {
           },
           py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
       .def(py::pickle(&pickled, &unpickled));
+}
+
+void bind_samples(py::module_& m) {
   m.def("read_samples", samples_of, py::arg("path"),
         "A Dataset from CSV in the published layout or the project's own. Raises OSError for a file that cannot be "
         "read,\nwith line and column for one that holds something else.");
@@ -263,6 +255,9 @@ void bind_dataset(py::module_& m) {
       py::arg("seed") = 0,
       "Samples that a model would give: each wavelength at all geometries, with Gaussian noise of the speckle law,\n"
       "standard deviation speckle * sqrt(cos theta_i / cos theta_r). The same seed gives the same noise.");
+}
+
+void bind_geometries(py::module_& m) {
   m.def(
       "germer2017_grid", [] { return geometry_of(germer2017_grid()); },
       "The 1824 geometries of the published measurement, as a Geometry of arrays.");
@@ -283,6 +278,23 @@ void bind_dataset(py::module_& m) {
       py::arg("theta_i_deg"), py::arg("theta_r_deg"),
       "Directions in the plane of incidence: the source at azimuth 0, the detector at azimuth 180 (forward) for\n"
       "theta_r_deg >= 0, at azimuth 0 (back) below.");
+}
+
+}  // namespace
+
+std::vector<Geometry> geometries_from(const py::sequence& angles) {
+  if (angles.size() != 4)
+    throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
+                                " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
+  return all_geometries(angles[0], angles[1], angles[2], angles[3]);
+}
+
+py::object dataset_object(std::vector<Sample> samples) { return py::cast(pointer(std::move(samples))); }
+
+void bind_dataset(py::module_& m) {
+  bind_class(m);
+  bind_samples(m);
+  bind_geometries(m);
 }
 
 }  // namespace mmbrdf::python

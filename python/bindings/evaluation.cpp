@@ -235,6 +235,37 @@ py::dict arguments(const Wavelength& w, const Given& ti, const Given& pi, const 
 
 }  // namespace
 
+namespace {
+
+void bind_rest(ModelClass& c) {
+  const py::arg_v frame = py::arg("frame") = "xy", as_printed = py::arg("as_printed") = false,
+                  threads = py::arg("threads") = py::none();
+  define(
+      c, "outside",
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr) {
+        return outside_of({model, w, ti, pi, tr, pr, false});
+      },
+      outside_doc);
+  define(
+      c, "estimable",
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
+         bool printed, Threads count) {
+        return estimable({model, w, ti, pi, tr, pr, printed}, count.value_or(0));
+      },
+      estimable_doc, as_printed, threads);
+  c.def(
+      "evaluate_draws",
+      [](ModelObject& model, int count, unsigned long seed, const Wavelength& w, const Given& ti, const Given& pi,
+         const Given& tr, const Given& pr, const std::string& name, bool printed, Threads most) {
+        return evaluate_draws({model, w, ti, pi, tr, pr, printed}, frame_from(name), count, seed, most.value_or(0));
+      },
+      py::arg("count"), py::arg("seed"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"),
+      py::arg("phi_i_deg"), py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), frame, as_printed, threads,
+      draws_doc);
+}
+
+}  // namespace
+
 void bind_evaluation(ModelClass& c) {
   const py::arg_v frame = py::arg("frame") = "xy", as_printed = py::arg("as_printed") = false,
                   threads = py::arg("threads") = py::none(), terms = py::arg("terms") = py::none(),
@@ -265,28 +296,7 @@ void bind_evaluation(ModelClass& c) {
         return covariance({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named), count.value_or(0));
       },
       covariance_doc, frame, as_printed, terms, threads);
-  define(
-      c, "outside",
-      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr) {
-        return outside_of({model, w, ti, pi, tr, pr, false});
-      },
-      outside_doc);
-  define(
-      c, "estimable",
-      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
-         bool printed, Threads count) {
-        return estimable({model, w, ti, pi, tr, pr, printed}, count.value_or(0));
-      },
-      estimable_doc, as_printed, threads);
-  c.def(
-      "evaluate_draws",
-      [](ModelObject& model, int count, unsigned long seed, const Wavelength& w, const Given& ti, const Given& pi,
-         const Given& tr, const Given& pr, const std::string& name, bool printed, Threads most) {
-        return evaluate_draws({model, w, ti, pi, tr, pr, printed}, frame_from(name), count, seed, most.value_or(0));
-      },
-      py::arg("count"), py::arg("seed"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"),
-      py::arg("phi_i_deg"), py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), frame, as_printed, threads,
-      draws_doc);
+  bind_rest(c);
 }
 
 }  // namespace mmbrdf::python

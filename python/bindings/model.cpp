@@ -170,6 +170,28 @@ void bind_properties(ModelClass& c) {
           "From what, with what and how it was made: dict of text");
 }
 
+void bind_functions(py::module_& m) {
+  m.def("materials", &materials, "Names of the built-in models.");
+  m.def(
+      "material", [](const std::string& name) { return pointer(material(name)); }, py::arg("name"),
+      "A built-in model: material('ptfe'). Raises ValueError, with the names there are, for another name.");
+  m.def(
+      "load_model", model_at, py::arg("path"),
+      "A model from a JSON file or a published coefficient file. Raises OSError for a file that cannot be read, with\n"
+      "line and field for one that holds something else.");
+  m.def(
+      "in_published_form", [](const ModelObject& o) { return pointer(in_published_form(o.model())); }, py::arg("model"),
+      "An isotropic model in the modes of germer2017: exact, without the covariance. Raises ValueError for an\n"
+      "anisotropic one.");
+  m.def(
+      "projected_on_isotropic",
+      [](const ModelObject& o, std::pair<int, int> order) {
+        return without_gil([&] { return pointer(projected_on_isotropic(o.model(), {order.first, order.second})); });
+      },
+      py::arg("model"), py::arg("orders") = std::pair(7, 4),
+      "The isotropic model nearest to another one, over its range of angles; without covariance.");
+}
+
 }  // namespace
 
 double ModelObject::wavelength(const std::optional<double>& wavelength_nm) const {
@@ -270,25 +292,7 @@ ModelClass bind_model(py::module_& m) {
       .def(py::pickle([](const ModelObject& o) { return py::bytes(to_json(o.model())); },
                       [](const py::bytes& text) { return pointer(model_from_json(std::string(text), "pickle")); }));
   c.attr("__hash__") = py::none();
-  m.def("materials", &materials, "Names of the built-in models.");
-  m.def(
-      "material", [](const std::string& name) { return pointer(material(name)); }, py::arg("name"),
-      "A built-in model: material('ptfe'). Raises ValueError, with the names there are, for another name.");
-  m.def(
-      "load_model", model_at, py::arg("path"),
-      "A model from a JSON file or a published coefficient file. Raises OSError for a file that cannot be read, with\n"
-      "line and field for one that holds something else.");
-  m.def(
-      "in_published_form", [](const ModelObject& o) { return pointer(in_published_form(o.model())); }, py::arg("model"),
-      "An isotropic model in the modes of germer2017: exact, without the covariance. Raises ValueError for an\n"
-      "anisotropic one.");
-  m.def(
-      "projected_on_isotropic",
-      [](const ModelObject& o, std::pair<int, int> order) {
-        return without_gil([&] { return pointer(projected_on_isotropic(o.model(), {order.first, order.second})); });
-      },
-      py::arg("model"), py::arg("orders") = std::pair(7, 4),
-      "The isotropic model nearest to another one, over its range of angles; without covariance.");
+  bind_functions(m);
   return c;
 }
 

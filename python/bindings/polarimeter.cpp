@@ -222,30 +222,20 @@ void bind_instrument(py::module_& m) {
       "A polarizer and behind it a retarder at each of these azimuths; the analyzer mirrors it.");
 }
 
-void bind_calibration(py::module_& m) {
-  py::class_<Instrument, InstrumentPointer>(m, "Calibration", "A calibrated instrument at one wavelength.")
-      .def_property_readonly("wavelength_nm", [](const Instrument& c) { return nanometres(c.wavelength); })
-      .def_property_readonly("polarimeter", [](const Instrument& c) { return c.polarimeter; })
-      .def_property_readonly(
-          "covariance",
-          [](const py::object& self) -> py::object {
-            const auto& c = self.cast<const Instrument&>();
-            if (c.covariance.empty()) return py::none();
-            const auto n =
-                static_cast<py::ssize_t>(4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size()));
-            constexpr py::ssize_t size = sizeof(double);
-            return view(c.covariance.data(), {n, n}, {n * size, size}, self);
-          },
-          "Of the components of all generator, then all analyzer states: a view; None: not known")
-      .def_readonly("scale_uncertainty", &Calibration::scale_uncertainty, "Relative")
-      .def_property_readonly(
-          "polarizer_offset_deg", [](const Instrument& c) { return degrees(c.polarizer_offset); },
-          "Azimuth of the reference polarizer at dial 0")
-      .def_readonly("extinction", &Calibration::extinction, "Of the reference polarizer")
-      .def_readonly("film_thickness_um", &Calibration::film_thickness, "0: no film was given")
-      .def_property_readonly(
-          "figure_of_merit", [](const Instrument& c) { return c.figure_of_merit.total; },
-          "Rms of measured - expected matrices of the references, each divided by element 11")
+py::object covariance_view(const py::object& self) {
+  const auto& c = self.cast<const Instrument&>();
+  if (c.covariance.empty()) return py::none();
+  const auto n = static_cast<py::ssize_t>(4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size()));
+  constexpr py::ssize_t size = sizeof(double);
+  return view(c.covariance.data(), {n, n}, {n * size, size}, self);
+}
+
+using CalibrationClass = py::class_<Instrument, InstrumentPointer>;
+
+void bind_quality(CalibrationClass& c) {
+  c.def_property_readonly(
+       "figure_of_merit", [](const Instrument& c) { return c.figure_of_merit.total; },
+       "Rms of measured - expected matrices of the references, each divided by element 11")
       .def_property_readonly(
           "film_misfit_deg", [](const Instrument& c) { return degrees(c.film_misfit); },
           "Rms of the wafers' psi and delta from those of the film; 0: no film was given")
@@ -255,7 +245,22 @@ void bind_calibration(py::module_& m) {
       .def_readonly("identifiability", &Calibration::identifiability,
                     "s15/s1: how far the references are from leaving a second solution")
       .def_readonly("chi_squared", &Calibration::chi_squared)
-      .def_readonly("degrees_of_freedom", &Calibration::degrees_of_freedom)
+      .def_readonly("degrees_of_freedom", &Calibration::degrees_of_freedom);
+}
+
+void bind_calibration(py::module_& m) {
+  CalibrationClass c(m, "Calibration", "A calibrated instrument at one wavelength.");
+  bind_quality(c);
+  c.def_property_readonly("wavelength_nm", [](const Instrument& c) { return nanometres(c.wavelength); })
+      .def_property_readonly("polarimeter", [](const Instrument& c) { return c.polarimeter; })
+      .def_property_readonly("covariance", covariance_view,
+                             "Of the components of all generator, then all analyzer states: a view; None: not known")
+      .def_readonly("scale_uncertainty", &Calibration::scale_uncertainty, "Relative")
+      .def_property_readonly(
+          "polarizer_offset_deg", [](const Instrument& c) { return degrees(c.polarizer_offset); },
+          "Azimuth of the reference polarizer at dial 0")
+      .def_readonly("extinction", &Calibration::extinction, "Of the reference polarizer")
+      .def_readonly("film_thickness_um", &Calibration::film_thickness, "0: no film was given")
       .def_readonly("provenance", &Calibration::provenance)
       .def(
           "save",
@@ -268,6 +273,9 @@ void bind_calibration(py::module_& m) {
         return "<mmbrdf.Calibration: " + formatted("{:g}", nanometres(c.wavelength)) + " nm, figure of merit " +
                formatted("{:.3g}", c.figure_of_merit.total) + ">";
       });
+}
+
+void bind_measuring(py::module_& m) {
   m.def(
       "load_instrument",
       [](const std::filesystem::path& path) {
@@ -308,40 +316,18 @@ void bind_calibration(py::module_& m) {
       "that cannot be physical.");
 }
 
-void bind_goniometer(py::module_& m) {
-  py::class_<Goniometer>(m, "Goniometer",
-                         "A simulated instrument with the imperfections of a real one. Each seed is another "
-                         "instrument.\nrelative_noise is that of the readings, speckle that of a sample at normal "
-                         "incidence.")
-      .def(py::init([](unsigned long seed, double relative_noise, double speckle) {
-             GoniometerOptions options;
-             options.noise.relative = relative_noise;
-             options.speckle = speckle;
-             return Goniometer(options, seed);
-           }),
-           py::arg("seed") = 0, py::kw_only(), py::arg("relative_noise") = 1e-3, py::arg("speckle") = 0.0)
-      .def_property_readonly(
-          "polarimeter", [](const Goniometer& g) { return g.polarimeter(); }, "The true states")
-      .def_property_readonly(
-          "solid_angle", [](const Goniometer& g) { return g.options().solid_angle; }, "In sr")
-      .def_property_readonly(
-          "film",
-          [](const Goniometer& g) {
-            const Film& film = g.options().film;
-            return FilmTuple{film.film_index, film.thickness, film.substrate_index};
-          },
-          "Of its wafer, as calibrate() takes it")
-      .def(
-          "write_references",
-          [](const Goniometer& g, const std::filesystem::path& path, double nm, int count, unsigned long seed) {
-            const Polarimeter& p = g.polarimeter();
-            const double wavelength = micrometres(nm);
-            require_place(path);
-            write_references(
-                path, {wavelength, {p.generator.size(), p.analyzer.size()}, g.references(wavelength, count, seed)});
-          },
-          py::arg("path"), py::arg("wavelength_nm"), py::arg("count") = 18, py::arg("seed") = 0,
-          "Measures `count` references of each kind: the file that calibrate() reads")
+void bind_writing(py::class_<Goniometer>& c) {
+  c.def(
+       "write_references",
+       [](const Goniometer& g, const std::filesystem::path& path, double nm, int count, unsigned long seed) {
+         const Polarimeter& p = g.polarimeter();
+         const double wavelength = micrometres(nm);
+         require_place(path);
+         write_references(path,
+                          {wavelength, {p.generator.size(), p.analyzer.size()}, g.references(wavelength, count, seed)});
+       },
+       py::arg("path"), py::arg("wavelength_nm"), py::arg("count") = 18, py::arg("seed") = 0,
+       "Measures `count` references of each kind: the file that calibrate() reads")
       .def(
           "write_raw",
           [](const Goniometer& g, const std::filesystem::path& path, const ModelObject& model, double nm,
@@ -359,12 +345,39 @@ void bind_goniometer(py::module_& m) {
           "Measures a sample that has this model: the file that reduce() reads");
 }
 
+void bind_goniometer(py::module_& m) {
+  py::class_<Goniometer> c(m, "Goniometer",
+                           "A simulated instrument with the imperfections of a real one. Each seed is another "
+                           "instrument.\nrelative_noise is that of the readings, speckle that of a sample at normal "
+                           "incidence.");
+  c.def(py::init([](unsigned long seed, double relative_noise, double speckle) {
+          GoniometerOptions options;
+          options.noise.relative = relative_noise;
+          options.speckle = speckle;
+          return Goniometer(options, seed);
+        }),
+        py::arg("seed") = 0, py::kw_only(), py::arg("relative_noise") = 1e-3, py::arg("speckle") = 0.0)
+      .def_property_readonly(
+          "polarimeter", [](const Goniometer& g) { return g.polarimeter(); }, "The true states")
+      .def_property_readonly(
+          "solid_angle", [](const Goniometer& g) { return g.options().solid_angle; }, "In sr")
+      .def_property_readonly(
+          "film",
+          [](const Goniometer& g) {
+            const Film& film = g.options().film;
+            return FilmTuple{film.film_index, film.thickness, film.substrate_index};
+          },
+          "Of its wafer, as calibrate() takes it");
+  bind_writing(c);
+}
+
 }  // namespace
 
 void bind_polarimeter(py::module_& m) {
   bind_states(m);
   bind_instrument(m);
   bind_calibration(m);
+  bind_measuring(m);
   bind_goniometer(m);
 }
 

@@ -105,7 +105,7 @@ void read_freedom(const Field& field, Calibration& calibration) {
     field.refuse("0, and there is a covariance");
 }
 
-Calibration read_calibration(const Field& root) {
+void require_instrument(const Field& root) {
   require_format(root, format_name, conventions(), units(),
                  {"format",
                   "schema_version",
@@ -127,6 +127,10 @@ Calibration read_calibration(const Field& root) {
                   "chi_squared",
                   "degrees_of_freedom",
                   "provenance"});
+}
+
+Calibration read_calibration(const Field& root) {
+  require_instrument(root);
   Calibration c;
   c.wavelength = read_wavelength(root["wavelength_nm"]);
   c.polarimeter.generator = read_states(root["generator"]);

@@ -182,6 +182,22 @@ ReferenceKind reference_kind_from(const std::string& name) {
   return static_cast<ReferenceKind>(found - kind_names.begin());
 }
 
+namespace {
+
+void refine(Calibration& result, Unknowns& unknowns, std::span<const Reference> references,
+            const CalibrationOptions& options) {
+  calibration::Refinement refinement = calibration::refine(unknowns, references, options);
+  result.covariance = std::move(refinement.covariance);
+  result.scale_uncertainty = scale_uncertainty(unknowns, references);
+  add_scale(result.covariance, unknowns.analyzer, unknowns.generator.size(), result.scale_uncertainty);
+  result.chi_squared = refinement.chi_squared;
+  if (!std::isfinite(refinement.chi_squared) ||
+      !std::all_of(result.covariance.begin(), result.covariance.end(), [](double c) { return std::isfinite(c); }))
+    throw std::invalid_argument("the refinement leaves no finite numbers: are readings and noise of one scale?");
+}
+
+}  // namespace
+
 Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options) {
   require_valid(options);
   for (std::size_t i = 0; i < references.size(); ++i) require_valid(references[i], i + 1, options);
@@ -193,16 +209,7 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
   Calibration result;
   result.wavelength = options.wavelength;
   result.degrees_of_freedom = std::max(freedom, 0L);
-  if (options.refine) {
-    calibration::Refinement refinement = calibration::refine(unknowns, references, options);
-    result.covariance = std::move(refinement.covariance);
-    result.scale_uncertainty = scale_uncertainty(unknowns, references);
-    add_scale(result.covariance, unknowns.analyzer, unknowns.generator.size(), result.scale_uncertainty);
-    result.chi_squared = refinement.chi_squared;
-    if (!std::isfinite(refinement.chi_squared) ||
-        !std::all_of(result.covariance.begin(), result.covariance.end(), [](double c) { return std::isfinite(c); }))
-      throw std::invalid_argument("the refinement leaves no finite numbers: are readings and noise of one scale?");
-  }
+  if (options.refine) refine(result, unknowns, references, options);
   result.polarimeter = {states(unknowns.generator), states(unknowns.analyzer)};
   result.polarizer_offset = unknowns.offset - std::numbers::pi * std::floor(unknowns.offset / std::numbers::pi);
   result.extinction = unknowns.leak_real * unknowns.leak_real + unknowns.leak_imaginary * unknowns.leak_imaginary;
