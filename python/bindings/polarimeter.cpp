@@ -232,10 +232,11 @@ py::object covariance_view(const py::object& self) {
 
 using CalibrationClass = py::class_<Instrument, InstrumentPointer>;
 
-void bind_quality(CalibrationClass& c) {
-  c.def_property_readonly(
-       "figure_of_merit", [](const Instrument& c) { return c.figure_of_merit.total; },
-       "Rms of measured - expected matrices of the references, each divided by element 11")
+void bind_quality(CalibrationClass& calibration) {
+  calibration
+      .def_property_readonly(
+          "figure_of_merit", [](const Instrument& c) { return c.figure_of_merit.total; },
+          "Rms of measured - expected matrices of the references, each divided by element 11")
       .def_property_readonly(
           "film_misfit_deg", [](const Instrument& c) { return degrees(c.film_misfit); },
           "Rms of the wafers' psi and delta from those of the film; 0: no film was given")
@@ -249,9 +250,9 @@ void bind_quality(CalibrationClass& c) {
 }
 
 void bind_calibration(py::module_& m) {
-  CalibrationClass c(m, "Calibration", "A calibrated instrument at one wavelength.");
-  bind_quality(c);
-  c.def_property_readonly("wavelength_nm", [](const Instrument& c) { return nanometres(c.wavelength); })
+  CalibrationClass calibration(m, "Calibration", "A calibrated instrument at one wavelength.");
+  bind_quality(calibration);
+  calibration.def_property_readonly("wavelength_nm", [](const Instrument& c) { return nanometres(c.wavelength); })
       .def_property_readonly("polarimeter", [](const Instrument& c) { return c.polarimeter; })
       .def_property_readonly("covariance", covariance_view,
                              "Of the components of all generator, then all analyzer states: a view; None: not known")
