@@ -95,16 +95,16 @@ void arrange_pairs(const Model& model, Plan& result, std::vector<Shares>& shares
 /// For models of one of the straight-line forms; else nothing.
 std::vector<Shares> straight_shares(const Model& model, Plan& result) {
   std::vector<Shares> shares;
-  if (model.family == Family::anisotropic) return shares;
+  const bool isotropic = model.family == Family::isotropic;
+  if (!isotropic && model.family != Family::germer2017) return shares;
   for (const FittedBlock& fitted : model.blocks)
     for (const Mode& mode : fitted.block.modes) {
-      std::optional<Shares> of_mode =
-          model.family == Family::isotropic ? isotropic_shares(mode) : germer2017_shares(mode);
+      std::optional<Shares> of_mode = isotropic ? isotropic_shares(mode) : germer2017_shares(mode);
       if (!of_mode) return {};
       shares.push_back(std::move(*of_mode));
     }
-  result.form = model.family == Family::isotropic ? Form::isotropic : Form::germer2017;
-  result.count = model.family == Family::isotropic ? IsotropicLayout::count : Germer2017Layout::count;
+  result.form = isotropic ? Form::isotropic : Form::germer2017;
+  result.count = isotropic ? IsotropicLayout::count : Germer2017Layout::count;
   return shares;
 }
 
