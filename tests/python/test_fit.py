@@ -137,11 +137,11 @@ def test_a_fit_says_how_well_it_fits(samples):
 
 def test_a_fit_as_printed_is_evaluated_as_it_was_fitted(ptfe, tmp_path):
     data = mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(600, seed=5))
-    result = mmbrdf.fit(data, "germer2017", (4, 2), as_printed=True)
+    result = mmbrdf.fit(data, "germer2017", (4, 2), as_printed=True, name="model")
     turned = mmbrdf.fit(data, "germer2017", (4, 2)).model
     model = result.model
     assert model.as_printed and not turned.as_printed
-    assert repr(model).startswith("<mmbrdf.Model '': germer2017 as printed, orders (4, 2), ")
+    assert repr(model).startswith("<mmbrdf.Model 'model': germer2017 as printed, orders (4, 2), ")
     f = model.evaluate(532, *data.geometry)
     np.testing.assert_allclose(data.f11 - f[:, 0, 0], result.residuals[:, 0, 0], rtol=0, atol=1e-15)
     np.testing.assert_allclose(mmbrdf.residuals(model, data), result.residuals, rtol=0, atol=0)

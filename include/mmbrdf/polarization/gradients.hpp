@@ -5,7 +5,7 @@
 /// A gradient is a Mueller whose element ij is the derivative with respect to M_ij, in the units of the quantity over
 /// those of M. Arguments and refusals are those of the function of analysis.hpp with the same name; results are finite.
 /// Where a quantity has a corner, as D has where all light is depolarized, first order says nothing: the gradient is as
-/// told below, and draws (monte_carlo.hpp) are the way.
+/// told below, and draws (draws.hpp) are the way.
 #pragma once
 
 #include "mmbrdf/polarization/covariance.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Standard uncertainties of the quantities of radiometry.hpp: the slopes of the matrix over the coefficients,
+/// Standard uncertainties of the quantities of reflectance.hpp: the slopes of the matrix over the coefficients,
 /// integrated as the matrix is. Both arguments are of the same model, `prepared` at the wavelength asked for. What they
-/// hold and leave out is said in uncertainty.hpp. All throw std::invalid_argument where the values do.
+/// hold and leave out is said in prediction.hpp. All throw std::invalid_argument where the values do.
 #pragma once
 
 #include "mmbrdf/geometry/apertures.hpp"

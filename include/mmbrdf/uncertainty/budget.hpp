@@ -58,7 +58,7 @@ struct Budget {
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               const Geometry& geometry, Frame frame = Frame::xy);
 
-/// One matrix for each drawn model (monte_carlo.hpp), with errors of the terms drawn along, each normal. `model` is the
+/// One matrix for each drawn model (draws.hpp), with errors of the terms drawn along, each normal. `model` is the
 /// one that was drawn from. The same seed gives the same errors at all geometries, as it is the same instrument.
 std::vector<Mueller> drawn(std::span<const PreparedModel> draws, const PreparedModel& model,
                            std::span<const TypeBTerm> terms, const Geometry& geometry, Frame frame = Frame::xy,

@@ -22,7 +22,7 @@
 namespace mmbrdf {
 
 /// Throws std::invalid_argument, naming the block, if a covariance that is known has an eigenvalue below
-/// −covariance_tolerance (uncertainty.hpp) × the largest. Variances of 0 (solutions of minimum norm) are fine.
+/// −covariance_tolerance (prediction.hpp) × the largest. Variances of 0 (solutions of minimum norm) are fine.
 void require_semidefinite(const Model& model);
 
 /// Draws a + V^½ z of the coefficients of each block, with z normal: distributed as N(a, V), also where V is singular.
