@@ -102,7 +102,7 @@ void bind_directional_hemispherical(py::module_& m) {
                                });
       },
       py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg") = 0.0, py::arg("phi_i_deg") = 0.0,
-      py::arg("stokes") = py::none(), "Its standard uncertainty, of the fit alone.");
+      py::arg("stokes") = py::none(), "Its standard uncertainty, of the fit and, where it has one, its instrument.");
 }
 
 void bind_hemispherical_directional(py::module_& m) {
@@ -134,7 +134,7 @@ void bind_hemispherical_directional(py::module_& m) {
                                });
       },
       py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_r_deg") = 0.0, py::arg("phi_r_deg") = 0.0,
-      py::arg("analyzer") = py::none(), "Its standard uncertainty, of the fit alone.");
+      py::arg("analyzer") = py::none(), "Its standard uncertainty, of the fit and, where it has one, its instrument.");
 }
 
 void bind_bihemispherical(py::module_& m) {
@@ -151,7 +151,8 @@ void bind_bihemispherical(py::module_& m) {
         return over_wavelengths(
             o, nm, [&](double w) { return bihemispherical_uncertainty(o.model(), prepare_uncertainty(o.model(), w)); });
       },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(), "Its standard uncertainty, of the fit alone.");
+      py::arg("model"), py::arg("wavelength_nm") = py::none(),
+      "Its standard uncertainty, of the fit and, where it has one, its instrument.");
   m.def(
       "reflectance_factor",
       [](const Given& f11) {
@@ -214,7 +215,7 @@ void bind_curves(py::module_& m) {
         return polarized(polarized_uncertainty(o.turned(as_printed), wavelength, geometries));
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
-      "Its standard uncertainty, of the fit alone.");
+      "Its standard uncertainty, of the fit and, where it has one, its instrument.");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ Polarization polarization_from(const std::string& text) {
 
 struct Options {
   std::string model, output;
-  std::optional<Quantity> quantity;
+  std::optional<Integral> quantity;
   std::optional<std::vector<double>> wavelengths_nm, thetas_deg;
   std::optional<Polarization> polarization;
   std::optional<Sides> geometry;
@@ -67,9 +67,9 @@ std::optional<PreparedUncertainty> uncertainty_of(const Model& model, double wav
 }
 
 /// Of dhr and hdr.
-IntegratedRow hemispherical_row(const AtWavelength& at, Quantity quantity, double theta_deg, const Polarization& p) {
+IntegratedRow hemispherical_row(const AtWavelength& at, Integral quantity, double theta_deg, const Polarization& p) {
   const Direction beam = direction_from({theta_deg, 0}, "--theta");
-  const bool dhr = quantity == Quantity::dhr, unpolarized = p.light == Stokes{1, 0, 0, 0};
+  const bool dhr = quantity == Integral::dhr, unpolarized = p.light == Stokes{1, 0, 0, 0};
   IntegratedRow row;
   row.theta_deg = theta_deg;
   row.outside = outside(at.model.validity, at.wavelength, dhr ? Geometry{beam, {}} : Geometry{{}, beam});
@@ -95,12 +95,12 @@ IntegratedRow bihemispherical_row(const AtWavelength& at) {
 }
 
 /// What the mean of f11 is multiplied by.
-double factor_of(Quantity quantity, const Aperture& receiver) {
+double factor_of(Integral quantity, const Aperture& receiver) {
   switch (quantity) {
-    case Quantity::reflectance_factor:
-    case Quantity::radiance_factor:
+    case Integral::reflectance_factor:
+    case Integral::radiance_factor:
       return std::numbers::pi;
-    case Quantity::reflectance:
+    case Integral::reflectance:
       if (receiver.projected_solid_angle() == 0)
         throw std::invalid_argument("reflectance: the receiver has no solid angle");
       return receiver.projected_solid_angle();
@@ -109,7 +109,7 @@ double factor_of(Quantity quantity, const Aperture& receiver) {
   }
 }
 
-IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides& sides, const Options& options) {
+IntegratedRow average_row(const AtWavelength& at, Integral quantity, const Sides& sides, const Options& options) {
   const Aperture source = aperture_of(sides.source, source_phi_deg);
   const Aperture receiver = aperture_of(sides.receiver, receiver_phi_deg);
   const double factor = factor_of(quantity, receiver);
@@ -129,7 +129,7 @@ IntegratedRow average_row(const AtWavelength& at, Quantity quantity, const Sides
   row.outside = outside(at.model.validity, at.wavelength, {{theta_i, 0}, {theta_r, 0}});
   row.quadrature_error = factor * mean.error;
   row.geometries = mean.geometries;
-  const std::size_t elements = quantity == Quantity::mueller ? 16 : 1;
+  const std::size_t elements = quantity == Integral::mueller ? 16 : 1;
   for (std::size_t e = 0; e < elements; ++e) row.values.push_back(factor * mean.mueller.elements[e]);
   if (at.uncertainty) {
     const int few = average(model, source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
@@ -151,9 +151,9 @@ std::optional<double> extrapolated_share(const Validity& validity, bool source, 
   return source || receiver ? std::optional(1 - within) : std::nullopt;
 }
 
-std::vector<IntegratedRow> rows_of(const AtWavelength& at, Quantity quantity, const Options& options) {
+std::vector<IntegratedRow> rows_of(const AtWavelength& at, Integral quantity, const Options& options) {
   if (needs_geometry(quantity)) return {average_row(at, quantity, *options.geometry, options)};
-  if (quantity == Quantity::bhr) return {bihemispherical_row(at)};
+  if (quantity == Integral::bhr) return {bihemispherical_row(at)};
   std::vector<IntegratedRow> rows;
   for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0}))
     rows.push_back(hemispherical_row(at, quantity, theta_deg, options.polarization.value_or(Polarization{})));
@@ -161,11 +161,11 @@ std::vector<IntegratedRow> rows_of(const AtWavelength& at, Quantity quantity, co
 }
 
 /// Throws where an option does not belong to the quantity.
-Quantity checked_quantity(const Options& options) {
+Integral checked_quantity(const Options& options) {
   if (!options.quantity && !options.geometry) throw CLI::RequiredError("--quantity (or --geometry)");
-  const Quantity quantity = options.quantity.value_or(Quantity::reflectance_factor);
+  const Integral quantity = options.quantity.value_or(Integral::reflectance_factor);
   const std::string name = "of --quantity " + to_string(quantity);
-  const bool of_beam = quantity == Quantity::dhr || quantity == Quantity::hdr;
+  const bool of_beam = quantity == Integral::dhr || quantity == Integral::hdr;
   const auto forbid = [&](bool given, const std::string& option) {
     if (given) throw CLI::ValidationError(option, "is no option " + name);
   };
@@ -195,17 +195,18 @@ void check_range(const Integrated& result, const Validity& validity, bool strict
   if (outside & unknown_range) warn(unknown_range_line(result.model, validity));
 }
 
-Integrated integrated(const Model& model, Quantity quantity, const Options& options) {
+Integrated integrated(const Model& model, Integral quantity, const Options& options) {
   Integrated result;
   result.model = base_name(options.model);
   result.quantity = quantity;
+  result.has_instrument = model.provenance.contains("instrument");
   result.polarization = options.polarization.value_or(Polarization{}).text;
   if (options.geometry) {
     result.source = description(options.geometry->source, source_phi_deg);
     result.receiver = description(options.geometry->receiver, receiver_phi_deg);
   }
-  const bool hemisphere_i = options.geometry ? is_hemisphere(options.geometry->source) : quantity != Quantity::dhr;
-  const bool hemisphere_r = options.geometry ? is_hemisphere(options.geometry->receiver) : quantity != Quantity::hdr;
+  const bool hemisphere_i = options.geometry ? is_hemisphere(options.geometry->source) : quantity != Integral::dhr;
+  const bool hemisphere_r = options.geometry ? is_hemisphere(options.geometry->receiver) : quantity != Integral::hdr;
   result.extrapolated = extrapolated_share(model.validity, hemisphere_i, hemisphere_r);
   const std::vector<double> wavelengths = wavelengths_of(model, options);
   result.several_wavelengths = wavelengths.size() > 1;
@@ -219,12 +220,12 @@ Integrated integrated(const Model& model, Quantity quantity, const Options& opti
 }
 
 /// Whether the data of the fit determine the model all over the directions of a quantity, as far as that is known.
-bool determined(const Model& model, Quantity quantity, const Options& options) {
+bool determined(const Model& model, Integral quantity, const Options& options) {
   std::vector<std::pair<Aperture, Aperture>> pairs;
   if (options.geometry) {
     pairs.emplace_back(aperture_of(options.geometry->source, source_phi_deg),
                        aperture_of(options.geometry->receiver, receiver_phi_deg));
-  } else if (quantity == Quantity::bhr) {
+  } else if (quantity == Integral::bhr) {
     pairs.emplace_back(Aperture::hemisphere(), Aperture::hemisphere());
   } else {
     for (const double theta_deg : options.thetas_deg.value_or(std::vector<double>{0}))
@@ -240,7 +241,7 @@ bool determined(const Model& model, Quantity quantity, const Options& options) {
   });
 }
 
-void check_determined(const Model& model, Quantity quantity, const Options& options) {
+void check_determined(const Model& model, Integral quantity, const Options& options) {
   if (determined(model, quantity, options)) return;
   const std::string message =
       "the data of the fit do not determine the model in these directions: values are those of its smallest solution, "
@@ -250,7 +251,7 @@ void check_determined(const Model& model, Quantity quantity, const Options& opti
 }
 
 void integrate(const Options& options) {
-  const Quantity quantity = checked_quantity(options);
+  const Integral quantity = checked_quantity(options);
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   const Integrated result = integrated(model, quantity, options);

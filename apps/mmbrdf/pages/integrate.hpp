@@ -12,14 +12,14 @@
 
 namespace mmbrdf::program {
 
-enum class Quantity { dhr, hdr, bhr, brdf, reflectance_factor, radiance_factor, reflectance, mueller };
+enum class Integral { dhr, hdr, bhr, brdf, reflectance_factor, radiance_factor, reflectance, mueller };
 
 /// Throws std::invalid_argument for another name.
-Quantity quantity_from(const std::string& name);
-std::string to_string(Quantity quantity);
+Integral quantity_from(const std::string& name);
+std::string to_string(Integral quantity);
 
 /// Whether it is one of a source and a receiver, and not of the whole hemisphere.
-bool needs_geometry(Quantity quantity);
+bool needs_geometry(Integral quantity);
 
 /// One number, or all sixteen of a matrix. Matrices are in the frame xy.
 struct IntegratedRow {
@@ -34,12 +34,13 @@ struct IntegratedRow {
 
 struct Integrated {
   std::string model;
-  Quantity quantity;
+  Integral quantity;
   std::string polarization;            // as typed
   std::string source, receiver;        // descriptions, with --geometry
   std::optional<double> extrapolated;  // share of the hemisphere's projected solid angle beyond the fitted angles
   std::vector<IntegratedRow> rows;
   bool several_wavelengths = false;
+  bool has_instrument = false;  // its errors are in the uncertainties
 };
 
 /// As CSV the columns are [wavelength_nm,][theta_i_deg,|theta_r_deg,]QUANTITY,u_QUANTITY, with --geometry followed by

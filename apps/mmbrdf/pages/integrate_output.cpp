@@ -13,35 +13,35 @@ namespace mmbrdf::program {
 namespace {
 
 struct Named {
-  Quantity quantity;
+  Integral quantity;
   const char* name;
   const char* meaning;
   const char* unit;
 };
 
 constexpr Named quantities[] = {
-    {Quantity::dhr, "dhr", "directional-hemispherical reflectance", "1"},
-    {Quantity::hdr, "hdr", "hemispherical-directional reflectance", "1"},
-    {Quantity::bhr, "bhr", "bihemispherical reflectance", "1"},
-    {Quantity::brdf, "brdf", "BRDF f11, mean over source and receiver", "sr^-1"},
-    {Quantity::reflectance_factor, "reflectance_factor", "reflectance factor, pi x mean of f11", "1"},
-    {Quantity::radiance_factor, "radiance_factor", "radiance factor, pi x mean of f11", "1"},
-    {Quantity::reflectance, "reflectance", "reflected flux into the receiver per incident flux", "1"},
-    {Quantity::mueller, "mueller", "Mueller BRDF, mean over source and receiver, frame xy", "sr^-1"},
+    {Integral::dhr, "dhr", "directional-hemispherical reflectance", "1"},
+    {Integral::hdr, "hdr", "hemispherical-directional reflectance", "1"},
+    {Integral::bhr, "bhr", "bihemispherical reflectance", "1"},
+    {Integral::brdf, "brdf", "BRDF f11, mean over source and receiver", "sr^-1"},
+    {Integral::reflectance_factor, "reflectance_factor", "reflectance factor, pi x mean of f11", "1"},
+    {Integral::radiance_factor, "radiance_factor", "radiance factor, pi x mean of f11", "1"},
+    {Integral::reflectance, "reflectance", "reflected flux into the receiver per incident flux", "1"},
+    {Integral::mueller, "mueller", "Mueller BRDF, mean over source and receiver, frame xy", "sr^-1"},
 };
 
-const Named& named(Quantity quantity) {
+const Named& named(Integral quantity) {
   return *std::find_if(std::begin(quantities), std::end(quantities),
                        [&](const Named& q) { return q.quantity == quantity; });
 }
 
 /// The column of the polar angle; empty if there is none.
-std::string theta_column(Quantity quantity) {
-  return quantity == Quantity::dhr ? "theta_i_deg" : quantity == Quantity::hdr ? "theta_r_deg" : "";
+std::string theta_column(Integral quantity) {
+  return quantity == Integral::dhr ? "theta_i_deg" : quantity == Integral::hdr ? "theta_r_deg" : "";
 }
 
-std::vector<std::string> value_columns(Quantity quantity) {
-  if (quantity != Quantity::mueller) return {to_string(quantity)};
+std::vector<std::string> value_columns(Integral quantity) {
+  if (quantity != Integral::mueller) return {to_string(quantity)};
   std::vector<std::string> names;
   for (std::size_t element = 0; element < 16; ++element) names.push_back("f" + element_name(element));
   return names;
@@ -83,7 +83,7 @@ nlohmann::ordered_json row_json(const Integrated& result, const IntegratedRow& r
   nlohmann::ordered_json json;
   json["wavelength_nm"] = row.wavelength_nm ? nlohmann::ordered_json(*row.wavelength_nm) : nullptr;
   if (row.theta_deg) json[theta] = *row.theta_deg;
-  if (result.quantity == Quantity::mueller) {
+  if (result.quantity == Integral::mueller) {
     json[name] = square(row.values);
     json["u_" + name] = square(row.uncertainties);
   } else {
@@ -107,7 +107,7 @@ nlohmann::ordered_json json_of(const Integrated& result) {
   if (needs_geometry(result.quantity)) {
     json["source"] = result.source;
     json["receiver"] = result.receiver;
-  } else if (result.quantity != Quantity::bhr) {
+  } else if (result.quantity != Integral::bhr) {
     json["polarization"] = result.polarization;
   }
   if (result.extrapolated) json["extrapolated_share_of_hemisphere"] = *result.extrapolated;
@@ -162,8 +162,8 @@ std::string text_of(const Integrated& result) {
   if (geometry)
     text += "\nsource      " + result.source + "\nreceiver    " + result.receiver + "\n";
   else
-    text += (result.quantity == Quantity::bhr ? "" : ", polarization " + result.polarization) + "\n";
-  text += result.quantity == Quantity::mueller ? matrices(result) : table(result);
+    text += (result.quantity == Integral::bhr ? "" : ", polarization " + result.polarization) + "\n";
+  text += result.quantity == Integral::mueller ? matrices(result) : table(result);
   if (geometry) {
     double error = 0;
     long geometries = 0;
@@ -175,7 +175,8 @@ std::string text_of(const Integrated& result) {
             format(", error below %.1e\n", error);
   }
   if (std::any_of(result.rows.begin(), result.rows.end(), [](const auto& row) { return !row.uncertainties.empty(); }))
-    text += "u: standard uncertainty of the fit alone; scale, angles and sample are not in it\n";
+    text += std::string("u: standard uncertainty of the fit ") +
+            (result.has_instrument ? "and its instrument" : "alone") + "; scale, angles and sample are not in it\n";
   if (result.extrapolated) {
     text += format("extrapolated: %.1f %% of the hemisphere's projected solid angle lies beyond the fitted angles\n",
                    100 * *result.extrapolated);
@@ -185,7 +186,7 @@ std::string text_of(const Integrated& result) {
 
 }  // namespace
 
-Quantity quantity_from(const std::string& name) {
+Integral quantity_from(const std::string& name) {
   std::vector<std::string> names;
   for (const Named& q : quantities) {
     if (q.name == name) return q.quantity;
@@ -194,10 +195,10 @@ Quantity quantity_from(const std::string& name) {
   throw std::invalid_argument("\"" + name + "\": expected one of " + joined(names));
 }
 
-std::string to_string(Quantity quantity) { return named(quantity).name; }
+std::string to_string(Integral quantity) { return named(quantity).name; }
 
-bool needs_geometry(Quantity quantity) {
-  return quantity != Quantity::dhr && quantity != Quantity::hdr && quantity != Quantity::bhr;
+bool needs_geometry(Integral quantity) {
+  return quantity != Integral::dhr && quantity != Integral::hdr && quantity != Integral::bhr;
 }
 
 std::string written(const Integrated& result, Format format) {
