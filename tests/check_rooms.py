@@ -34,9 +34,11 @@ def upward_arrows(root):
                 yield f"{file.relative_to(root)}: in no room that {pathlib.Path(__file__).name} knows"
                 continue
             for line, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
-                found = re.match(r'#include "(?:mmbrdf/)?(\w+)/', text)
-                if found and found[1] != room and not LEVEL.get(found[1], len(LINES)) < LEVEL[room]:
-                    yield f"{file.relative_to(root)}:{line}: {room} includes {found[1]}, which is not above it"
+                found = re.match(r"\s*#\s*include\s*[<\"](mmbrdf/)?(\w+|\.\.?)/", text)
+                if not found or found[2] == room or (found[2] not in LEVEL and not found[1] and found[2][0] != "."):
+                    continue  # a library's header: <Eigen/Core>
+                if not LEVEL.get(found[2], len(LINES)) < LEVEL[room]:
+                    yield f"{file.relative_to(root)}:{line}: {room} includes {found[2]}, which is not above it"
 
 
 def has_header(root, source):
