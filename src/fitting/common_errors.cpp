@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/fitting/common_errors.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -11,6 +11,7 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
+#include "numerics/dense.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -112,7 +113,7 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Index size = normals[b].matrix.rows();
     const MatrixXd whole = normals[b].matrix.selfadjointView<Eigen::Lower>();
-    const MatrixXd moved = whole.completeOrthogonalDecomposition().solve(normals[b].vectors);
+    const MatrixXd moved = dense::shortest_least_squares(whole, normals[b].vectors);
     const MatrixXd added = moved * moved.transpose();
     Eigen::Map<MatrixXd>(model.blocks[b].covariance.data(), size, size) += (added + added.transpose()) / 2;
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "numerics/shared_rows.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 
 namespace mmbrdf {
@@ -37,9 +37,8 @@ std::vector<double> numbers_of(const MatrixXd& m) { return {m.data(), m.data() +
 const Decompositions::Svd& Decompositions::of(const MatrixXd& triangle) {
   for (const Svd& svd : known_)
     if (svd.triangle.rows() == triangle.rows() && svd.triangle == triangle) return svd;
-  // Not BDCSVD: for the triangles of symmetric grids it returned singular vectors that were off by 2e-4 (Eigen 3.4).
-  const Eigen::JacobiSVD<MatrixXd> svd(triangle, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  known_.push_back({triangle, svd.matrixU(), svd.matrixV(), svd.singularValues()});
+  dense::Svd svd = dense::full_svd(triangle);
+  known_.push_back({triangle, std::move(svd.u), std::move(svd.v), std::move(svd.s)});
   return known_.back();
 }
 
@@ -78,24 +77,19 @@ LeastSquares SharedRows::of(std::size_t value, long rows) const {
 
 Solution SharedRows::solve(const MatrixXd& factors, long rows, double tolerance, Decompositions& known) const {
   const Index n = count(), powers = factors.cols();
-  const Eigen::HouseholderQR<MatrixXd> qr(factors);
-  const MatrixXd factor_triangle = qr.matrixQR().topRows(powers).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd> outer(factor_triangle, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Decompositions::Svd& inner = known.of(unknowns());
-
   MatrixXd values = triangle_.topRightCorner(n, factors.rows());
-  values.applyOnTheRight(qr.householderQ());
-  const MatrixXd projected = inner.u.transpose() * values.leftCols(powers) * outer.matrixU();
+  const dense::Svd outer = dense::full_svd(dense::triangle(factors, values));
+  const Decompositions::Svd& inner = known.of(unknowns());
+  const MatrixXd projected = inner.u.transpose() * values.leftCols(powers) * outer.u;
 
-  const std::vector<Pair> pairs = pairs_by_falling_value(outer.singularValues(), inner.s);
+  const std::vector<Pair> pairs = pairs_by_falling_value(outer.s, inner.s);
   const auto is_kept = [&](const Pair& pair) { return pair.value > tolerance * pairs.front().value; };
   const Index size = index(pairs.size()), rank = std::count_if(pairs.begin(), pairs.end(), is_kept);
   MatrixXd v(size, size);
   VectorXd right(size);
   for (Index q = 0; q < size; ++q) {
     const Pair& pair = pairs[static_cast<std::size_t>(q)];
-    for (Index p = 0; p < powers; ++p)
-      v.col(q).segment(p * n, n) = outer.matrixV()(p, pair.factor) * inner.v.col(pair.unknown);
+    for (Index p = 0; p < powers; ++p) v.col(q).segment(p * n, n) = outer.v(p, pair.factor) * inner.v.col(pair.unknown);
     right(q) = projected(pair.unknown, pair.factor);
   }
 

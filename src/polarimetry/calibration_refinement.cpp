@@ -3,11 +3,11 @@
 
 // Maximum likelihood of all unknowns at once: Σ (B − g A M W)² / σ², by Levenberg and Marquardt with the derivatives
 // dB = dA M W + A dM W + A M dW. The scale that A and W share, and that of the gains, are held by two more rows.
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
+#include "numerics/dense.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf::calibration {
@@ -182,7 +182,7 @@ void minimise(Unknowns& x, std::span<const Reference> references, const Layout& 
     rows.bottomRows(layout.size) = std::sqrt(damping) * MatrixXd::Identity(layout.size, layout.size);
     VectorXd values = VectorXd::Zero(rows.rows());
     values.head(now.residuals.size()) = now.residuals;
-    const VectorXd step = Eigen::HouseholderQR<MatrixXd>(rows).solve(values).cwiseQuotient(scales);
+    const VectorXd step = dense::least_squares(rows, values).cwiseQuotient(scales);
     Unknowns moved = x;
     take_step(moved, layout, references, step);
     Linearised next = linearised(moved, references, layout, options, sigma);
@@ -212,13 +212,10 @@ Refinement refine(Unknowns& unknowns, std::span<const Reference> references, con
   Refinement result;
   result.chi_squared = rows.residuals.head(sigma.size()).squaredNorm();
   const VectorXd scales = rows.jacobian.colwise().norm().transpose();
-  const MatrixXd qr = Eigen::HouseholderQR<MatrixXd>(rows.jacobian * scales.cwiseInverse().asDiagonal())
-                          .matrixQR()
-                          .topRows(layout.size);
   const MatrixXd inverse =
-      qr.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(layout.size, layout.size)).topRows(states);
+      dense::inverse_of_triangle(dense::triangle(rows.jacobian * scales.cwiseInverse().asDiagonal()));
   const VectorXd units = scales.head(states).cwiseInverse();
-  const MatrixXd half = units.asDiagonal() * inverse;
+  const MatrixXd half = units.asDiagonal() * inverse.topRows(states);
   const double variance = result.chi_squared / static_cast<double>(degrees_of_freedom(references, options));
   result.covariance.resize(static_cast<std::size_t>(states * states));
   Eigen::Map<MatrixXd>(result.covariance.data(), states, states)

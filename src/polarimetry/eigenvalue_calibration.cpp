@@ -5,15 +5,14 @@
 // for the polarizer's azimuth; then M_i W − W C_i = 0 is linear in W. With more than four states all is first projected
 // to the four directions that B0 spans. The stacked equations are solved by their singular values: the eigenvalues of
 // their normal matrix have a floor of 1e-16, which hides errors of the azimuth below 1e-8.
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <stdexcept>
 
+#include "numerics/dense.hpp"
 #include "numerics/golden_section.hpp"
 #include "polarimetry/wafer_signs.hpp"
 #include "text/numbers.hpp"
@@ -50,13 +49,13 @@ EmptyBeam empty_beam(std::span<const Reference> references, const CalibrationOpt
     ++count;
   }
   const MatrixXd mean = (sum / count) * (shape / count);
-  const Eigen::JacobiSVD<MatrixXd> svd(mean, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  if (!(svd.singularValues()(3) > 1e-9 * svd.singularValues()(0)))
+  const dense::Svd svd = dense::thin_svd(mean);
+  if (!(svd.s(3) > 1e-9 * svd.s(0)))
     throw std::invalid_argument(
         "the readings of the empty beam have fewer than four independent states: generator and analyzer need four "
         "each");
-  EmptyBeam result{svd.matrixU().leftCols(4), svd.matrixV().leftCols(4), {}};
-  result.projected = svd.singularValues().head(4).asDiagonal();
+  EmptyBeam result{svd.u.leftCols(4), svd.v.leftCols(4), {}};
+  result.projected = svd.s.head(4).asDiagonal();
   return result;
 }
 
@@ -73,7 +72,7 @@ struct Spectrum {
 };
 
 Spectrum spectrum(const Matrix4d& c) {
-  const Eigen::Vector4cd l = Eigen::EigenSolver<Matrix4d>(c, false).eigenvalues();
+  const Eigen::VectorXcd l = dense::complex_eigenvalues(c);
   const double scale = l.cwiseAbs().maxCoeff();
   constexpr std::array<std::array<int, 4>, 6> pairings{
       {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
@@ -135,10 +134,11 @@ class Stack {
       wafers.conservativeResize(wafers.rows() + 16, 16);
       wafers.bottomRows(16) = equations(matrix(mueller(unknowns.elements[i])), c[i]);
     }
-    triangle_ = Eigen::HouseholderQR<MatrixXd>(wafers).matrixQR().topRows(16).triangularView<Eigen::Upper>();
+    triangle_ = dense::triangle(wafers);
   }
 
-  Eigen::JacobiSVD<MatrixXd> at(double offset) const {
+  /// Without U.
+  dense::Svd at(double offset) const {
     MatrixXd rows(16 + 16 * index(polarizers_.size()), 16);
     rows.topRows(16) = triangle_;
     Index next = 16;
@@ -148,8 +148,7 @@ class Stack {
       rows.middleRows(next, 16) = equations(matrix(m), c_[i]);
       next += 16;
     }
-    const MatrixXd small = Eigen::HouseholderQR<MatrixXd>(rows).matrixQR().topRows(16).triangularView<Eigen::Upper>();
-    return Eigen::JacobiSVD<MatrixXd>(small, Eigen::ComputeFullV);
+    return dense::right_svd(dense::triangle(rows));
   }
 
  private:
@@ -161,11 +160,11 @@ class Stack {
   MatrixXd triangle_;
 };
 
-double ratio(const Eigen::JacobiSVD<MatrixXd>& svd) { return svd.singularValues()(15) / svd.singularValues()(14); }
+double ratio(const dense::Svd& svd) { return svd.s(15) / svd.s(14); }
 
 /// Without references that tie S4 to S2 and S3, the equations are solved by states of S4 alone.
 void require_unique(const VectorXd& s, const Matrix4d& w) {
-  const VectorXd parts = Eigen::JacobiSVD<MatrixXd>(w).singularValues();
+  const VectorXd parts = dense::singular_values(w);
   if (!(parts(3) > 1e-6 * parts(0)))
     throw std::invalid_argument(
         "the references leave more than one instrument: nothing ties the components of its states to each other; add "
@@ -176,11 +175,11 @@ void require_unique(const VectorXd& s, const Matrix4d& w) {
                                 "; add dial angles of the polarizer or angles of incidence");
 }
 
-void find_states(Unknowns& unknowns, const EmptyBeam& empty, const Eigen::JacobiSVD<MatrixXd>& svd) {
-  const VectorXd& s = svd.singularValues();
+void find_states(Unknowns& unknowns, const EmptyBeam& empty, const dense::Svd& svd) {
+  const VectorXd& s = svd.s;
   unknowns.singular_ratio = ratio(svd);
   unknowns.identifiability = s(14) / s(0);
-  Matrix4d w = Eigen::Map<const Matrix4d>(svd.matrixV().col(15).eval().data());
+  Matrix4d w = Eigen::Map<const Matrix4d>(svd.v.col(15).data());
   require_unique(s, w);
   unknowns.generator = w * empty.generator.transpose();
   const double scale = unknowns.generator.row(0).mean();
@@ -210,7 +209,7 @@ Unknowns solve_linear(std::span<const Reference> references, const CalibrationOp
       ++empty_count;
     }
     if (references[i].kind != ReferenceKind::polarizer) continue;
-    unknowns.gains[i] = Eigen::EigenSolver<Matrix4d>(c[i], false).eigenvalues().real().maxCoeff();
+    unknowns.gains[i] = dense::complex_eigenvalues(c[i]).real().maxCoeff();
     if (!(unknowns.gains[i] > 0))
       throw std::invalid_argument("reference " + std::to_string(i + 1) + ": a polarizer that passes nothing");
   }
@@ -222,7 +221,7 @@ Unknowns solve_linear(std::span<const Reference> references, const CalibrationOp
   const auto misfit = [&](double offset) { return ratio(stack.at(offset)); };
   const double offset = scanned_minimum(misfit, 0, half_turn, 180, 1e-12);
   unknowns.offset = offset - half_turn * std::floor(offset / half_turn);
-  const Eigen::JacobiSVD<MatrixXd> best = stack.at(unknowns.offset);
+  const dense::Svd best = stack.at(unknowns.offset);
   find_states(unknowns, empty, best);
   return unknowns;
 }

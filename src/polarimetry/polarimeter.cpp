@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarimetry/polarimeter.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 
 #include "mmbrdf/polarization/elements.hpp"
+#include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/random.hpp"
 #include "numerics/semidefinite.hpp"
@@ -120,7 +120,7 @@ Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuth
 double condition_number(std::span<const Stokes> states) {
   const MatrixXd matrix = columns(states);
   if (states.size() < 4 || !matrix.allFinite()) return std::numeric_limits<double>::infinity();
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(matrix).singularValues();
+  const VectorXd s = dense::singular_values(matrix);
   return has_rank_four(s) ? s(0) / s(3) : std::numeric_limits<double>::infinity();
 }
 
@@ -179,10 +179,9 @@ MatrixXd pseudo_inverse(const MatrixXd& states, const char* of) {
   const std::string too_few = std::to_string(states.cols()) + " states, not four independent ones";
   if (!states.allFinite()) throw refusal("a state is not finite");
   if (states.cols() < 4) throw refusal(too_few);
-  const Eigen::JacobiSVD<MatrixXd> svd(states, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& s = svd.singularValues();
+  const auto [u, v, s] = dense::thin_svd(states);
   if (!has_rank_four(s)) throw refusal(too_few);
-  return svd.matrixV() * s.cwiseInverse().asDiagonal() * svd.matrixU().transpose();
+  return v * s.cwiseInverse().asDiagonal() * u.transpose();
 }
 
 MuellerCovariance covariance_of(const MatrixXd& matrix) {
@@ -205,12 +204,10 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
     inverses->covariance = Eigen::Map<const MatrixXd>(covariance.data(), size, size);
     if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
       throw std::invalid_argument("the covariance of the instrument is not symmetric and finite");
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(inverses->covariance);
-    require_semidefinite(solver.eigenvalues(), "the instrument", covariance_tolerance);
-    const double least = 1e-14 * solver.eigenvalues()(size - 1);
-    const Index none = (solver.eigenvalues().array() <= least).count();
-    inverses->errors =
-        solver.eigenvectors().rightCols(size - none) * solver.eigenvalues().tail(size - none).cwiseSqrt().asDiagonal();
+    const auto [vectors, values] = dense::eigensystem(inverses->covariance);
+    require_semidefinite(values, "the instrument", covariance_tolerance);
+    const Index none = (values.array() <= 1e-14 * values(size - 1)).count();
+    inverses->errors = vectors.rightCols(size - none) * values.tail(size - none).cwiseSqrt().asDiagonal();
   }
   inverses_ = std::move(inverses);
 }

@@ -2,13 +2,14 @@
 #include "mmbrdf/uncertainty/draws.hpp"
 #include "mmbrdf/model/prepared.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/random.hpp"
 #include "numerics/semidefinite.hpp"
@@ -53,10 +54,9 @@ MatrixXd joint_covariance(const FittedBlock& fitted, const ReflectanceTable& tab
 
 /// U diag(√s) Uᵀ: unlike U diag(√s), the same for each choice of the eigenvectors.
 MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(joint_covariance(fitted, table));
-  const VectorXd& s = solver.eigenvalues();
+  const auto [vectors, s] = dense::eigensystem(joint_covariance(fitted, table));
   require_semidefinite(s, "block " + fitted.block.name, covariance_tolerance);
-  return solver.eigenvectors() * s.cwiseMax(0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
+  return vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal() * vectors.transpose();
 }
 
 double mean_of(std::span<const double> values) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/uncertainty/prediction.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
@@ -107,8 +108,7 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
-  require_semidefinite(Eigen::SelfAdjointEigenSolver<MatrixXd>(result.covariance, Eigen::EigenvaluesOnly).eigenvalues(),
-                       "block " + fitted.block.name, covariance_tolerance);
+  require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = std::sqrt(squares);
   result.terms.resize(fitted.block.elements.size());
