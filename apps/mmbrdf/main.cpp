@@ -10,6 +10,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "options/option.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -51,7 +52,7 @@ constexpr const char* footer =
     "\n"
     "mmbrdf COMMAND --help tells the rest.";
 
-int wrong_usage(const CLI::App& app, const CLI::ParseError& error) {
+int wrong_usage(const CLI::App& app, const std::exception& error) {
   std::string command = "mmbrdf";
   for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
   std::cerr << "mmbrdf: " << error.what() << "\nsee " << command << " --help\n";
@@ -94,6 +95,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::CallForVersion&) {
     std::cout << software() << '\n';
   } catch (const CLI::ParseError& error) {
+    return wrong_usage(app, error);
+  } catch (const WrongUsage& error) {
     return wrong_usage(app, error);
   }
   flush_output();

@@ -138,15 +138,15 @@ void analyze_file(const Options& options) {
 }
 
 void analyze(Options& options) {
-  if (is_npy(options.output)) throw CLI::ValidationError("--output", "only evaluate writes .npy");
+  if (is_npy(options.output)) throw WrongUsage("--output", "only evaluate writes .npy");
   const bool rows = !options.geometries.empty() || !options.scan_texts.empty();
   for (const std::string& text : options.scan_texts) options.scans.push_back(parsed("--scan", text, scan_from));
   for (const std::string& text : options.term_texts)
     options.analysis.terms.push_back(parsed("--term", text, term_from));
   if (rows && options.format && *options.format != Format::csv)
-    throw CLI::ValidationError("--format", "only csv goes with --geometries and --scan");
+    throw WrongUsage("--format", "only csv goes with --geometries and --scan");
   if (options.analysis.light) require_possible(*options.analysis.light);
-  if (!rows && !options.output.empty()) throw CLI::ValidationError("--output", "needs --geometries or --scan");
+  if (!rows && !options.output.empty()) throw WrongUsage("--output", "needs --geometries or --scan");
   if (!options.geometries.empty()) return analyze_file(options);
   if (!options.scans.empty()) return analyze_scan(options);
   require_directions(options, "--geometries, --scan");
@@ -182,26 +182,22 @@ constexpr const char* footer =
 Run analyze_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   const QuestionOptions declared = add_question(app, *o, "Analyze");
-  app.add_option("--scan", o->scan_texts,
-                 "Run through a range: theta_i, phi_i, theta_r, phi_r\nor wavelength; again: through all pairs")
-      ->option_text("VAR=FROM:TO:STEP")
-      ->allow_extra_args(false)
-      ->excludes(declared.geometries);
-  app.add_option("--term", o->term_texts,
-                 "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
-                 "calibration=0.001; repeatable")
-      ->option_text("[NAME:]KIND=U")
-      ->allow_extra_args(false);
+  add_texts(app, "--scan", o->scan_texts, "VAR=FROM:TO:STEP",
+            "Run through a range: theta_i, phi_i, theta_r, phi_r\nor wavelength; again: through all pairs")
+      .excludes(declared.geometries);
+  add_texts(app, "--term", o->term_texts, "[NAME:]KIND=U",
+            "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
+            "calibration=0.001; repeatable");
   add_option(app, "--stokes", o->analysis.light, stokes_from, "S1,S2,S3,S4",
              "Incident light, in the frame: adds degree_of_polarization");
-  auto* draws = add_option(app, "--monte-carlo", o->analysis.draws, draws_from, "N",
-                           "Uncertainties of ratios from N draws [first order]");
-  add_option(app, "--seed", o->analysis.seed, seed, "S", "Whole number that chooses the draws [0]")->needs(draws);
-  app.add_flag("--strict", o->analysis.strict, "Refuse what is not known to be inside the fitted range");
+  const Option draws = add_option(app, "--monte-carlo", o->analysis.draws, draws_from, "N",
+                                  "Uncertainties of ratios from N draws [first order]");
+  add_option(app, "--seed", o->analysis.seed, seed, "S", "Whole number that chooses the draws [0]").needs(draws);
+  add_flag(app, "--strict", o->analysis.strict, "Refuse what is not known to be inside the fitted range");
   add_as_printed(app, *o);
   add_option(app, "--format", o->format, format_from, "FORMAT",
              "text, csv or json for one geometry [text]; csv for files and scans");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { analyze(*o); };
 }
 

@@ -98,23 +98,23 @@ constexpr const char* instrument_footer =
 
 Run calibrate_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
-  add_file(app, "REFERENCES.csv", o->references, " ", "Readings of the references; - is standard input")->required();
+  add_file(app, "REFERENCES.csv", o->references, " ", "Readings of the references; - is standard input").required();
   add_output_file(app, "-o,--output", o->output, "INSTRUMENT.json", "Where the instrument goes");
   add_option(app, "--film", o->calibration.film, film_from, "N,T,NS,KS", "The wafer: its film and substrate");
   add_option(app, "--dial-sense", o->calibration.dial_sense, dial_sense, "SENSE",
              "+1: the polarizer's azimuth grows with its dial; -1: it falls [+1]");
   add_option(app, "--extinction", o->calibration.extinction, extinction, "E", "Of the polarizer, to start from [0]");
-  app.add_flag("--polarizer-phase", o->calibration.fit_polarizer_phase, "Fit the polarizer's phase, too");
-  app.add_flag("--linear", o->linear, "Eigenvalue method alone, without refinement and covariance");
+  add_flag(app, "--polarizer-phase", o->calibration.fit_polarizer_phase, "Fit the polarizer's phase, too");
+  add_flag(app, "--linear", o->linear, "Eigenvalue method alone, without refinement and covariance");
   add_reading_options(app, o->saturation, o->calibration.noise);
-  app.footer(calibrate_footer);
+  set_footer(app, calibrate_footer);
   return [o, &line] { calibrate_instrument(*o, line); };
 }
 
 Run instrument_command(CLI::App& app, const CommandLine&) {
   const auto path = std::make_shared<std::string>();
-  add_file(app, "INSTRUMENT.json", *path, " ", "Written by mmbrdf calibrate")->required();
-  app.footer(instrument_footer);
+  add_file(app, "INSTRUMENT.json", *path, " ", "Written by mmbrdf calibrate").required();
+  set_footer(app, instrument_footer);
   return [path] {
     const Calibration instrument = load_instrument(*path);
     heed(judged(instrument), base_name(*path));

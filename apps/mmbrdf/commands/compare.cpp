@@ -43,10 +43,8 @@ std::vector<double> common_wavelengths(const Model& first, const Model& second) 
 std::vector<double> wavelengths_of(const Model& first, const Model& second, const Options& options) {
   if (options.wavelengths_nm) return micrometres(*options.wavelengths_nm);
   std::vector<double> common = common_wavelengths(first, second);
-  if (common.empty()) {
-    throw CLI::ValidationError("--wavelength is required",
-                               "there is none of which both models say that they were fitted to it");
-  }
+  if (common.empty())
+    throw WrongUsage("--wavelength is required", "there is none of which both models say that they were fitted to it");
   return common;
 }
 
@@ -82,10 +80,8 @@ const char* if_printed(const Model& model) { return model.rotation == Rotation::
 
 Second second_of(const Model& first, const Options& options) {
   if (is_samples(options.second)) {
-    if (options.grid) {
-      throw CLI::ValidationError("--grid",
-                                 "goes with two models; " + data_name(options.second) + " has its own geometries");
-    }
+    if (options.grid)
+      throw WrongUsage("--grid", "goes with two models; " + data_name(options.second) + " has its own geometries");
     std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm);
     std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
     return {std::move(samples), data_name(options.second)};
@@ -243,19 +239,19 @@ constexpr const char* footer =
 Run compare_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->first, "A");
-  add_model(app, o->second, "B")->description("The same, or samples (CSV); - is standard input");
+  add_model(app, o->second, "B").description("The same, or samples (CSV); - is standard input");
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
              "Wavelengths in nm [those of the samples, or of both models]");
   add_option(app, "--grid", o->grid, grid_from, "GRID", "For two models: germer2017 or random:N [germer2017]");
   add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the random directions [0]");
   add_option(app, "--theta-max", o->theta_max_deg, number, "DEG", "Only where both polar angles are at most this");
-  app.add_flag("--as-printed", o->as_printed,
-               "Published coefficients of A: the sum at the azimuths\ngiven, not at phi_i = 0 and turned");
+  add_flag(app, "--as-printed", o->as_printed,
+           "Published coefficients of A: the sum at the azimuths\ngiven, not at phi_i = 0 and turned");
   add_option(app, "--tolerance", o->tolerance, tolerance_from, "T",
              "Exit with status 1 if a difference / f11 is larger");
   add_file(app, "-o,--output", o->output, "OUT", "Where the table goes; - is standard output [-]");
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { compare_them(*o); };
 }
 

@@ -118,7 +118,7 @@ void record(Model& model, const Options& options) {
 
 void convert(const Options& options, const CommandLine& line) {
   if (options.orders && options.family == Family::germer2017)
-    throw CLI::ValidationError("--orders", "goes with the isotropic basis only");
+    throw WrongUsage("--orders", "goes with the isotropic basis only");
   require_model_kept(options.input, options.output);
   Model model = open_model(options.input);
   record(model, options);
@@ -149,7 +149,7 @@ constexpr const char* footer =
 Run convert_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->input, "IN");
-  add_output_file(app, "OUT", o->output, " ", "File to write")->required();
+  add_output_file(app, "OUT", o->output, " ", "File to write").required();
   add_option(app, "--basis", o->family, family_to_convert_to, "NAME", "isotropic or germer2017 [that of IN]");
   add_option(app, "--orders", o->orders, orders_from, "N,M",
              "Highest radial orders of the isotropic basis, of f11\nand of the other elements [those of IN]");
@@ -161,7 +161,7 @@ Run convert_command(CLI::App& app, const CommandLine& line) {
              "Multiply f11 by these reflectances, each at a\nwavelength in nm, linear between them, in place of the\n"
              "table of IN");
   add_text(app, "--name", o->name, "NAME", "Name of the model [that of IN]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o, line] { convert(*o, line); };
 }
 

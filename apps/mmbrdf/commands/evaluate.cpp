@@ -95,10 +95,9 @@ void evaluate(const Options& options) {
     require_directions(options, "--geometries");
     return evaluate_one(options);
   }
-  if (options.format && *options.format != Format::csv)
-    throw CLI::ValidationError("--format", "only csv goes with --geometries");
+  if (options.format && *options.format != Format::csv) throw WrongUsage("--format", "only csv goes with --geometries");
   const bool binary = is_npy(options.output);
-  if (options.format && binary) throw CLI::ValidationError("--format", "csv does not go with an output in .npy");
+  if (options.format && binary) throw WrongUsage("--format", "csv does not go with an output in .npy");
   const Model model = model_of_rows(options);
   Evaluated evaluated = evaluated_rows(model, options.frame, options.normalized, binary);
   evaluated.threads = options.threads > 0 ? options.threads : available_threads();
@@ -126,13 +125,13 @@ constexpr const char* footer =
 Run evaluate_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   const QuestionOptions declared = add_question(app, *o, "Evaluate");
-  declared.output->needs(declared.geometries);
-  app.add_flag("--normalized", o->normalized, "f11 in sr^-1, and all others divided by it (m12 ... m44)");
+  declared.output.needs(declared.geometries);
+  add_flag(app, "--normalized", o->normalized, "f11 in sr^-1, and all others divided by it (m12 ... m44)");
   add_as_printed(app, *o);
   add_option(app, "--threads", o->threads, thread_count, "N", "For the rows of a file [0: as many as there are cores]")
-      ->needs(declared.geometries);
+      .needs(declared.geometries);
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text; csv for files]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { evaluate(*o); };
 }
 

@@ -189,16 +189,15 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
              "residuals, or sandwich: for noise that is not as the weights say [residuals]");
   add_file(app, "--instrument", o->instrument, "INSTRUMENT.json",
            "Of mmbrdf calibrate: what it is uncertain by is added\nto the covariance, since all samples share it");
-  app.add_flag(
-      "--minimum-norm", o->fit.minimum_norm,
-      "Accept data that do not determine every coefficient, and\ntake the smallest solution (germer2017: always)");
+  add_flag(app, "--minimum-norm", o->fit.minimum_norm,
+           "Accept data that do not determine every coefficient, and\ntake the smallest solution (germer2017: always)");
 }
 
 }  // namespace
 
 Run fit_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
-  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input")->required();
+  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
   add_output_file(app, "-o,--output", o->output, "MODEL",
                   "Write the model: JSON, or published coefficients if it ends in .csv");
   add_basis_options(app, o);
@@ -206,7 +205,7 @@ Run fit_command(CLI::App& app, const CommandLine& line) {
   add_text(app, "--name", o->name, "NAME", "Name of the model [file name]");
   add_text(app, "--attribution", o->attribution, "TEXT", "Whose data these are, kept in the model");
   add_option(app, "--format", o->format, format_from, "FORMAT", "Of the table: text, csv or json [text]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o, line] { fit_data(*o, line); };
 }
 

@@ -162,14 +162,14 @@ std::vector<IntegratedRow> rows_of(const AtWavelength& at, Integral quantity, co
 
 /// Throws where an option does not belong to the quantity.
 Integral checked_quantity(const Options& options) {
-  if (!options.quantity && !options.geometry) throw CLI::RequiredError("--quantity (or --geometry)");
+  if (!options.quantity && !options.geometry) throw missing("--quantity (or --geometry)");
   const Integral quantity = options.quantity.value_or(Integral::reflectance_factor);
   const std::string name = "of --quantity " + to_string(quantity);
   const bool of_beam = quantity == Integral::dhr || quantity == Integral::hdr;
   const auto forbid = [&](bool given, const std::string& option) {
-    if (given) throw CLI::ValidationError(option, "is no option " + name);
+    if (given) throw WrongUsage(option, "is no option " + name);
   };
-  if (needs_geometry(quantity) && !options.geometry) throw CLI::RequiredError("--geometry " + name);
+  if (needs_geometry(quantity) && !options.geometry) throw missing("--geometry " + name);
   forbid(!needs_geometry(quantity) && options.geometry, "--geometry");
   forbid(!needs_geometry(quantity) && options.tolerance, "--tolerance");
   forbid(!of_beam && options.thetas_deg, "--theta");
@@ -296,10 +296,10 @@ Run integrate_command(CLI::App& app, const CommandLine&) {
              "Of dhr the incident light, of hdr what an analyzer passes:\nunpolarized, s, p or S1,S2,S3,S4, frame sp "
              "[unpolarized]");
   add_option(app, "--tolerance", o->tolerance, number, "T", "Of the quadrature, relative [1e-10]");
-  app.add_flag("--strict", o->strict, "Refuse what lies outside the fitted range");
+  add_flag(app, "--strict", o->strict, "Refuse what lies outside the fitted range");
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
   add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { integrate(*o); };
 }
 

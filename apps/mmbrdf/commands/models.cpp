@@ -132,7 +132,8 @@ Run info_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->model);
   add_option(app, "--format", o->format, text_or_json, "FORMAT", "text or json [text]");
-  app.footer(
+  set_footer(
+      app,
       "Angles are in degrees, wavelengths in nm, reflectances without unit. The last lines say where the model is "
       "from.\n"
       "\n"
@@ -142,11 +143,11 @@ Run info_command(CLI::App& app, const CommandLine&) {
 }
 
 Run materials_command(CLI::App& app, const CommandLine&) {
-  app.footer(
-      "Wavelengths are in nm. mmbrdf info NAME tells the rest.\n"
-      "\n"
-      "Example:\n"
-      "  mmbrdf materials");
+  set_footer(app,
+             "Wavelengths are in nm. mmbrdf info NAME tells the rest.\n"
+             "\n"
+             "Example:\n"
+             "  mmbrdf materials");
   return list_materials;
 }
 

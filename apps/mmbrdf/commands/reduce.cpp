@@ -95,14 +95,14 @@ constexpr const char* footer =
 
 Run reduce_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
-  add_file(app, "RAW.csv", o->raw, " ", "Readings of a sample; - is standard input")->required();
-  add_file(app, "--instrument", o->instrument, "INSTRUMENT.json", "Written by mmbrdf calibrate (required)")->required();
+  add_file(app, "RAW.csv", o->raw, " ", "Readings of a sample; - is standard input").required();
+  add_file(app, "--instrument", o->instrument, "INSTRUMENT.json", "Written by mmbrdf calibrate (required)").required();
   add_option(app, "--solid-angle", o->solid_angle, solid_angle_from, "SR", "Of the receiver, in sr (required)")
-      ->required();
+      .required();
   add_reading_options(app, o->saturation, o->noise);
-  app.add_flag("--strict", o->strict, "Refuse matrices that cannot be physical");
+  add_flag(app, "--strict", o->strict, "Refuse matrices that cannot be physical");
   add_file(app, "-o,--output", o->output, "DATA.csv", "Where the samples go; - is standard output [-]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { reduce(*o); };
 }
 

@@ -101,7 +101,7 @@ void report(const Options& options) {
   const Model model = open_model(options.model);
   const std::string name = base_name(options.model);
   if (!options.wavelengths_nm && known_wavelengths(model).empty())
-    throw CLI::ValidationError("--wavelength is required", name + " does not say to which wavelengths it was fitted");
+    throw WrongUsage("--wavelength is required", name + " does not say to which wavelengths it was fitted");
   const std::vector<double> wavelengths = micrometres(options.wavelengths_nm.value_or(std::vector<double>{}));
   std::vector<Sample> samples;
   std::optional<ReportedSamples> data;
@@ -136,7 +136,7 @@ Run report_command(CLI::App& app, const CommandLine&) {
              "Wavelengths in nm to report on [those that were fitted]");
   add_file(app, "-o,--output", o->output, "REPORT", "Where the report goes; - is standard output [-]");
   add_option(app, "--format", o->format, report_format_from, "FORMAT", "markdown or json [markdown]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { report(*o); };
 }
 

@@ -121,7 +121,7 @@ void add_ranges(CLI::App& app, const std::shared_ptr<Options>& o) {
 
 Run select_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
-  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input")->required();
+  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Use these wavelengths only, in nm");
   add_option(app, "--basis", o->selection.family, family_from, "NAME",
              "isotropic, germer2017 or anisotropic [isotropic]");
@@ -129,7 +129,7 @@ Run select_command(CLI::App& app, const CommandLine&) {
              "Hemisphere to disc: lambert or projected [lambert]");
   add_ranges(app, o);
   add_option(app, "--folds", o->folds, whole_number, "K", "Folds of samples: row number modulo K [3]");
-  app.add_flag("--random-folds", o->random, "Take random folds instead");
+  add_flag(app, "--random-folds", o->random, "Take random folds instead");
   add_option(app, "--seed", o->seed, seed, "SEED", "Of the random folds [1]");
   add_option(app, "--leave-out", o->leave_out, leave_out_from, "WHAT",
              "angle, wavelength, angle,wavelength or none\n[what the data allow; wavelengths if there are 3]");
@@ -137,7 +137,7 @@ Run select_command(CLI::App& app, const CommandLine&) {
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_weights_option(app, o->weights);
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { select(*o); };
 }
 

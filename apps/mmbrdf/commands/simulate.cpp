@@ -38,7 +38,7 @@ double speckle_from(const std::string& text) {
 std::vector<double> wavelengths_of(const Model& model, const Options& options) {
   if (options.wavelengths_nm) return micrometres(*options.wavelengths_nm);
   if (model.validity.wavelengths.empty())
-    throw CLI::ValidationError("--wavelength is required", options.model + " does not say to which it was fitted");
+    throw WrongUsage("--wavelength is required", options.model + " does not say to which it was fitted");
   return model.validity.wavelengths;
 }
 
@@ -59,8 +59,8 @@ double relative_noise_from(const std::string& text) {
 /// Of a reading, which is never negative.
 void require_possible(double noise, const std::string& option, const std::string& law) {
   if (noise > most_noise) {
-    throw CLI::ValidationError(option, law + ":" + shortest(noise) + " is more than a reading can have: at most " +
-                                           law + ":" + shortest(most_noise));
+    throw WrongUsage(option, law + ":" + shortest(noise) + " is more than a reading can have: at most " + law + ":" +
+                                 shortest(most_noise));
   }
 }
 
@@ -68,7 +68,7 @@ void simulate_readings(const Options& options) {
   const Model model = open_model(options.model);
   const std::vector<double> wavelengths = wavelengths_of(model, options);
   if (wavelengths.size() != 1)
-    throw CLI::ValidationError("--raw", "an instrument is of one wavelength: give one with --wavelength");
+    throw WrongUsage("--raw", "an instrument is of one wavelength: give one with --wavelength");
   RawSimulation raw{options.raw, RawSimulation{}.reading_noise, options.speckle, options.seed};
   raw.reading_noise = options.reading_noise.value_or(raw.reading_noise);
   require_possible(raw.speckle, "--noise", "speckle");
@@ -124,13 +124,12 @@ Run simulate_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--noise", o->speckle, speckle_from, "NOISE", "speckle:C or none [none]");
   add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the random ones [0]");
   add_file(app, "-o,--output", o->output, "DATA.csv", "Where the samples go; - is standard output [-]");
-  CLI::Option* const raw =
-      add_output_file(app, "--raw", o->raw, "DIR", "Write readings of a polarimeter in this folder");
-  raw->excludes("--output");
+  const Option raw = add_output_file(app, "--raw", o->raw, "DIR", "Write readings of a polarimeter in this folder");
+  raw.excludes("--output");
   add_option(app, "--reading-noise", o->reading_noise, relative_noise_from, "LAW",
              "Of the readings of --raw [relative:0.001]")
-      ->needs(raw);
-  app.footer(footer);
+      .needs(raw);
+  set_footer(app, footer);
   return [o] { o->raw.empty() ? simulate_data(*o) : simulate_readings(*o); };
 }
 

@@ -189,7 +189,7 @@ void require_valid(const Options& o) {
     if (std::abs(theta) > 90)
       throw std::invalid_argument("--range: " + shortest(theta) + " is not in [-90, 90] degrees");
   if (o.as_printed && !traits(o.basis.family).at_zero_azimuth)
-    throw CLI::ValidationError("--as-printed", "goes with --basis germer2017");
+    throw WrongUsage("--as-printed", "goes with --basis germer2017");
   if (o.parts < 2 || o.parts > max_folds)
     throw std::invalid_argument("--k " + std::to_string(o.parts) + ": is not in 2..." + std::to_string(max_folds));
   if (o.splits < 1) throw std::invalid_argument("--splits 0: must be at least 1");
@@ -209,8 +209,7 @@ void warn_of_directions(const Model& model, const Question& q, const std::string
 double wavelength_of(const std::vector<Sample>& samples, const Options& o) {
   const std::vector<double> present = wavelengths(samples);
   if (present.size() == 1) return present.front();
-  throw CLI::ValidationError("--wavelength is required",
-                             data_name(o.data) + " has samples at " + nanometre_list(present));
+  throw WrongUsage("--wavelength is required", data_name(o.data) + " has samples at " + nanometre_list(present));
 }
 
 Question question(const Options& o) {
@@ -262,9 +261,9 @@ constexpr const char* footer =
 
 Run subsets_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
-  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input")->required();
+  add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
   add_option(app, "--k", o->parts, whole_number, "K", "Number of parts [3]");
-  app.add_flag("--random", o->random, "Divide by lot; else every K-th sample is of one part");
+  add_flag(app, "--random", o->random, "Divide by lot; else every K-th sample is of one part");
   add_option(app, "--splits", o->splits, whole_number, "N",
              "Divide by lot as often as this, with seeds S, S+1, ... [1]");
   add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the lot [0]");
@@ -272,16 +271,16 @@ Run subsets_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--theta-i", o->theta_i_deg, number, "DEG", "Polar angle of incidence [45]");
   add_option(app, "--range", o->theta_r_deg, range_from, "FROM:TO:STEP", "Polar angles of the detector [-60:60:1]");
   add_basis_option(app, o->basis);
-  app.add_flag("--as-printed", o->as_printed, "germer2017: fit and evaluate at the azimuths as they are");
+  add_flag(app, "--as-printed", o->as_printed, "germer2017: fit and evaluate at the azimuths as they are");
   add_weights_option(app, o->weights);
   add_model(app, o->reference, "--reference")
-      ->required(false)
-      ->option_text("MODEL")
-      ->description(
+      .required(false)
+      .option_text("MODEL")
+      .description(
           "What the fits are divided by: built-in name, JSON model or\ncoefficient CSV [the fit to all samples]");
   add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
-  app.footer(footer);
+  set_footer(app, footer);
   return [o] { study(*o); };
 }
 

@@ -167,7 +167,7 @@ double wavelength_from(const std::optional<double>& wavelength_nm, const Model& 
   try {
     return only_wavelength(model);
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--wavelength is required", error.what());
+    throw WrongUsage("--wavelength is required", error.what());
   }
 }
 

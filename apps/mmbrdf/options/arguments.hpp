@@ -2,7 +2,6 @@
 // How the program reads the values of its options.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -12,6 +11,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/samples/samples.hpp"
+#include "options/option.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -56,7 +56,7 @@ Format format_from(const std::string& name);
 double micrometres(double wavelength_nm);
 std::vector<double> micrometres(const std::vector<double>& wavelengths_nm);
 
-/// Micrometres: what was given, or the model's own if it needs none. Throws CLI::ValidationError for models that do.
+/// Micrometres: what was given, or the model's own if it needs none. Throws WrongUsage for models that do.
 double wavelength_from(const std::optional<double>& wavelength_nm, const Model& model);
 
 std::vector<Geometry> geometries(const Grid& grid, unsigned long seed);
@@ -71,19 +71,17 @@ T parsed(const std::string& option, const std::string& text, T (*parse)(const st
   try {
     return parse(text);
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError(option, error.what());
+    throw WrongUsage(option, error.what());
   }
 }
 
 /// `shown` is what the help prints after the option's name.
 template <class Target, class T>
-CLI::Option* add_option(CLI::App& app, const std::string& names, Target& target, T (*parse)(const std::string&),
-                        const std::string& shown, const std::string& description) {
+Option add_option(CLI::App& app, const std::string& names, Target& target, T (*parse)(const std::string&),
+                  const std::string& shown, const std::string& description) {
   const std::string name = names.substr(names.find("--") == std::string::npos ? 0 : names.find("--"));
-  return app
-      .add_option_function<std::string>(
-          names, [&target, parse, name](const std::string& text) { target = parsed(name, text, parse); }, description)
-      ->option_text(shown);
+  const auto use = [&target, parse, name](const std::string& text) { target = parsed(name, text, parse); };
+  return add_used(app, names, use, shown, description);
 }
 
 /// --basis and --orders
@@ -91,10 +89,5 @@ void add_basis_option(CLI::App& app, Basis& basis);
 
 /// --weights
 void add_weights_option(CLI::App& app, Weights& weights);
-
-inline CLI::Option* add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
-                             const std::string& description) {
-  return app.add_option(names, target, description)->option_text(shown);
-}
 
 }  // namespace mmbrdf::program

@@ -179,13 +179,13 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
   if (!lost.empty()) warn(base_name(path) + " has no place for: " + joined(lost));
 }
 
-CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
-                      const std::string& description) {
+Option add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                const std::string& description) {
   return add_option(app, names, target, file_name, shown, description);
 }
 
-CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
-                             const std::string& description) {
+Option add_output_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                       const std::string& description) {
   return add_option(app, names, target, output_file_name, shown, description);
 }
 
@@ -198,8 +198,8 @@ void write_text(const std::string& output, const std::string& text) {
     write_file(output, [&](std::ostream& out) { out << text; });
 }
 
-CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name) {
-  return add_option(app, name, target, model_name, " ", "Built-in name, JSON model or coefficient CSV")->required();
+Option add_model(CLI::App& app, std::string& target, const std::string& name) {
+  return add_option(app, name, target, model_name, " ", "Built-in name, JSON model or coefficient CSV").required();
 }
 
 }  // namespace mmbrdf::program

@@ -2,7 +2,6 @@
 // The files that the program reads and writes, and what it says about them.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <istream>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/samples/samples.hpp"
+#include "options/option.hpp"
 
 namespace mmbrdf::program {
 
@@ -60,12 +60,12 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
 
 // Options that are files. An empty name is wrong usage.
 
-CLI::Option* add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
-                      const std::string& description);
+Option add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                const std::string& description);
 
 /// The same, where "-" is wrong usage, too: standard output is for something else.
-CLI::Option* add_output_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
-                             const std::string& description);
+Option add_output_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
+                       const std::string& description);
 
 /// "-" is standard output.
 bool is_standard_output(const std::string& output);
@@ -73,6 +73,6 @@ bool is_standard_output(const std::string& output);
 /// Text on standard output or in a file, which appears when it is complete.
 void write_text(const std::string& output, const std::string& text);
 
-CLI::Option* add_model(CLI::App& app, std::string& target, const std::string& name = "MODEL");
+Option add_model(CLI::App& app, std::string& target, const std::string& name = "MODEL");
 
 }  // namespace mmbrdf::program

@@ -2,10 +2,10 @@
 // What the commands of a polarimeter share: options, what is made of a judgement, and what is printed of it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "mmbrdf/polarimetry/judgement.hpp"
+#include "options/option.hpp"
 
 namespace mmbrdf::program {
 

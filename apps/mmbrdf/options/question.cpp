@@ -22,15 +22,15 @@ QuestionOptions add_question(CLI::App& app, Question& question, const std::strin
                            "Direction to the detector, in degrees");
   o.geometries = add_file(app, "-g,--geometries", question.geometries, "FILE.csv",
                           done + " at each row of a file; - is standard input");
-  o.geometries->excludes(o.incident)->excludes(o.reflected);
+  o.geometries.excludes(o.incident).excludes(o.reflected);
   o.output = add_file(app, "-o,--output", question.output, "OUT.csv", "Where the rows go; - is standard output [-]");
   add_option(app, "--frame", question.frame, frame_from, "FRAME", "xy, sp or scattering_plane [xy]");
   return o;
 }
 
 void add_as_printed(CLI::App& app, Question& question) {
-  app.add_flag("--as-printed", question.as_printed,
-               "Published coefficients: the sum at the azimuths given, not\nat phi_i = 0 and turned. To compare only");
+  add_flag(app, "--as-printed", question.as_printed,
+           "Published coefficients: the sum at the azimuths given, not\nat phi_i = 0 and turned. To compare only");
 }
 
 Model model_of(const Question& question) {
@@ -43,7 +43,7 @@ Model model_of(const Question& question) {
 void require_directions(const Question& question, const std::string& or_else) {
   for (const auto& [given, name] : {std::pair(question.incident.has_value(), "--incident"),
                                     std::pair(question.reflected.has_value(), "--reflected")}) {
-    if (!given) throw CLI::RequiredError(std::string(name) + " (or " + or_else + ")");
+    if (!given) throw missing(std::string(name) + " (or " + or_else + ")");
   }
 }
 

@@ -2,7 +2,6 @@
 // What evaluate and analyze ask of a model: where, in which frame, and of a geometry or of a file of them.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -23,7 +22,7 @@ struct Question {
 
 /// Options as `add_question` declares them, for others to be tied to.
 struct QuestionOptions {
-  CLI::Option *wavelength, *incident, *reflected, *geometries, *output;
+  Option wavelength, incident, reflected, geometries, output;
 };
 
 /// MODEL, -w, -i, -r, -g, -o and --frame. `done` says what happens at each row of a file: "Evaluate".

@@ -60,14 +60,13 @@ Scan scan_from(const std::string& text) {
 void require_complete(const std::vector<Scan>& scans, const Question& question) {
   for (const Scan& scan : scans)
     if (std::count_if(scans.begin(), scans.end(), [&](const Scan& s) { return s.variable == scan.variable; }) > 1)
-      throw CLI::ValidationError("--scan", scan.variable + " is scanned twice");
-  if (!question.incident && !scanned(scans, "theta_i")) throw CLI::RequiredError("--incident (or --scan theta_i=...)");
-  if (!question.reflected && !scanned(scans, "theta_r"))
-    throw CLI::RequiredError("--reflected (or --scan theta_r=...)");
+      throw WrongUsage("--scan", scan.variable + " is scanned twice");
+  if (!question.incident && !scanned(scans, "theta_i")) throw missing("--incident (or --scan theta_i=...)");
+  if (!question.reflected && !scanned(scans, "theta_r")) throw missing("--reflected (or --scan theta_r=...)");
   double rows = 1;
   for (const Scan& scan : scans) rows *= static_cast<double>(scan.count);
   if (rows > static_cast<double>(max_scan_rows))
-    throw CLI::ValidationError("--scan", "more than " + std::to_string(max_scan_rows) + " rows");
+    throw WrongUsage("--scan", "more than " + std::to_string(max_scan_rows) + " rows");
 }
 
 long row_count(const std::vector<Scan>& scans) {
