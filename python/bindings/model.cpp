@@ -58,8 +58,7 @@ py::object covariance_of(const BlockView& block) {
 
 std::vector<std::string> elements_of(const BlockView& block) {
   std::vector<std::string> result;
-  for (const auto& [row, column] : block.fitted().block.elements)
-    result.push_back(element_name(static_cast<std::size_t>(4 * row + column)));
+  for (const Element& element : block.fitted().block.elements) result.push_back(element_name(element.index()));
   return result;
 }
 

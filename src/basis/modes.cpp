@@ -130,7 +130,7 @@ std::vector<Term> isotropic_terms(const Mode& mode) {
   return t.take();
 }
 
-std::pair<int, int> element_of(Function function) {
+Element element_of(Function function) {
   const std::string name = to_string(function);
   return {name[0] - '1', name[1] - '1'};
 }
@@ -256,7 +256,7 @@ std::vector<std::vector<Function>> block_functions(Family family) {
 
 /// The block of some functions without modes: its elements are those that its functions feed.
 Block empty_block(const std::vector<Function>& functions) {
-  using Elements = std::vector<std::pair<int, int>>;
+  using Elements = std::vector<Element>;
   Block block;
   switch (functions.front()) {
     case Function::g:

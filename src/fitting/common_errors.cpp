@@ -64,14 +64,14 @@ void add_sample(std::vector<Normal>& normals, const Model& model, const MuellerG
   Index first = 0;
   for (std::size_t b = 0; b < normals.size(); ++b) {
     auto& [matrix, vectors] = normals[b];
-    for (const auto& [row, column] : model.blocks[b].block.elements) {
-      const int e = 4 * row + column;
+    for (const Element& element : model.blocks[b].block.elements) {
+      const std::size_t e = element.index();
       const auto& [slope, change] = units[e == 0 ? 0 : 1];
-      const Eigen::VectorXd x = slopes.row(e).segment(first, matrix.rows()).transpose() / slope;
-      const double weight = weights ? (*weights)(row, column) : 1;
+      const Eigen::VectorXd x = slopes.row(static_cast<Index>(e)).segment(first, matrix.rows()).transpose() / slope;
+      const double weight = weights ? weights->elements[e] : 1;
       matrix.selfadjointView<Eigen::Lower>().rankUpdate(x, weight);
       for (std::size_t k = 0; k < changes.size(); ++k)
-        vectors.col(static_cast<Index>(k)) += weight * changes[k](row, column) / change * x;
+        vectors.col(static_cast<Index>(k)) += weight * changes[k].elements[e] / change * x;
     }
     first += matrix.rows();
   }

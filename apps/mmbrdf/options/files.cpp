@@ -33,7 +33,7 @@ bool is_built_in(const std::string& name) {
 void warn_of_missing_elements(const Model& model) {
   std::array<bool, 16> there{};
   for (const FittedBlock& fitted : model.blocks)
-    for (const auto& [row, column] : fitted.block.elements) there[static_cast<std::size_t>(4 * row + column)] = true;
+    for (const Element& element : fitted.block.elements) there[element.index()] = true;
   std::vector<std::string> missing;
   for (std::size_t element = 0; element < 16; ++element)
     if (!there[element]) missing.push_back(element_name(element));

@@ -16,7 +16,7 @@ namespace {
 
 /// Block that element number `element` belongs to; the number of blocks for an element without modes.
 std::size_t block_of(const Model& model, std::size_t element) {
-  const std::pair<int, int> wanted(static_cast<int>(element) / 4, static_cast<int>(element) % 4);
+  const Element wanted{static_cast<int>(element) / 4, static_cast<int>(element) % 4};
   std::size_t block = 0;
   for (; block < model.blocks.size(); ++block) {
     const auto& elements = model.blocks[block].block.elements;

@@ -14,6 +14,7 @@
 
 #include "mmbrdf/basis/family.hpp"
 #include "mmbrdf/basis/zernike.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
 
@@ -36,6 +37,8 @@ struct Term {
   int row, column;
   int incident, reflected;
   double weight;
+
+  constexpr std::size_t element() const { return Element{row, column}.index(); }
   friend bool operator==(const Term&, const Term&) = default;
 };
 
@@ -51,10 +54,13 @@ double squared_norm(const Mode& mode, Family family, int row, int column);
 
 /// Modes that are fitted together, because they feed the same elements or elements related by reciprocity.
 struct Block {
-  std::string name;                           ///< "11", "12,21", "22,23,32,33", …: the elements fed
-  std::vector<std::pair<int, int>> elements;  ///< row and column from 0
+  std::string name;               ///< "11", "12,21", "22,23,32,33", …: the elements fed
+  std::vector<Element> elements;  ///< those
   std::vector<Mode> modes;
 };
+
+/// Whether the block is that of element 11, which alone is in sr⁻¹.
+inline bool feeds_f11(const Block& block) { return block.elements.front().index() == 0; }
 
 /// Radial orders: n, m ≤ f11 for the element 11, ≤ other for all others.
 struct Orders {

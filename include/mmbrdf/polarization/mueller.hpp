@@ -15,13 +15,22 @@ namespace mmbrdf {
 
 using Stokes = std::array<double, 4>;
 
+/// One of the sixteen elements of a Mueller matrix, row and column from 0.
+struct Element {
+  int row = 0, column = 0;
+
+  /// 0 … 15 in row-major order.
+  constexpr std::size_t index() const { return static_cast<std::size_t>(4 * row + column); }
+  friend bool operator==(const Element&, const Element&) = default;
+};
+
 /// A 4 × 4 real matrix that maps incident to scattered Stokes vectors. As a BRDF its unit is sr⁻¹.
 /// Row = outgoing, column = incoming component, both counted from 0. Plain data: 16 doubles in row-major order.
 struct Mueller {
   std::array<double, 16> elements{};
 
-  double& operator()(int row, int column) { return elements[static_cast<std::size_t>(4 * row + column)]; }
-  double operator()(int row, int column) const { return elements[static_cast<std::size_t>(4 * row + column)]; }
+  double& operator()(int row, int column) { return elements[Element{row, column}.index()]; }
+  double operator()(int row, int column) const { return elements[Element{row, column}.index()]; }
   friend bool operator==(const Mueller&, const Mueller&) = default;
 };
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mmbrdf/samples/samples.hpp"
@@ -27,9 +26,6 @@ double standard_deviation(const NoiseLaw& law, const Geometry& geometry);
 /// 1 / σ², the weight of a sample in a fit. Throws std::invalid_argument where that is infinite: for scale 0, at θi =
 /// 90 degrees if a > 0, at θr = 90 degrees if b < 0.
 double weight(const NoiseLaw& law, const Geometry& geometry);
-
-/// An element by row and column, from 0.
-using Element = std::pair<int, int>;
 
 /// What samples of sintered PTFE leave almost empty, so that the residuals are noise: elements 14 and 41.
 inline constexpr std::array<Element, 2> quiet_elements{{{0, 3}, {3, 0}}};

@@ -24,7 +24,7 @@ std::array<std::vector<double>, 16> factors(const PreparedPattern& pattern, std:
   for (std::size_t q = 0; q < of_modes.size(); ++q)
     for (std::size_t t = pattern.terms_end[q]; t < pattern.terms_end[q + 1]; ++t) {
       const Term& term = pattern.terms[t];
-      result[size(4 * term.row + term.column)][size(term.reflected)] +=
+      result[term.element()][size(term.reflected)] +=
           of_modes[q] * term.weight * k_i[size(term.incident)] * pattern.table_norms[size(term.reflected)];
     }
   return result;
