@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "basis/spectral.hpp"
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
@@ -152,7 +153,7 @@ FitAccumulator::FitAccumulator(const Basis& basis)
       throw std::invalid_argument("block " + blocks_[b].name + " of the " + to_string(basis.family) + " family has " +
                                   std::to_string(blocks_[b].modes.size()) + " modes at these orders, more than " +
                                   std::to_string(LeastSquares::max_unknowns));
-    for (const auto& [row, column] : blocks_[b].elements) block_of_[size(4 * row + column)] = static_cast<int>(b);
+    for (const Element& element : blocks_[b].elements) block_of_[element.index()] = static_cast<int>(b);
   }
 }
 
@@ -184,11 +185,11 @@ Solution FitAccumulator::block_solution(std::size_t block, int powers, const Ref
   const std::size_t modes = blocks_[block].modes.size();
   std::vector<std::vector<SharedRows>> parts;  // for each element, of each wavelength
   long rows = 0;
-  for (const auto& [row, column] : blocks_[block].elements) {
+  for (const Element& element : blocks_[block].elements) {
     parts.emplace_back();
     for (const auto& [wavelength, at] : wavelengths_) {
-      parts.back().emplace_back(at.elements[size(4 * row + column)]);
-      rows += at.elements[size(4 * row + column)].rows();
+      parts.back().emplace_back(at.elements[element.index()]);
+      rows += at.elements[element.index()].rows();
     }
   }
   Eigen::VectorXd divisors = Eigen::VectorXd::Ones(index(wavelengths_.size()));
@@ -196,9 +197,8 @@ Solution FitAccumulator::block_solution(std::size_t block, int powers, const Ref
   Eigen::Index w = 0;
   for (const auto& [wavelength, at] : wavelengths_) {
     if (block_of_[0] == static_cast<int>(block)) divisors(w) = reflectance.at(wavelength);
-    factors(w, 0) = 1;
-    for (int p = 1; p <= powers; ++p) factors(w, p) = factors(w, p - 1) * wavelength;
-    ++w;
+    const std::vector<double> of_wavelength = powers_of(wavelength, powers);
+    factors.row(w++) = Eigen::Map<const Eigen::RowVectorXd>(of_wavelength.data(), powers + 1);
   }
   const bool alike = std::all_of(parts.begin(), parts.end(), [](const std::vector<SharedRows>& part) {
     return std::all_of(part.begin(), part.end(), [&](const SharedRows& at) { return at.has_unknowns_of(part[0]); });
@@ -278,8 +278,8 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     Solution solution = block_solution(b, powers, model.reflectance, options.rank_tolerance, known);
     if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
-    for (const auto& [row, column] : blocks_[b].elements)
-      result.elements[size(4 * row + column)] = element_fit(size(4 * row + column), solution.x, model.reflectance);
+    for (const Element& element : blocks_[b].elements)
+      result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
     FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition(), solution.null_space};
     if (solution.degrees_of_freedom() > 0) {
       fitted.covariance = solution.inverse;
@@ -311,12 +311,8 @@ ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const doub
   for (const auto& [wavelength, at] : wavelengths_) {
     const LeastSquares& rows = at.elements[element];
     const double divisor = element == 0 ? reflectance.at(wavelength) : 1;
-    std::vector<double> here(size(rows.unknowns()));
-    double power = divisor;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (i > 0 && i % here.size() == 0) power *= wavelength;
-      here[i % here.size()] += power * x[i];
-    }
+    std::vector<double> here = at_wavelength(x, size(rows.unknowns()), wavelength);
+    for (double& coefficient : here) coefficient *= divisor;
     const double norm = rows.residual_norm(here) / divisor;
     fit.rows += rows.rows();
     fit.chi_squared += norm * norm;

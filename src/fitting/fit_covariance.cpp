@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "basis/spectral.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "numerics/eigen_index.hpp"
@@ -38,15 +39,6 @@ std::vector<double> row_major(const MatrixXd& m) {
   return {transposed.data(), transposed.data() + transposed.size()};
 }
 
-/// (1, λ, λ², …) ⊗ 1
-MatrixXd repetition(Index modes, int powers, double wavelength) {
-  MatrixXd result(modes * (powers + 1), modes);
-  double power = 1;
-  for (int p = 0; p <= powers; ++p, power *= wavelength)
-    result.middleRows(p * modes, modes) = power * MatrixXd::Identity(modes, modes);
-  return result;
-}
-
 double small_sample_factor(const Solution& solution) {
   return static_cast<double>(solution.rows) / static_cast<double>(solution.degrees_of_freedom());
 }
@@ -74,8 +66,8 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double ra
     const MatrixXd c = squares ? square(squares->wavelengths_.at(wavelength).elements.front().normal_matrix(), modes)
                                : MatrixXd(f11.variance() * square(rows.normal_matrix(), modes));
     MatrixXd slopes = MatrixXd::Zero(size + count, modes);
-    slopes.topRows(size) =
-        g * repetition(modes, model.powers, wavelength) * (MatrixXd::Identity(modes, modes) - tau * q.transpose());
+    slopes.topRows(size) = g * repetition(modes, powers_of(wavelength, model.powers)) *
+                           (MatrixXd::Identity(modes, modes) - tau * q.transpose());
     slopes.row(size + k) = reflectance * q.transpose();
     covariance += slopes * c * slopes.transpose();
     ++k;
@@ -96,10 +88,10 @@ void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, 
     if (solution.degrees_of_freedom() <= 0) continue;
     const Index size = index(solution.x.size());
     MatrixXd middle = MatrixXd::Zero(size, size);
-    for (const auto& [row, column] : blocks_[b].elements)
+    for (const Element& element : blocks_[b].elements)
       for (const auto& [wavelength, at] : squares.wavelengths_) {
-        const LeastSquares& rows = at.elements[static_cast<std::size_t>(4 * row + column)];
-        const MatrixXd repeat = repetition(rows.unknowns(), model.powers, wavelength);
+        const LeastSquares& rows = at.elements[element.index()];
+        const MatrixXd repeat = repetition(rows.unknowns(), powers_of(wavelength, model.powers));
         middle += repeat * square(rows.normal_matrix(), rows.unknowns()) * repeat.transpose();
       }
     const MatrixXd g = square(solution.inverse, size);

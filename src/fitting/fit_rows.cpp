@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "basis/rows.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "numerics/shared_rows.hpp"
 #include "text/numbers.hpp"
@@ -22,8 +23,6 @@ namespace {
 
 constexpr std::size_t rows_at_once = 128;   // a block of them, some 50 columns wide, stays in the second-level cache
 constexpr std::size_t values_at_once = 64;  // columns of values beside each other, so that it does
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 void require_weights(std::span<const Mueller> weights, std::size_t samples) {
   if (!weights.empty() && weights.size() != samples)
@@ -66,8 +65,7 @@ class Tables {
     set(incident_, row, geometry.incident);
     set(reflected_, row, geometry.reflected);
   }
-  const double* incident(std::size_t function) const { return &incident_[function * rows_at_once]; }
-  const double* reflected(std::size_t function) const { return &reflected_[function * rows_at_once]; }
+  Rows::Tables of(std::size_t count) const { return {incident_.data(), reflected_.data(), rows_at_once, count}; }
 
  private:
   void set(std::vector<double>& table, std::size_t row, const Direction& direction) {
@@ -85,14 +83,9 @@ class Tables {
 
 /// Elements whose rows are the same at the same geometry.
 struct FitAccumulator::Design {
-  struct Term {
-    std::size_t column, incident, reflected;  // place of the mode in its block, and of both functions
-    double weight;
-    friend bool operator==(const Term&, const Term&) = default;
-  };
   std::vector<std::size_t> elements;
   std::size_t modes;
-  std::vector<Term> terms;
+  std::vector<Rows::Term> terms;
 };
 
 std::shared_ptr<const std::vector<FitAccumulator::Design>> FitAccumulator::designs(std::span<const Block> blocks,
@@ -100,10 +93,9 @@ std::shared_ptr<const std::vector<FitAccumulator::Design>> FitAccumulator::desig
   std::array<Design, 16> of_elements;
   for (std::size_t e = 0; e < 16; ++e) of_elements[e] = {{e}, 1, {}};  // until a block feeds it
   for (const Block& block : blocks) {
-    for (const auto& [row, column] : block.elements) of_elements[size(4 * row + column)].modes = block.modes.size();
-    for (std::size_t q = 0; q < block.modes.size(); ++q)
-      for (const mmbrdf::Term& t : terms(block.modes[q], family))
-        of_elements[size(4 * t.row + t.column)].terms.push_back({q, size(t.incident), size(t.reflected), t.weight});
+    const Rows rows(block.modes, family);
+    for (const Element& element : block.elements)
+      of_elements[element.index()] = {{element.index()}, rows.columns(), rows.terms(element.index())};
   }
   auto result = std::make_shared<std::vector<Design>>();
   for (Design& design : of_elements) {
@@ -222,11 +214,7 @@ struct FitAccumulator::Folding::Some {
   RowColumns rows(const Share& share) const {
     const std::size_t modes = share.design->modes;
     RowColumns result(modes + share.columns.size(), count);
-    for (const Design::Term& t : share.design->terms) {
-      double* const column = result.column(t.column);
-      const double *const k_i = tables.incident(t.incident), *const k_r = tables.reflected(t.reflected);
-      for (std::size_t r = 0; r < count; ++r) column[r] += t.weight * k_i[r] * k_r[r];
-    }
+    Rows::add(share.design->terms, tables.of(count), result.column(0), result.stride());
     for (std::size_t c = 0; c < share.columns.size(); ++c) {
       const auto [element, group] = share.columns[c];
       for (std::size_t r = 0; r < count; ++r)

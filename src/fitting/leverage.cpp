@@ -3,12 +3,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <stdexcept>
-#include <utility>
 
+#include "basis/rows.hpp"
 #include "numerics/eigen_index.hpp"
 #include "text/numbers.hpp"
 
@@ -18,30 +16,23 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Table = std::array<double, zernike_count(max_order)>;
 
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
-/// A block of a fitted model, and what its rows are made of.
+/// A block of a fitted model, and its rows.
 struct FittedRows {
   const FittedBlock& fitted;
   const Solution& solution;
-  std::array<std::vector<std::pair<std::size_t, Term>>, 16> terms;  // of each element, with the mode's place
+  Rows rows;
 
-  FittedRows(const FittedBlock& block, const Solution& s, Family family) : fitted(block), solution(s) {
-    for (std::size_t q = 0; q < block.block.modes.size(); ++q)
-      for (const Term& term : mmbrdf::terms(block.block.modes[q], family))
-        terms[size(4 * term.row + term.column)].emplace_back(q, term);
-  }
+  FittedRows(const FittedBlock& block, const Solution& s, Family family)
+      : fitted(block), solution(s), rows(block.block.modes, family) {}
 
-  VectorXd row(std::size_t element, const Table& k_i, const Table& k_r, double wavelength, int powers) const {
-    const std::size_t modes = fitted.block.modes.size();
+  /// Over all powers of the wavelength.
+  VectorXd row(std::size_t element, const KTable& k_i, const KTable& k_r, double wavelength) const {
     VectorXd x = VectorXd::Zero(index(fitted.coefficients.size()));
-    for (const auto& [q, term] : terms[element])
-      x(index(q)) += term.weight * k_i[size(term.incident)] * k_r[size(term.reflected)];
-    for (int p = 1; p <= powers; ++p)
-      x.segment(index(size(p) * modes), index(modes)) =
-          wavelength * x.segment(index(size(p - 1) * modes), index(modes));
+    rows.add(element, k_i, k_r, x.data());
+    const Index modes = index(rows.columns());
+    for (Index first = modes; first < x.size(); first += modes)
+      x.segment(first, modes) = wavelength * x.segment(first - modes, modes);
     return x;
   }
 };
@@ -67,14 +58,14 @@ void require_matching(std::span<const Sample> samples, const FitResult& result, 
 
 /// Fills in the residuals of the block's elements, and returns the leverage of the sample.
 double leverage_and_residuals(const FittedRows& block, const Model& model, const Sample& sample, const Mueller& weights,
-                              const Table& k_i, const Table& k_r, Mueller& residuals) {
+                              const KTable& k_i, const KTable& k_r, Mueller& residuals) {
   const Index n = index(block.fitted.coefficients.size());
   const Eigen::Map<const MatrixXd> inverse(block.solution.inverse.data(), n, n);
   const Eigen::Map<const VectorXd> a(block.fitted.coefficients.data(), n);
   double sum = 0;
-  for (const auto& [i, j] : block.fitted.block.elements) {
-    const std::size_t e = size(4 * i + j);
-    const VectorXd x = block.row(e, k_i, k_r, sample.wavelength, model.powers);
+  for (const Element& element : block.fitted.block.elements) {
+    const std::size_t e = element.index();
+    const VectorXd x = block.row(e, k_i, k_r, sample.wavelength);
     const double leverage = weights.elements[e] * x.dot(inverse * x);
     const double y = e == 0 ? sample.f11 / model.reflectance.at(sample.wavelength) : sample.normalized.elements[e];
     residuals.elements[e] =
@@ -100,11 +91,10 @@ SampleDiagnostics sample_diagnostics(std::span<const Sample> samples, const FitR
   }
   Mueller ones;
   ones.elements.fill(1);
-  Table k_i, k_r;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Sample sample = turns(model) ? at_zero_azimuth(samples[s]) : samples[s];
-    zernike_table(order, disc_point(sample.geometry.incident, model.mapping), k_i.data());
-    zernike_table(order, disc_point(sample.geometry.reflected, model.mapping), k_r.data());
+    const KTable k_i = functions_at(sample.geometry.incident, order, model.mapping),
+                 k_r = functions_at(sample.geometry.reflected, order, model.mapping);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       SampleDiagnostics::Leverage& of_block = diagnostics.leverage[b];
       of_block.values.push_back(leverage_and_residuals(blocks[b], model, sample, weights.empty() ? ones : weights[s],

@@ -82,7 +82,7 @@ struct Part {
     return result;
   }
 
-  bool holds(const FittedBlock& fitted) const { return (fitted.block.name == "11") == is_f11; }
+  bool holds(const FittedBlock& fitted) const { return feeds_f11(fitted.block) == is_f11; }
 
   /// Which blocks the data do not determine; families of minimum norm are never asked.
   std::string undetermined(const FitResult& result) const {

@@ -2,7 +2,6 @@
 #include "mmbrdf/fitting/symmetry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 #include <unsupported/Eigen/SpecialFunctions>
 
+#include "basis/rows.hpp"
 #include "text/numbers.hpp"
 
 // Functions that break a symmetry are the terms of modes, with other signs or in other elements. With Z(i,r) =
@@ -24,13 +24,10 @@ namespace mmbrdf {
 namespace {
 
 using Column = std::vector<Term>;  // a function: what it gives to each element
-using Table = std::array<double, zernike_count(max_order)>;
 
 constexpr double azimuth_tolerance = radians(0.1);
 constexpr double rounding = 1e-12;  // residuals below this part of the data are no noise
 constexpr int harmonics = 4;        // cos φ, sin φ, cos 2φ, sin 2φ
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 bool is_paired(const Mode& mode) {
   return mode.function == Function::m14 || mode.function == Function::g || mode.function == Function::h;
@@ -140,19 +137,16 @@ LeastSquares rows_at(const Problem& problem, double wavelength, const Block& blo
   const std::size_t extra = with_harmonics ? harmonics * block.elements.size() : 0;
   const std::size_t width = columns.size() + extra;
   LeastSquares result(static_cast<int>(width));
-  Table k_i, k_r;
+  const Rows functions(columns);
   for (std::size_t s = 0; s < problem.samples.size(); ++s) {
     const Sample sample = with_harmonics ? at_zero_azimuth(problem.samples[s]) : problem.samples[s];
     if (!same_wavelength(sample.wavelength, wavelength)) continue;
-    zernike_table(problem.order, disc_point(sample.geometry.incident, problem.mapping), k_i.data());
-    zernike_table(problem.order, disc_point(sample.geometry.reflected, problem.mapping), k_r.data());
+    const KTable k_i = functions_at(sample.geometry.incident, problem.order, problem.mapping),
+                 k_r = functions_at(sample.geometry.reflected, problem.order, problem.mapping);
     std::vector<double> rows(block.elements.size() * width), values, weights;
     for (std::size_t e = 0; e < block.elements.size(); ++e) {
       const auto [row, column] = block.elements[e];
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        for (const Term& t : columns[c])
-          if (t.row == row && t.column == column)
-            rows[e * width + c] += t.weight * k_i[size(t.incident)] * k_r[size(t.reflected)];
+      functions.add(block.elements[e].index(), k_i, k_r, &rows[e * width]);
       if (with_harmonics)
         for (std::size_t h = 0; h < harmonics; ++h) {
           const double angle = static_cast<double>(1 + h / 2) * problem.samples[s].geometry.incident.phi;

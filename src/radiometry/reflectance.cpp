@@ -2,12 +2,14 @@
 #include "mmbrdf/radiometry/reflectance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
+#include "basis/rows.hpp"
+#include "basis/spectral.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "text/numbers.hpp"
@@ -17,42 +19,20 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-using Table = std::array<double, zernike_count(max_order)>;
-
-/// Slopes over the coefficients of f11, one power of the wavelength, with these values in the place of K(incident) and
-/// K(reflected).
-std::vector<double> slopes_with(const Block& f11, Family family, const Table& k_i, const Table& k_r) {
-  std::vector<double> slopes;
-  for (const Mode& mode : f11.modes) {
-    double slope = 0;
-    for (const Term& term : terms(mode, family))
-      slope +=
-          term.weight * k_i[static_cast<std::size_t>(term.incident)] * k_r[static_cast<std::size_t>(term.reflected)];
-    slopes.push_back(slope);
-  }
+/// Slopes over the coefficients of f11, one power of the wavelength.
+std::vector<double> slopes_with(const Block& f11, Family family, const KTable& k_i, const KTable& k_r) {
+  std::vector<double> slopes(f11.modes.size());
+  Rows(f11.modes, family).add(0, k_i, k_r, slopes.data());
   return slopes;
 }
 
 /// Of a linear quantity with these slopes, reflectance table included.
 double value_with(const std::vector<double>& slopes, const Model& model, double wavelength) {
-  double sum = 0, power = 1;
-  auto coefficient = model.blocks.front().coefficients.begin();
-  for (int p = 0; p <= model.powers; ++p, power *= wavelength)
-    for (const double slope : slopes) sum += power * *coefficient++ * slope;
-  return model.reflectance.at(wavelength) * sum;
+  const std::vector<double> a = at_wavelength(model.blocks.front().coefficients, slopes.size(), wavelength);
+  return model.reflectance.at(wavelength) * std::inner_product(a.begin(), a.end(), slopes.begin(), 0.0);
 }
 
-Table projected_integrals(DiscMapping mapping) {
-  Table integrals{};
-  for (const int n : {0, 2}) integrals[static_cast<std::size_t>(zernike_index(n, 0))] = projected_integral(n, mapping);
-  return integrals;
-}
-
-double dot(const Stokes& a, const Stokes& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) sum += a[i] * b[i];
-  return sum;
-}
+double dot(const Stokes& a, const Stokes& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
 
 }  // namespace
 
@@ -61,9 +41,7 @@ double dot(const Stokes& a, const Stokes& b) {
 std::vector<double> directional_hemispherical_slopes(const Block& f11, Family family, DiscMapping mapping,
                                                      const Direction& incident) {
   require_valid(Geometry{incident, {}});
-  Table k_i;
-  zernike_table(orders({f11}).f11, disc_point(incident, mapping), k_i.data());
-  return slopes_with(f11, family, k_i, projected_integrals(mapping));
+  return slopes_with(f11, family, functions_at(incident, orders({f11}).f11, mapping), over_hemisphere(mapping));
 }
 
 double directional_hemispherical_reflectance(const Model& model, double wavelength, const Direction& incident) {
@@ -76,7 +54,7 @@ double directional_hemispherical_reflectance(const Model& model, double waveleng
 double bihemispherical_reflectance(const Model& model, double wavelength) {
   require_valid(model);
   require_wavelength(wavelength);
-  const Table integrals = projected_integrals(model.mapping);
+  const KTable integrals = over_hemisphere(model.mapping);
   return value_with(slopes_with(model.blocks.front().block, model.family, integrals, integrals), model, wavelength) /
          pi;
 }

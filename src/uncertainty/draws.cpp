@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/uncertainty/draws.hpp"
-#include "mmbrdf/model/prepared.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -9,11 +8,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "basis/spectral.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/random.hpp"
 #include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
+#include "uncertainty/joint_covariance.hpp"
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
 //   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
@@ -25,30 +27,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool draws_reflectance(const FittedBlock& fitted, const ReflectanceTable& table) {
-  return fitted.block.name == "11" && !table.covariance.empty();
-}
-
 /// a, and behind it the values of the reflectance table where they are drawn along.
 VectorXd means(const FittedBlock& fitted, const ReflectanceTable& table) {
   const Index size = index(fitted.coefficients.size());
   const Eigen::Map<const VectorXd> a(fitted.coefficients.data(), size);
-  if (!draws_reflectance(fitted, table)) return a;
+  if (!has_uncertain_reflectance(fitted, table)) return a;
   const Index count = index(table.values.size());
   VectorXd result(size + count);
   result << a, Eigen::Map<const VectorXd>(table.values.data(), count);
-  return result;
-}
-
-/// V of the same.
-MatrixXd joint_covariance(const FittedBlock& fitted, const ReflectanceTable& table) {
-  const Index size = index(fitted.coefficients.size());
-  const Eigen::Map<const MatrixXd> own(fitted.covariance.data(), size, size);
-  if (!draws_reflectance(fitted, table)) return own;
-  const Index count = index(table.values.size());
-  const Eigen::Map<const MatrixXd> with_f11(table.covariance_with_f11.data(), size, count);  // row-major, transposed
-  MatrixXd result(size + count, size + count);
-  result << own, with_f11, with_f11.transpose(), Eigen::Map<const MatrixXd>(table.covariance.data(), count, count);
   return result;
 }
 
@@ -120,8 +106,6 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
     throw std::invalid_argument("count = " + std::to_string(count) + ", must be in 2..." + std::to_string(max_draws));
   Coefficients drawn{prepare(model, 1), model.powers, model.reflectance, {}, {}};
   for (const FittedBlock& fitted : model.blocks) {
-    if (fitted.covariance.empty())
-      throw std::invalid_argument("the covariance of block " + fitted.block.name + " is not known");
     drawn.sizes.push_back(index(fitted.coefficients.size()));
     drawn.blocks.emplace_back(means(fitted, model.reflectance).size(), count);
   }
@@ -143,15 +127,16 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
 std::vector<PreparedModel> Draws::at(double wavelength) const {
   const Coefficients& drawn = *coefficients_;
   const PreparedModel model = drawn.model.at(wavelength);
+  const std::vector<double> powers = powers_of(wavelength, drawn.powers);
   Index modes = 0;
   for (const Index size : drawn.sizes) modes += size / (drawn.powers + 1);
   MatrixXd folded = MatrixXd::Zero(modes, count_);  // Σ_p λ^p a_p
   Index begin = 0;
   for (std::size_t b = 0; b < drawn.blocks.size(); ++b) {
     const Index size = drawn.sizes[b] / (drawn.powers + 1);
-    double power = 1;
-    for (int p = 0; p <= drawn.powers; ++p, power *= wavelength)
-      folded.middleRows(begin, size) += power * drawn.blocks[b].middleRows(p * size, size);
+    for (Index p = 0; p <= drawn.powers; ++p)
+      folded.middleRows(begin, size) +=
+          powers[static_cast<std::size_t>(p)] * drawn.blocks[b].middleRows(p * size, size);
     begin += size;
   }
   std::vector<PreparedModel> result;

@@ -10,10 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "basis/rows.hpp"
+#include "basis/spectral.hpp"
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
+#include "uncertainty/joint_covariance.hpp"
 
 // Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
@@ -28,33 +31,27 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Table = std::array<double, zernike_count(max_order)>;
 
 constexpr double estimability_limit = 1e-8;  // theory 4.7
 
 /// One block at one wavelength.
 struct BlockAt {
-  struct ModeTerm {
-    Index mode;
-    std::size_t incident, reflected;
-    double weight;
-  };
-  std::vector<std::size_t> elements;
-  std::vector<std::vector<ModeTerm>> terms;  // for each of these elements
-  VectorXd coefficients;                     // a(λ)
-  MatrixXd covariance;                       // V(λ), of all parameters
-  MatrixXd free;                             // combinations that the data leave free, folded at λ: modes × number
-  double lengthening = 1;                    // of a row over the modes to the row over all powers
-  double reflectance = 1;                    // R(λ), of block 11
-  Index first = 0;                           // of its parameters among those of all blocks
+  std::vector<Element> elements;
+  Rows rows;
+  VectorXd coefficients;   // a(λ)
+  MatrixXd covariance;     // V(λ), of all parameters
+  MatrixXd free;           // combinations that the data leave free, folded at λ: modes × number
+  double lengthening = 1;  // of a row over the modes to the row over all powers
+  double reflectance = 1;  // R(λ), of block 11
+  Index first = 0;         // of its parameters among those of all blocks
 
   Index modes() const { return coefficients.size(); }
   bool knows_reflectance() const { return covariance.rows() > modes(); }
 
   /// g_e
-  VectorXd row(std::size_t element, const Table& k_i, const Table& k_r) const {
+  VectorXd row(const Element& element, const KTable& k_i, const KTable& k_r) const {
     VectorXd g = VectorXd::Zero(modes());
-    for (const ModeTerm& t : terms[element]) g(t.mode) += t.weight * k_i[t.incident] * k_r[t.reflected];
+    rows.add(element.index(), k_i, k_r, g.data());
     return g;
   }
 
@@ -77,49 +74,30 @@ MatrixXd free_combinations(const FittedBlock& fitted) {
 /// Covariance of a(λ), and of R(λ) behind it where that is block 11 and R has a covariance.
 MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, const ReflectanceTable& table,
                            double wavelength) {
-  const Index size = fold.rows(), modes = fold.cols();
-  const MatrixXd own = fold.transpose() * Eigen::Map<const MatrixXd>(fitted.covariance.data(), size, size) * fold;
-  if (fitted.block.name != "11" || table.covariance.empty()) return own;
+  const MatrixXd joint = joint_covariance(fitted, table);
+  if (!has_uncertain_reflectance(fitted, table)) return fold.transpose() * joint * fold;
   const std::vector<double> weights = table.weights(wavelength);
-  const Index count = index(weights.size());
-  const Eigen::Map<const VectorXd> w(weights.data(), count);
-  const Eigen::Map<const MatrixXd> with_f11(table.covariance_with_f11.data(), size, count);  // row-major, transposed
-  MatrixXd result(modes + 1, modes + 1);
-  result.topLeftCorner(modes, modes) = own;
-  result.col(modes).head(modes) = fold.transpose() * with_f11 * w;
-  result.row(modes).head(modes) = result.col(modes).head(modes).transpose();
-  result(modes, modes) = w.dot(Eigen::Map<const MatrixXd>(table.covariance.data(), count, count) * w);
-  return result;
+  MatrixXd both = MatrixXd::Zero(joint.rows(), fold.cols() + 1);
+  both.topLeftCorner(fold.rows(), fold.cols()) = fold;
+  both.rightCols(1).bottomRows(index(weights.size())) =
+      Eigen::Map<const VectorXd>(weights.data(), index(weights.size()));
+  const MatrixXd result = both.transpose() * joint * both;
+  return (result + result.transpose()) / 2;
 }
 
 BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelength) {
-  if (fitted.covariance.empty())
-    throw std::invalid_argument("the covariance of block " + fitted.block.name + " is not known");
   const Index modes = index(fitted.block.modes.size()), size = index(fitted.coefficients.size());
-  MatrixXd fold = MatrixXd::Zero(size, modes);  // a(λ) = foldᵀ a
-  double power = 1, squares = 0;
-  for (int p = 0; p <= model.powers; ++p, power *= wavelength) {
-    fold.middleRows(p * modes, modes).diagonal().setConstant(power);
-    squares += power * power;
-  }
-  BlockAt result;
-  if (fitted.block.name == "11") result.reflectance = model.reflectance.at(wavelength);
-  result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
+  const std::vector<double> powers = powers_of(wavelength, model.powers);
+  const MatrixXd fold = repetition(modes, powers);
+  BlockAt result{fitted.block.elements, Rows(fitted.block.modes, model.family), {}, {}, {}};
+  if (feeds_f11(fitted.block)) result.reflectance = model.reflectance.at(wavelength);
   result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
+  result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
   require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
   result.free = fold.transpose() * free_combinations(fitted);
-  result.lengthening = std::sqrt(squares);
-  result.terms.resize(fitted.block.elements.size());
-  for (const auto& [row, column] : fitted.block.elements)
-    result.elements.push_back(static_cast<std::size_t>(4 * row + column));
-  for (Index q = 0; q < modes; ++q)
-    for (const Term& term : terms(fitted.block.modes[static_cast<std::size_t>(q)], model.family))
-      for (std::size_t e = 0; e < result.elements.size(); ++e)
-        if (result.elements[e] == static_cast<std::size_t>(4 * term.row + term.column))
-          result.terms[e].push_back(
-              {q, static_cast<std::size_t>(term.incident), static_cast<std::size_t>(term.reflected), term.weight});
+  result.lengthening = Eigen::Map<const VectorXd>(powers.data(), index(powers.size())).norm();
   return result;
 }
 
@@ -132,13 +110,11 @@ struct PreparedUncertainty::Blocks {
   DiscMapping mapping = DiscMapping::lambert;
   bool turns = false;
 
-  std::pair<Table, Table> tables(const Geometry& geometry) const {
+  std::pair<KTable, KTable> tables(const Geometry& geometry) const {
     const auto& [i, r] = geometry;
     const double turn = turns ? i.phi : 0;
-    std::pair<Table, Table> result;
-    zernike_table(order, disc_point(Direction{i.theta, i.phi - turn}, mapping), result.first.data());
-    zernike_table(order, disc_point(Direction{r.theta, r.phi - turn}, mapping), result.second.data());
-    return result;
+    return {functions_at({i.theta, i.phi - turn}, order, mapping),
+            functions_at({r.theta, r.phi - turn}, order, mapping)};
   }
 
   /// L and R of M → L M R that brings what the modes give into a frame.
@@ -160,11 +136,11 @@ struct PreparedUncertainty::Slopes {
     require_valid(geometry);
     const auto [k_i, k_r] = blocks.tables(geometry);
     for (const BlockAt& b : blocks.list)
-      for (std::size_t e = 0; e < b.elements.size(); ++e) {
-        const VectorXd g = b.row(e, k_i, k_r);
-        m.elements[b.elements[e]] = b.reflectance * g.dot(b.coefficients);
-        slopes[b.elements[e]] = b.slopes(g);
-        block[b.elements[e]] = &b;
+      for (const Element& element : b.elements) {
+        const VectorXd g = b.row(element, k_i, k_r);
+        m.elements[element.index()] = b.reflectance * g.dot(b.coefficients);
+        slopes[element.index()] = b.slopes(g);
+        block[element.index()] = &b;
       }
   }
 
@@ -285,8 +261,8 @@ bool PreparedUncertainty::estimable(const Geometry& geometry) const {
   require_valid(geometry);
   const auto [k_i, k_r] = blocks_->tables(geometry);
   for (const BlockAt& block : blocks_->list)
-    for (std::size_t e = 0; e < block.elements.size(); ++e) {
-      const VectorXd g = block.row(e, k_i, k_r);
+    for (const Element& element : block.elements) {
+      const VectorXd g = block.row(element, k_i, k_r);
       if ((block.free.transpose() * g).norm() > estimability_limit * block.lengthening * g.norm()) return false;
     }
   return true;
@@ -295,11 +271,8 @@ bool PreparedUncertainty::estimable(const Geometry& geometry) const {
 double PreparedUncertainty::directional_hemispherical_reflectance(const Direction& incident) const {
   require_valid(Geometry{incident, {}});
   const auto [k_i, unused] = blocks_->tables({incident, incident});
-  Table integrals{};
-  for (const int n : {0, 2})
-    integrals[static_cast<std::size_t>(zernike_index(n, 0))] = projected_integral(n, blocks_->mapping);
   const BlockAt& f11 = blocks_->list.front();
-  const VectorXd slopes = f11.slopes(f11.row(0, k_i, integrals));
+  const VectorXd slopes = f11.slopes(f11.row({}, k_i, over_hemisphere(blocks_->mapping)));
   return std::sqrt(std::max(slopes.dot(f11.covariance * slopes), 0.0));
 }
 
