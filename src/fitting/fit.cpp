@@ -10,8 +10,7 @@
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
-#include "numerics/eigen_index.hpp"
-#include "numerics/shared_rows.hpp"
+#include "numerics/svd_cache.hpp"
 #include "text/names.hpp"
 #include "text/numbers.hpp"
 
@@ -70,45 +69,6 @@ void require_determined(const std::string& complaints) {
   if (!complaints.empty())
     throw std::invalid_argument("the data do not determine the model" + complaints +
                                 "; choose lower orders, or ask for the solution of minimum norm");
-}
-
-Solution solution_of(const LeastSquares& rows, double rank_tolerance, Decompositions& known) {
-  return SharedRows(rows).solve(Eigen::MatrixXd::Ones(1, 1), rows.rows(), rank_tolerance, known);
-}
-
-/// The elements' triangles below each other, with a column of values for each wavelength. Values are divided.
-SharedRows put_together(std::span<const std::vector<SharedRows>> parts, std::size_t modes,
-                        const Eigen::VectorXd& divisors) {
-  const std::size_t count = parts[0].size();
-  SharedRows result(modes, count);
-  for (const std::vector<SharedRows>& part : parts) {
-    RowColumns rows(modes + count, modes + 1);
-    for (std::size_t j = 0; j < modes; ++j) std::copy_n(part[0].triangle().col(index(j)).data(), modes, rows.column(j));
-    for (std::size_t v = 0; v < count; ++v)
-      for (std::size_t i = 0; i <= modes; ++i)
-        rows.column(modes + v)[i] = part[v].triangle()(index(i), index(modes)) / divisors(index(v));
-    result.add(rows, Shape::triangle);
-  }
-  return result;
-}
-
-/// All triangles below each other, each repeated beside itself times its wavelength's factors. Values are divided.
-SharedRows repeated(std::span<const std::vector<SharedRows>> parts, std::size_t modes, const Eigen::VectorXd& divisors,
-                    const Eigen::MatrixXd& factors) {
-  const std::size_t powers = size(static_cast<int>(factors.cols()));
-  SharedRows result(modes * powers, 1);
-  for (const std::vector<SharedRows>& part : parts)
-    for (std::size_t v = 0; v < part.size(); ++v) {
-      RowColumns rows(modes * powers + 1, modes + 1);
-      const auto copy = [&](std::size_t j, std::size_t to, double factor) {
-        for (std::size_t i = 0; i <= modes; ++i) rows.column(to)[i] = factor * part[v].triangle()(index(i), index(j));
-      };
-      for (std::size_t p = 0; p < powers; ++p)
-        for (std::size_t j = 0; j < modes; ++j) copy(j, p * modes + j, factors(index(v), index(p)));
-      copy(modes, modes * powers, 1 / divisors(index(v)));
-      result.add(rows, Shape::triangle);
-    }
-  return result;
 }
 
 Mueller ones() {
@@ -181,30 +141,32 @@ void FitAccumulator::merge(const FitAccumulator& other) {
 }
 
 Solution FitAccumulator::block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance,
-                                        double rank_tolerance, Decompositions& known) const {
-  const std::size_t modes = blocks_[block].modes.size();
-  std::vector<std::vector<SharedRows>> parts;  // for each element, of each wavelength
+                                        double rank_tolerance, SvdCache& known) const {
+  std::vector<double> divisors, factors;  // of each wavelength: one, and one for each power
+  for (const auto& [wavelength, at] : wavelengths_) {
+    divisors.push_back(block_of_[0] == static_cast<int>(block) ? reflectance.at(wavelength) : 1);
+    const std::vector<double> of_wavelength = powers_of(wavelength, powers);
+    factors.insert(factors.end(), of_wavelength.begin(), of_wavelength.end());
+  }
+  std::vector<std::vector<const LeastSquares*>> parts;  // for each element, of each wavelength
   long rows = 0;
+  bool alike = true;
   for (const Element& element : blocks_[block].elements) {
     parts.emplace_back();
     for (const auto& [wavelength, at] : wavelengths_) {
-      parts.back().emplace_back(at.elements[element.index()]);
-      rows += at.elements[element.index()].rows();
+      parts.back().push_back(&at.elements[element.index()]);
+      rows += parts.back().back()->rows();
+      alike = alike && parts.back().back()->has_rows_of(*parts.back().front());
     }
   }
-  Eigen::VectorXd divisors = Eigen::VectorXd::Ones(index(wavelengths_.size()));
-  Eigen::MatrixXd factors(index(wavelengths_.size()), powers + 1);
-  Eigen::Index w = 0;
-  for (const auto& [wavelength, at] : wavelengths_) {
-    if (block_of_[0] == static_cast<int>(block)) divisors(w) = reflectance.at(wavelength);
-    const std::vector<double> of_wavelength = powers_of(wavelength, powers);
-    factors.row(w++) = Eigen::Map<const Eigen::RowVectorXd>(of_wavelength.data(), powers + 1);
+  const int modes = parts[0][0]->unknowns(), width = powers + 1;
+  LeastSquares all(alike ? modes : modes * width, alike ? static_cast<int>(divisors.size()) : 1);
+  for (const std::vector<const LeastSquares*>& part : parts) {
+    if (alike) all.merge(LeastSquares::beside(part, divisors));
+    for (std::size_t w = 0; !alike && w < part.size(); ++w)
+      all.merge_repeated(*part[w], std::span(factors).subspan(w * size(width), size(width)), 1 / divisors[w]);
   }
-  const bool alike = std::all_of(parts.begin(), parts.end(), [](const std::vector<SharedRows>& part) {
-    return std::all_of(part.begin(), part.end(), [&](const SharedRows& at) { return at.has_unknowns_of(part[0]); });
-  });
-  if (alike) return put_together(parts, modes, divisors).solve(factors, rows, rank_tolerance, known);
-  return repeated(parts, modes, divisors, factors).solve(Eigen::MatrixXd::Ones(1, 1), rows, rank_tolerance, known);
+  return alike ? all.solve_over(factors, rows, rank_tolerance, &known) : all.solve(rank_tolerance, &known);
 }
 
 bool FitAccumulator::turns() const { return mmbrdf::turns(basis_); }
@@ -213,10 +175,10 @@ bool FitAccumulator::takes_own_reflectance(const FitOptions& options) const {
   return !options.reflectance && wavelengths_.size() > 1;
 }
 
-ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, Decompositions& known) const {
+ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdCache& known) const {
   ReflectanceTable table;
   for (const auto& [wavelength, at] : wavelengths_) {
-    const Solution solution = solution_of(at.elements[0], options.rank_tolerance, known);
+    const Solution solution = at.elements[0].solve(options.rank_tolerance, &known);
     if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
       throw std::invalid_argument("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
                                   "reflectance it is to be divided by; give a reflectance table" + free);
@@ -262,7 +224,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   if (samples_ == 0) throw std::invalid_argument("no samples");
   const int powers = chosen_powers(options);
   std::string complaints;
-  Decompositions known;
+  SvdCache known;
   FitResult result;
   Model& model = result.model;
   model.family = basis_.family;

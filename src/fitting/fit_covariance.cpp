@@ -8,7 +8,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "numerics/eigen_index.hpp"
-#include "numerics/shared_rows.hpp"
+#include "numerics/svd_cache.hpp"
 
 // Covariances of a fit that are not s² (XᵀWX)⁺.
 //
@@ -47,7 +47,7 @@ double small_sample_factor(const Solution& solution) {
 
 /// With a reflectance from the data themselves an error ε of τ changes both R, by R dᵀP ε, and what y is divided by:
 ///   dR = R dᵀP ε,     da = G Λ (ε − τ dR / R).
-void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double rank_tolerance, Decompositions& known,
+void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double rank_tolerance, SvdCache& known,
                                                     const FitAccumulator* squares) const {
   Model& model = result.model;
   const Solution& f11 = result.solutions.front();
@@ -61,8 +61,7 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double ra
     const LeastSquares& rows = at.elements.front();
     const double reflectance = model.reflectance.values[static_cast<std::size_t>(k)];
     const VectorXd tau = vector(rows.normal_vector()) / reflectance;
-    const VectorXd q =
-        square(SharedRows(rows).solve(MatrixXd::Ones(1, 1), rows.rows(), rank_tolerance, known).inverse, modes) * d;
+    const VectorXd q = square(rows.solve(rank_tolerance, &known).inverse, modes) * d;
     const MatrixXd c = squares ? square(squares->wavelengths_.at(wavelength).elements.front().normal_matrix(), modes)
                                : MatrixXd(f11.variance() * square(rows.normal_matrix(), modes));
     MatrixXd slopes = MatrixXd::Zero(size + count, modes);
@@ -82,7 +81,7 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double ra
 /// G (Σ w² r² x xᵀ) G over the rows of each block; `squares` holds the rows with weights w² r².
 void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const {
   Model& model = result.model;
-  Decompositions known;
+  SvdCache known;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Solution& solution = result.solutions[b];
     if (solution.degrees_of_freedom() <= 0) continue;

@@ -11,7 +11,7 @@
 
 #include "basis/rows.hpp"
 #include "mmbrdf/fitting/fit.hpp"
-#include "numerics/shared_rows.hpp"
+#include "numerics/fold.hpp"
 #include "text/numbers.hpp"
 
 // Rows cost the square of their length, values only the length. So what has the same rows is folded together: elements
@@ -123,7 +123,7 @@ struct FitAccumulator::Folding {
   struct Share {
     const Design* design;
     std::vector<Column> columns;
-    SharedRows rows;
+    LeastSquares rows;
   };
 
   std::span<const Sample> samples;
@@ -185,9 +185,10 @@ std::vector<FitAccumulator::Folding::Share> FitAccumulator::Folding::shares(std:
         if (found != result.end())
           found->columns.push_back({e, g});
         else
-          result.push_back({&design, {{e, g}}, SharedRows(1, 1)});
+          result.push_back({&design, {{e, g}}, LeastSquares(1)});
       }
-  for (Share& share : result) share.rows = SharedRows(share.design->modes, share.columns.size());
+  for (Share& share : result)
+    share.rows = LeastSquares(static_cast<int>(share.design->modes), static_cast<int>(share.columns.size()));
   return result;
 }
 
@@ -209,6 +210,13 @@ struct FitAccumulator::Folding::Some {
         value = turn == 0 ? sample.normalized : turned(sample.normalized, -turn);
         value(0, 0) = sample.f11;
       }
+  }
+
+  /// Rows with a weight other than 0.
+  long counted(const Share& share) const {
+    long result = 0;
+    for (std::size_t r = 0; r < count; ++r) result += all.weight(share.columns[0], first + r) != 0 ? 1 : 0;
+    return result;
   }
 
   RowColumns rows(const Share& share) const {
@@ -238,7 +246,7 @@ void FitAccumulator::Folding::fold(const FitAccumulator& into) const {
     some.set(into.turns());
     for (Share& share : together) {
       RowColumns block = some.rows(share);
-      share.rows.add(block);
+      share.rows.add(block, some.counted(share));
     }
   }
   for (const Share& share : together) deliver(share);
@@ -249,13 +257,8 @@ void FitAccumulator::Folding::deliver(const Share& share) const {
   for (std::size_t c = 0; c < share.columns.size(); ++c) {
     const Column& column = share.columns[c];
     AtWavelength& at = *groups[column.group].at;
-    long counted = 0;
-    for (std::size_t row = 0; row < rows(); ++row) {
-      const double w = weight(column, row);
-      at.weight[column.element] += w;
-      counted += w == 0 ? 0 : 1;
-    }
-    at.elements[column.element].merge(share.rows.of(c, counted));
+    for (std::size_t row = 0; row < rows(); ++row) at.weight[column.element] += weight(column, row);
+    at.elements[column.element].merge(share.rows.of(static_cast<int>(c)));
   }
 }
 

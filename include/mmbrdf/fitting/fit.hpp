@@ -79,8 +79,6 @@ struct FitOptions {
   Covariance covariance = Covariance::residuals;  ///< sandwich needs the samples again: only in fit()
 };
 
-class Decompositions;  // of the library's own
-
 /// How well one matrix element is fitted. An element without modes is 0 in the model, and its samples are the
 /// residuals.
 struct ElementFit {
@@ -147,15 +145,15 @@ class FitAccumulator {
   friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);
   FitResult solved(const FitOptions& options) const;
   Solution block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance, double rank_tolerance,
-                          Decompositions& known) const;
-  void add_own_reflectance_covariance(FitResult& result, double rank_tolerance, Decompositions& known,
+                          SvdCache& known) const;
+  void add_own_reflectance_covariance(FitResult& result, double rank_tolerance, SvdCache& known,
                                       const FitAccumulator* squares) const;
   void use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const;
   bool takes_own_reflectance(const FitOptions& options) const;
   bool turns() const;
   bool accepts_minimum_norm(const FitOptions& options) const;
   int chosen_powers(const FitOptions& options) const;
-  ReflectanceTable own_reflectance(const FitOptions& options, Decompositions& known) const;
+  ReflectanceTable own_reflectance(const FitOptions& options, SvdCache& known) const;
   void require_covered(const ReflectanceTable& table) const;
   ElementFit element_fit(std::size_t element, std::span<const double> x, const ReflectanceTable& reflectance) const;
 
