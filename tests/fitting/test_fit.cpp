@@ -122,6 +122,48 @@ TEST(Fit, IsTheSameHoweverTheSamplesAreSplitAndOrdered) {
   }
 }
 
+TEST(Fit, IsTheSameToTheLastBitWhenItsStateWasSentToAnotherProcess) {
+  const std::vector<Sample> samples = samples_of(material("ptfe"), 0.01);
+  const Basis basis{Family::isotropic, {5, 3}};
+  FitAccumulator first(basis), second(basis);
+  first.add(std::span(samples).first(3000));
+  second.add(std::span(samples).subspan(3000));
+  FitAccumulator merged = first, sent = FitAccumulator::from_state(basis, first.state());
+  EXPECT_EQ(sent.samples(), 3000);
+  EXPECT_EQ(sent.state(), first.state());
+  merged.merge(second);
+  sent.merge(FitAccumulator::from_state(basis, second.state()));
+  EXPECT_EQ(sent.state(), merged.state());
+  const FitResult result = sent.solve(), expected = merged.solve();
+  for (std::size_t b = 0; b < expected.solutions.size(); ++b) EXPECT_EQ(result.solutions[b].x, expected.solutions[b].x);
+  EXPECT_EQ(result.elements[5].rms, expected.elements[5].rms);
+}
+
+TEST(Fit, RefusesNumbersThatAreNoStateOfItsBasis) {
+  const Basis basis{Family::isotropic, {2, 2}};
+  FitAccumulator some(basis);
+  some.add(samples_of(material("ptfe-532"), 0.01));
+  const std::vector<double> state = some.state();
+  const auto refusal = [&](std::size_t place, double number) {
+    std::vector<double> changed = state;
+    changed[place] = number;
+    return message_of([&] { FitAccumulator::from_state(basis, changed); });
+  };
+  EXPECT_EQ(refusal(0, -1), "a state of a fit with a number of samples -1");
+  EXPECT_EQ(refusal(1, 1.6), "a state of a fit with a largest theta_i 1.6");
+  EXPECT_EQ(refusal(4, -2), "a state of a fit with a sum of weights -2");
+  EXPECT_NE(refusal(3, -0.5), "");
+  EXPECT_NE(refusal(5, std::nan("")), "");
+  const auto refused = [&](std::span<const double> numbers, const Basis& of) {
+    return message_of([&] { FitAccumulator::from_state(of, numbers); });
+  };
+  EXPECT_EQ(refused(std::span(state).first(state.size() - 1), basis), "a state of a fit that ends too soon");
+  EXPECT_NE(refused(state, {Family::isotropic, {3, 2}}), "");
+  std::vector<double> twice = state;
+  twice.insert(twice.end(), state.begin() + 3, state.end());
+  EXPECT_EQ(refused(twice, basis), "a state of a fit whose wavelengths do not rise");
+}
+
 /// Of a fit that is to be the same but for rounding, whose condition is some hundred.
 void expect_same_fit(const FitResult& a, const FitResult& b) {
   EXPECT_LT(largest_difference(a.model, b.model), 1e-11);

@@ -514,6 +514,48 @@ TEST(LeastSquares, RefusesUnknownsThatThereAreNot) {
   EXPECT_EQ(message_of([&] { two.restricted(std::array<std::size_t, 2>{1, 1}); }), "unknown number 1 comes twice");
 }
 
+/// Columns of values of the problem, the first its own.
+LeastSquares with_values(const Problem& problem, const std::vector<Numbers>& columns) {
+  LeastSquares result(static_cast<int>(problem.unknowns), static_cast<int>(columns.size()));
+  Numbers values;
+  for (std::size_t row = 0; row < problem.count(); ++row)
+    for (const Numbers& column : columns) values.push_back(column[row]);
+  result.add(problem.rows, values);
+  return result;
+}
+
+RC_GTEST_PROP(LeastSquares, HoldsColumnsOfValuesAsIfEachWereAlone, ()) {
+  Problem problem = any_determined_problem();
+  const std::vector<Numbers> columns{problem.values, any_numbers(problem.count()), any_numbers(problem.count())};
+  const LeastSquares all = with_values(problem, columns);
+  std::vector<LeastSquares> alone;
+  for (std::size_t v = 0; v < columns.size(); ++v) {
+    problem.values = columns[v];
+    alone.push_back(accumulated(problem));
+    RC_ASSERT(all.of(static_cast<int>(v)).state() == alone[v].state());
+    RC_ASSERT(alone[v].has_rows_of(alone[0]));
+  }
+  const std::array<const LeastSquares*, 3> problems{&alone[0], &alone[1], &alone[2]};
+  const LeastSquares together = LeastSquares::beside(problems, Numbers{1, 1, 1});
+  for (int v = 0; v < 3; ++v) RC_ASSERT(together.of(v).state() == all.of(v).state());
+  problem.rows[0] += 1;
+  RC_ASSERT(!accumulated(problem).has_rows_of(alone[0]));
+}
+
+RC_GTEST_PROP(LeastSquares, SolvesOverColumnsOfValuesAsOverRowsThatAreRepeatedForEach, ()) {
+  Problem problem = any_determined_problem();
+  const std::vector<Numbers> columns{problem.values, any_numbers(problem.count()), any_numbers(problem.count())};
+  const Numbers factors{1, 0.5, 1, 1, 1, 2};  // 1 and λ
+  const long rows = 3 * static_cast<long>(problem.count());
+  LeastSquares repeated(2 * static_cast<int>(problem.unknowns));
+  for (std::size_t v = 0; v < 3; ++v) {
+    problem.values = columns[v];
+    repeated.merge_repeated(accumulated(problem), std::span(factors).subspan(2 * v, 2));
+  }
+  const Solution found = with_values(problem, columns).solve_over(factors, rows, 1e-10);
+  RC_ASSERT(agree(found, repeated.solve(), 100 * rounding));
+}
+
 // Two groups of rows with λ = 1 and 2, coefficients linear in λ: together they are of full rank, alone they are not.
 RC_GTEST_PROP(LeastSquares, FitsCoefficientsThatAreLinearInAWavelength, ()) {
   const Problem first = any_determined_problem();
@@ -569,6 +611,20 @@ TEST(LeastSquares, RefusesImpossibleSizes) {
   EXPECT_THROW(two.solve().estimable(Numbers{1}), std::invalid_argument);
   for (const double tolerance : {-1e-3, 1.0, infinity, nan_value})
     EXPECT_THROW(two.solve(tolerance), std::invalid_argument) << tolerance;
+}
+
+TEST(LeastSquares, RefusesProblemsThatDoNotFitEachOther) {
+  LeastSquares two(2), other(2), pair(2, 2);
+  two.add(Numbers{1, 0, 0, 1}, Numbers{1, 2});
+  other.add(Numbers{1, 0, 0, 2}, Numbers{1, 2});
+  const std::array<const LeastSquares*, 2> problems{&two, &other};
+  EXPECT_THROW(LeastSquares::beside(problems, Numbers{1, 1}), std::invalid_argument);
+  EXPECT_THROW(pair.merge(two), std::invalid_argument);
+  EXPECT_THROW(pair.state(), std::invalid_argument);
+  EXPECT_THROW(pair.solve(), std::invalid_argument);
+  EXPECT_THROW(pair.solve_over(Numbers{1, 1, 1}, 2, 1e-10), std::invalid_argument);
+  EXPECT_THROW(two.merge_repeated(other, Numbers{1, 1}), std::invalid_argument);
+  EXPECT_THROW(LeastSquares(2, 0), std::invalid_argument);
 }
 
 TEST(LeastSquares, RefusesImpossibleRepetitions) {

@@ -121,6 +121,12 @@ class FitAccumulator {
 
   long samples() const { return samples_; }
 
+  /// Everything there is, as numbers to be saved or sent: from_state() of the same basis makes the same accumulator, to
+  /// the last bit. So parts of the samples can be added in different processes and merged in one.
+  std::vector<double> state() const;
+  /// Throws std::invalid_argument unless the numbers are a state of this basis.
+  static FitAccumulator from_state(const Basis& basis, std::span<const double> state);
+
   /// Throws std::invalid_argument if there are no samples, if the powers need more wavelengths than there are, if a
   /// reflectance table does not reach a wavelength, if the samples do not determine the model and minimum_norm
   /// is off: the message says how many combinations of which modes are free; or for a sandwich covariance.

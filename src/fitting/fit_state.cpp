@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All there is in an accumulator as numbers, to be saved or sent.
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/fitting/fit.hpp"
+#include "text/numbers.hpp"
+
+//   samples, largest θi, largest θr,   then for each wavelength, rising: λ,
+//   then for each element, row-major: the sum of its weights, and the state of its triangle
+
+namespace mmbrdf {
+namespace {
+
+/// Reads numbers one after another, or several.
+class Reader {
+ public:
+  explicit Reader(std::span<const double> numbers) : rest_(numbers) {}
+
+  bool at_end() const { return rest_.empty(); }
+  std::span<const double> next(std::size_t count) {
+    if (count > rest_.size()) throw std::invalid_argument("a state of a fit that ends too soon");
+    const std::span<const double> result = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return result;
+  }
+  /// In [0, highest].
+  double next(const char* what, double highest) {
+    const double number = next(1).front();
+    if (!(number >= 0 && number <= highest))
+      throw std::invalid_argument("a state of a fit with " + std::string(what) + " " + shortest(number));
+    return number;
+  }
+
+ private:
+  std::span<const double> rest_;
+};
+
+}  // namespace
+
+std::vector<double> FitAccumulator::state() const {
+  std::vector<double> result{static_cast<double>(samples_), theta_i_max_, theta_r_max_};
+  for (const auto& [wavelength, at] : wavelengths_) {
+    result.push_back(wavelength);
+    for (std::size_t e = 0; e < 16; ++e) {
+      result.push_back(at.weight[e]);
+      const std::vector<double> triangle = at.elements[e].state();
+      result.insert(result.end(), triangle.begin(), triangle.end());
+    }
+  }
+  return result;
+}
+
+FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const double> state) {
+  constexpr double most = 9e15;  // whole numbers up to here are exact
+  FitAccumulator result(basis);
+  Reader reader(state);
+  result.samples_ = static_cast<long>(reader.next("a number of samples", most));
+  result.theta_i_max_ = reader.next("a largest theta_i", std::numbers::pi / 2);
+  result.theta_r_max_ = reader.next("a largest theta_r", std::numbers::pi / 2);
+  while (!reader.at_end()) {
+    const double wavelength = reader.next(1).front();
+    require_wavelength(wavelength);
+    if (!result.wavelengths_.empty() && wavelength <= result.wavelengths_.rbegin()->first + wavelength_resolution)
+      throw std::invalid_argument("a state of a fit whose wavelengths do not rise");
+    AtWavelength& at = result.slot(wavelength);
+    for (std::size_t e = 0; e < 16; ++e) {
+      at.weight[e] = reader.next("a sum of weights", std::numeric_limits<double>::max());
+      const int unknowns = at.elements[e].unknowns();
+      at.elements[e] = LeastSquares::from_state(unknowns, reader.next(LeastSquares::state_size(unknowns)));
+    }
+  }
+  return result;
+}
+
+}  // namespace mmbrdf
