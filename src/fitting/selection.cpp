@@ -29,8 +29,8 @@ struct Folded {
 /// The noise law of the weights, and the f11 to which noise is relative, are those of a fit at the lowest orders.
 std::vector<Mueller> weights_of(std::span<const Sample> samples, const SelectionOptions& options, Weights weights) {
   if (weights == Weights::none) return {};
-  const Basis lowest{options.family, {options.orders_f11.first, options.orders_other.first}, options.mapping};
-  const FitOptions how{.powers = options.powers.first,
+  const Basis lowest{options.family, {options.orders_f11->first, options.orders_other->first}, options.mapping};
+  const FitOptions how{.powers = options.powers->first,
                        .reflectance = options.reflectance,
                        .minimum_norm = true,
                        .rank_tolerance = options.rank_tolerance};
@@ -289,15 +289,24 @@ void require_range(const Range& range, int highest, const std::string& what) {
                                 ": the first must not exceed the last, both in 0..." + std::to_string(highest));
 }
 
+/// With all ranges.
+SelectionOptions completed(SelectionOptions options, std::span<const Sample> samples) {
+  const bool grows_fast = options.family == Family::anisotropic;
+  if (!options.orders_f11) options.orders_f11 = grows_fast ? Range{1, 4} : Range{2, 9};
+  if (!options.orders_other) options.orders_other = grows_fast ? Range{1, 3} : Range{2, 6};
+  if (!options.powers) options.powers = Range{0, wavelengths(samples).size() > 1 ? 1 : 0};
+  return options;
+}
+
 void require_valid(std::span<const Sample> samples, std::span<const Partition> partitions,
                    const SelectionOptions& options) {
-  require_range(options.orders_f11, max_order, "orders of f11");
-  require_range(options.orders_other, max_order, "orders of the other elements");
-  require_range(options.powers, max_power, "powers of the wavelength");
+  require_range(*options.orders_f11, max_order, "orders of f11");
+  require_range(*options.orders_other, max_order, "orders of the other elements");
+  require_range(*options.powers, max_power, "powers of the wavelength");
   const std::size_t there = wavelengths(samples).size();
-  if (static_cast<std::size_t>(options.powers.last) >= std::max<std::size_t>(there, 1))
-    throw std::invalid_argument("powers of the wavelength up to " + std::to_string(options.powers.last) + " need " +
-                                std::to_string(options.powers.last + 1) + " wavelengths, the data have " +
+  if (static_cast<std::size_t>(options.powers->last) >= std::max<std::size_t>(there, 1))
+    throw std::invalid_argument("powers of the wavelength up to " + std::to_string(options.powers->last) + " need " +
+                                std::to_string(options.powers->last + 1) + " wavelengths, the data have " +
                                 std::to_string(there));
   if (partitions.empty()) throw std::invalid_argument("no partition of the samples");
   for (const Partition& partition : partitions) {
@@ -317,10 +326,10 @@ void require_valid(std::span<const Sample> samples, std::span<const Partition> p
 PartSelection try_all(const FitAccumulator& all, const std::vector<Folded>& folded,
                       std::span<const Partition> partitions, const SelectionOptions& options, const Part& part) {
   PartSelection result;
-  const Range& orders = part.is_f11 ? options.orders_f11 : options.orders_other;
+  const Range& orders = part.is_f11 ? *options.orders_f11 : *options.orders_other;
   for (int order = orders.first; order <= orders.last; ++order) {
     const AtOrder at = at_order(all, folded, part.orders(order));
-    for (int powers = options.powers.first; powers <= options.powers.last; ++powers)
+    for (int powers = options.powers->first; powers <= options.powers->last; ++powers)
       result.candidates.push_back(candidate(at, partitions, part, order, part.options(options, powers)));
   }
   std::stable_sort(result.candidates.begin(), result.candidates.end(),
@@ -331,9 +340,10 @@ PartSelection try_all(const FitAccumulator& all, const std::vector<Folded>& fold
 }  // namespace
 
 Selection select_model(std::span<const Sample> samples, std::span<const Partition> partitions,
-                       const SelectionOptions& options, Weights weights) {
+                       const SelectionOptions& asked, Weights weights) {
+  const SelectionOptions options = completed(asked, samples);
   require_valid(samples, partitions, options);
-  const Basis basis{options.family, {options.orders_f11.last, options.orders_other.last}, options.mapping};
+  const Basis basis{options.family, {options.orders_f11->last, options.orders_other->last}, options.mapping};
   const std::vector<Mueller> used = weights_of(samples, options, weights);
   FitAccumulator all(basis);
   all.add(samples, used);
@@ -341,12 +351,12 @@ Selection select_model(std::span<const Sample> samples, std::span<const Partitio
   for (const Partition& partition : partitions) folds.push_back(folded(samples, used, partition, basis));
   Selection result;
   const Deciding by = deciding(partitions);
-  result.powers = options.powers.first;
+  result.powers = options.powers->first;
   for (const bool is_f11 : {true, false}) {
     PartSelection& part = is_f11 ? result.f11 : result.other;
     part = try_all(all, folds, partitions, options, {is_f11});
-    refuse_what_explodes(part, options.powers, by.order);
-    result.powers = std::max(result.powers, powers_for(part, options.powers, by.powers).value_or(0));
+    refuse_what_explodes(part, *options.powers, by.order);
+    result.powers = std::max(result.powers, powers_for(part, *options.powers, by.powers).value_or(0));
   }
   for (PartSelection* part : {&result.f11, &result.other}) recommend(*part, partitions, result.powers, by.order);
   if (result.f11.recommended && result.other.recommended)

@@ -98,6 +98,34 @@ Partition folds_by_wavelength(std::span<const Sample> samples) {
   return partition;
 }
 
+LeaveOut leave_out_from(const std::string& name) {
+  if (name == "angle") return LeaveOut::angle;
+  if (name == "wavelength") return LeaveOut::wavelength;
+  if (name == "angle,wavelength") return LeaveOut::both;
+  if (name == "none") return LeaveOut::none;
+  throw std::invalid_argument("\"" + name + "\": expected angle, wavelength, angle,wavelength or none");
+}
+
+Folds folds(std::span<const Sample> samples, const FoldOptions& options) {
+  Folds result{{options.random ? random_folds(samples.size(), options.folds, options.seed)
+                               : folds_by_row(samples.size(), options.folds)},
+               {}};
+  std::vector<Partition>& all = result.partitions;
+  const LeaveOut what = options.leave_out;
+  if (what == LeaveOut::angle || what == LeaveOut::both) all.push_back(folds_by_incident_angle(samples));
+  if (what == LeaveOut::what_can_be) {
+    try {
+      all.push_back(folds_by_incident_angle(samples));
+    } catch (const std::invalid_argument& error) {
+      result.note = error.what() + std::string("; folds alone decide, and see nothing between the angles measured");
+    }
+  }
+  if (what == LeaveOut::wavelength || what == LeaveOut::both ||
+      (what == LeaveOut::what_can_be && wavelengths(samples).size() > 2))
+    all.push_back(folds_by_wavelength(samples));
+  return result;
+}
+
 std::vector<std::vector<Sample>> parts(std::span<const Sample> samples, const Partition& partition) {
   if (partition.fold.size() != samples.size())
     throw std::invalid_argument("a partition of " + std::to_string(partition.fold.size()) + " samples, there are " +

@@ -79,9 +79,9 @@ TEST(FitAccumulator, AtLowerOrdersIsTheFitAtTheseOrders) {
 TEST(Selection, PredictsEachFoldFromTheOthers) {
   const std::vector<Sample> samples = noisy(random_model(Family::isotropic, {4, 3}, 1, 7), std::array{0.4, 0.6}, 120);
   SelectionOptions options;
-  options.orders_f11 = {2, 3};
-  options.orders_other = {1, 2};
-  options.powers = {0, 1};
+  options.orders_f11 = Range{2, 3};
+  options.orders_other = Range{1, 2};
+  options.powers = Range{0, 1};
   options.reflectance = ReflectanceTable{{0.3, 0.9}, {0.8, 0.9}};
   const std::array partitions{folds_by_row(samples.size(), 4), random_folds(samples.size(), 3, 2)};
   const Selection selection = select_model(samples, partitions, options);
@@ -111,7 +111,7 @@ TEST(Selection, CountsOneRowOfF11AndFifteenOfTheOthersInAicAndBic) {
   const std::vector<Sample> samples = noisy(random_model(Family::isotropic, {4, 3}, 0, 7), wavelength, 200);
   const FitResult result = fit(samples, {Family::isotropic, {3, 2}, DiscMapping::lambert});
   const Selection selection =
-      select_model(samples, std::array{folds_by_row(200, 2)}, {.orders_f11 = {3, 3}, .orders_other = {2, 2}});
+      select_model(samples, std::array{folds_by_row(200, 2)}, {.orders_f11 = Range{3, 3}, .orders_other = Range{2, 2}});
   const double others = polarization_rms(result);
   const Candidate &f11 = selection.f11.candidates[0], &other = selection.other.candidates[0];
   EXPECT_EQ(f11.coefficients, 8);
@@ -129,7 +129,7 @@ TEST(Selection, FindsTheOrdersAndPowersOfWhatMadeTheData) {
     for (const int powers : {0, 1}) {
       const Model model = random_model(Family::isotropic, {4, 3}, powers, 21);
       const std::vector<Sample> samples = noisy(model, four, 400, speckle);
-      SelectionOptions options{.orders_f11 = {2, 6}, .orders_other = {1, 4}, .powers = {0, 2}};
+      SelectionOptions options{.orders_f11 = Range{2, 6}, .orders_other = Range{1, 4}, .powers = Range{0, 2}};
       options.reflectance = ReflectanceTable{};
       const std::array partitions{random_folds(samples.size(), 3, 1), folds_by_wavelength(samples)};
       const Selection selection = select_model(samples, partitions, options);
@@ -148,7 +148,7 @@ TEST(Selection, WeighsAsTheFitDoes) {
   for (const Weights weights : {Weights::speckle, Weights::data, Weights::estimated}) {
     const Selection selection =
         select_model(samples, std::array{folds_by_row(400, 3)},
-                     {.orders_f11 = {3, 3}, .orders_other = {2, 2}, .reflectance = nothing}, weights);
+                     {.orders_f11 = Range{3, 3}, .orders_other = Range{2, 2}, .reflectance = nothing}, weights);
     const FitResult result =
         fit(samples, {Family::isotropic, {3, 2}, DiscMapping::lambert}, {.powers = 0, .reflectance = nothing}, weights);
     EXPECT_NEAR(selection.other.candidates[0].rms, polarization_rms(result), 1e-10);
@@ -163,7 +163,7 @@ TEST(Selection, RefusesWhatTheDataDoNotDetermine) {
   const Model model = random_model(Family::isotropic, {3, 2}, 0, 4);
   const std::vector<Sample> samples = noisy(model, wavelength, 24);
   const Selection selection =
-      select_model(samples, std::array{folds_by_row(24, 3)}, {.orders_f11 = {2, 6}, .orders_other = {1, 2}});
+      select_model(samples, std::array{folds_by_row(24, 3)}, {.orders_f11 = Range{2, 6}, .orders_other = Range{1, 2}});
   const std::vector<Candidate>& f11 = selection.f11.candidates;
   EXPECT_EQ(f11[3].refusal.substr(0, 34), "not determined without fold 1: blo") << f11[3].refusal;  // 20 of 16 rows
   EXPECT_EQ(f11[4].refusal.substr(0, 27), "not determined by the data:") << f11[4].refusal;         // 30 of 24 rows
@@ -171,7 +171,7 @@ TEST(Selection, RefusesWhatTheDataDoNotDetermine) {
   EXPECT_LE(recommended_order(selection.f11), 4);
   EXPECT_TRUE(selection.orders);
   const Selection none =
-      select_model(samples, std::array{folds_by_row(24, 3)}, {.orders_f11 = {6, 7}, .orders_other = {1, 2}});
+      select_model(samples, std::array{folds_by_row(24, 3)}, {.orders_f11 = Range{6, 7}, .orders_other = Range{1, 2}});
   EXPECT_FALSE(none.orders);
   EXPECT_NE(none.f11.reason.find("every order is refused"), std::string::npos);
 }
@@ -186,10 +186,10 @@ TEST(Selection, RefusesQuestionsThatMakeNoSense) {
   };
   says({}, {}, "no partition");
   says(other_size, {}, "a partition of 29 of 30 samples");
-  says(good, {.orders_f11 = {4, 3}}, "orders of f11 4 to 3");
-  says(good, {.orders_other = {0, 41}}, "0...40");
-  says(good, {.powers = {0, 1}}, "need 2 wavelengths, the data have 1");
-  says(good, {.powers = {-1, 0}}, "powers of the wavelength -1 to 0");
+  says(good, {.orders_f11 = Range{4, 3}}, "orders of f11 4 to 3");
+  says(good, {.orders_other = Range{0, 41}}, "0...40");
+  says(good, {.powers = Range{0, 1}}, "need 2 wavelengths, the data have 1");
+  says(good, {.powers = Range{-1, 0}}, "powers of the wavelength -1 to 0");
 }
 
 namespace {
@@ -210,7 +210,7 @@ class PublishedSelection : public testing::Test {
 // Theory 3.4.
 TEST_F(PublishedSelection, OfRandomDirectionsHasTheErrorsOfTheTheory) {
   const Selection selection =
-      select_model(random, std::array{folds_by_row(random.size(), 3)}, {.orders_other = {3, 7}});
+      select_model(random, std::array{folds_by_row(random.size(), 3)}, {.orders_other = Range{3, 7}});
   const double f11[] = {.00669, .00495, .00443, .00439, .00440, .00450, .00463, .00480};
   const double other[] = {.01198, .01112, .01110, .01115, .01121};
   for (int order = 2; order <= 9; ++order)

@@ -78,6 +78,27 @@ TEST(Partition, ByWavelengthNamesThem) {
   EXPECT_EQ(partition.names, (std::vector<std::string>{"351 nm", "633 nm"}));
 }
 
+TEST(Partition, LeavesOutWhatTheDataAllow) {
+  const auto kinds = [](std::span<const Sample> samples, const FoldOptions& options) {
+    std::vector<std::string> result;
+    for (const Partition& one : folds(samples, options).partitions) result.push_back(to_string(one.kind));
+    return result;
+  };
+  using Kinds = std::vector<std::string>;
+  std::vector<Sample> samples(30);
+  for (std::size_t s = 0; s < samples.size(); ++s) samples[s].wavelength = 0.4 + 0.1 * static_cast<double>(s % 2);
+  const Folds one_angle = folds(samples, {});
+  EXPECT_EQ(one_angle.partitions.size(), 1U);
+  EXPECT_NE(one_angle.note.find("the data have 1, it takes 2 to 100; folds alone decide"), std::string::npos);
+  for (std::size_t s = 0; s < samples.size(); ++s) samples[s].geometry.incident.theta = s % 3 == 0 ? 0.1 : 0.5;
+  EXPECT_EQ(kinds(samples, {}), (Kinds{"rows", "angle"}));
+  EXPECT_EQ(kinds(samples, {.random = true, .leave_out = leave_out_from("angle,wavelength")}),
+            (Kinds{"random", "angle", "wavelength"}));
+  EXPECT_EQ(kinds(samples, {.leave_out = leave_out_from("none")}), Kinds{"rows"});
+  samples[0].wavelength = 0.7;
+  EXPECT_EQ(kinds(samples, {}), (Kinds{"rows", "angle", "wavelength"}));
+}
+
 TEST(Partition, RefusesWhatCannotBeLeftOut) {
   const auto says = [](auto action, const std::string& part) {
     EXPECT_NE(message_of(action).find(part), std::string::npos) << message_of(action);

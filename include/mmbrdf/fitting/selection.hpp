@@ -48,7 +48,10 @@ struct Range {
 struct SelectionOptions {
   Family family = Family::isotropic;
   DiscMapping mapping = DiscMapping::lambert;
-  Range orders_f11{2, 9}, orders_other{2, 6}, powers{0, 0};
+  std::optional<Range> orders_f11 = {},
+                       orders_other = {};  ///< default 2 to 9 and 2 to 6; of anisotropic, which grows fast, 1 to
+                                           ///< 4 and 1 to 3
+  std::optional<Range> powers = {};        ///< default 0 for one wavelength, 0 to 1 for several
   std::optional<ReflectanceTable> reflectance = {};  ///< as in FitOptions. The default is taken from the samples that
                                                      ///< are fitted, never from those left out.
   double rank_tolerance = FitOptions{}.rank_tolerance;

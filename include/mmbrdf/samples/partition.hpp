@@ -35,6 +35,26 @@ Partition folds_by_incident_angle(std::span<const Sample> samples, double tolera
 /// One fold for each wavelength. Throws std::invalid_argument for fewer than 2 or more than max_folds wavelengths.
 Partition folds_by_wavelength(std::span<const Sample> samples);
 
+/// What cross-validation leaves out in turn beside folds of samples: whole incident angles, wavelengths, both, nothing,
+/// or what the data allow: angles if they can be told apart, wavelengths if there are three or more, since without one
+/// of two no power of the wavelength could be tested.
+enum class LeaveOut { what_can_be, angle, wavelength, both, none };
+/// "angle", "wavelength", "angle,wavelength", "none". Throws std::invalid_argument for another name.
+LeaveOut leave_out_from(const std::string& name);
+
+struct FoldOptions {
+  int folds = 3;           ///< of samples: folds_by_row
+  bool random = false;     ///< or random_folds
+  unsigned long seed = 1;  ///< of these
+  LeaveOut leave_out = LeaveOut::what_can_be;
+};
+struct Folds {
+  std::vector<Partition> partitions;
+  std::string note;  ///< why angles cannot be left out, and what that means; empty if they can, or need not
+};
+/// Throws std::invalid_argument as the functions above do, for what was asked for by name.
+Folds folds(std::span<const Sample> samples, const FoldOptions& options);
+
 /// The samples of each fold, in the order they had. Throws std::invalid_argument if the partition is of another number
 /// of samples.
 std::vector<std::vector<Sample>> parts(std::span<const Sample> samples, const Partition& partition);
