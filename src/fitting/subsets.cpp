@@ -41,6 +41,22 @@ void require_same_length(const PolarizedCurve& curve, const PolarizedCurve& refe
                                 std::to_string(reference.size()));
 }
 
+SubsetSplit split(std::span<const Sample> samples, const Partition& partition, const SubsetQuestion& question) {
+  const SubsetFits fits = fit_parts(parts(samples, partition), question.basis, question.fit, question.weights);
+  SubsetSplit result;
+  for (const Model& part : fits.parts)
+    result.curves.push_back(polarized_curve(part, question.wavelength, question.geometries));
+  result.reference =
+      polarized_curve(question.reference ? *question.reference : fits.whole, question.wavelength, question.geometries);
+  result.uncertainty = polarized_uncertainty(fits.whole, question.wavelength, question.geometries);
+  for (PolarizedBrdf& u : result.uncertainty)
+    for (const auto part : every_curve) u.*part *= std::sqrt(static_cast<double>(fits.parts.size()));
+  result.statistics = subset_statistics(result.curves, result.reference);
+  result.predicted = relative_rms(result.uncertainty, result.reference);
+  result.validity = fits.whole.validity;
+  return result;
+}
+
 }  // namespace
 
 SubsetFits fit_parts(std::span<const std::vector<Sample>> parts, const Basis& basis, const FitOptions& options,
@@ -123,6 +139,29 @@ double relative_rms(const PolarizedCurve& uncertainty, const PolarizedCurve& ref
   for (std::size_t g = 0; g < reference.size(); ++g)
     for (const auto part : every_curve) squares += std::pow(uncertainty[g].*part / reference[g].*part, 2);
   return std::sqrt(squares / (4 * static_cast<double>(reference.size())));
+}
+
+std::vector<SubsetSplit> split_samples(std::span<const Sample> samples, const Division& division,
+                                       const SubsetQuestion& question) {
+  if (division.splits < 1 || division.splits > max_splits)
+    throw std::invalid_argument("splits: " + std::to_string(division.splits) + " is not in 1..." +
+                                std::to_string(max_splits));
+  std::vector<SubsetSplit> result;
+  for (int i = 0; i < division.splits; ++i) {
+    const unsigned long seed = division.seed + static_cast<unsigned long>(i);
+    result.push_back(split(samples,
+                           division.by_lot() ? random_folds(samples.size(), division.parts, seed)
+                                             : folds_by_row(samples.size(), division.parts),
+                           question));
+    if (division.by_lot()) result.back().seed = seed;
+  }
+  return result;
+}
+
+double root_mean_variance(std::span<const SubsetSplit> splits) {
+  double squares = 0;
+  for (const SubsetSplit& split : splits) squares += std::pow(split.statistics.root_mean_variance, 2);
+  return std::sqrt(squares / static_cast<double>(splits.size()));
 }
 
 }  // namespace mmbrdf

@@ -20,9 +20,8 @@ namespace {
 
 struct Options {
   std::string data, reference, output;
-  int parts = 3, splits = 1;
-  bool random = false, as_printed = false;
-  unsigned long seed = 0;
+  Division division;
+  bool as_printed = false;
   Basis basis;
   FitOptions fit;
   Weights weights = Weights::none;
@@ -30,48 +29,13 @@ struct Options {
   double theta_i_deg = 45;
   std::vector<double> theta_r_deg = range_from("-60:60:1");
   Format format = Format::text;
-
-  bool by_lot() const { return random || splits > 1; }
 };
 
-/// What was asked, for all splits the same.
-struct Question {
+/// The samples, and what was asked of all splits.
+struct Question : SubsetQuestion {
   std::vector<Sample> samples;
-  double wavelength;
-  std::vector<Geometry> geometries;
-  std::optional<Model> reference;  // none: the fit to all samples
+  std::optional<Model> given;  // the reference, if it is not the fit to all samples
 };
-
-/// One division of the data.
-struct Split {
-  std::vector<PolarizedCurve> curves;
-  PolarizedCurve reference, uncertainty;  // of the fit to one part, as the covariance of the fit to all says
-  SubsetStatistics statistics;
-  double predicted;
-};
-
-Split split(const Question& q, const Options& o, unsigned long seed) {
-  const SubsetFits fits = fit_parts(parts(q.samples, o.by_lot() ? random_folds(q.samples.size(), o.parts, seed)
-                                                                : folds_by_row(q.samples.size(), o.parts)),
-                                    o.basis, o.fit, o.weights);
-  Split result;
-  for (const Model& part : fits.parts) result.curves.push_back(polarized_curve(part, q.wavelength, q.geometries));
-  result.reference = q.reference ? polarized_curve(*q.reference, q.wavelength, q.geometries)
-                                 : polarized_curve(fits.whole, q.wavelength, q.geometries);
-  result.uncertainty = polarized_uncertainty(fits.whole, q.wavelength, q.geometries);
-  for (PolarizedBrdf& u : result.uncertainty)
-    for (double* part : {&u.ss, &u.sp, &u.ps, &u.pp}) *part *= std::sqrt(o.parts);
-  result.statistics = subset_statistics(result.curves, result.reference);
-  result.predicted = relative_rms(result.uncertainty, result.reference);
-  return result;
-}
-
-/// Root mean square over splits.
-double observed(const std::vector<Split>& splits) {
-  double squares = 0;
-  for (const Split& s : splits) squares += s.statistics.root_mean_variance * s.statistics.root_mean_variance;
-  return std::sqrt(squares / static_cast<double>(splits.size()));
-}
 
 std::string range_text(const Options& o) {
   return brief(o.theta_r_deg.front()) + " ... " + brief(o.theta_r_deg.back()) + " degrees (" +
@@ -79,12 +43,12 @@ std::string range_text(const Options& o) {
 }
 
 std::string division(const Options& o) {
-  return o.by_lot() ? "by lot, seed " + std::to_string(o.seed) : "dealt in turn";
+  return o.division.by_lot() ? "by lot, seed " + std::to_string(o.division.seed) : "dealt in turn";
 }
 
 std::string heading(const Question& q, const Options& o) {
   std::string text = data_name(o.data) + ": " + counted(static_cast<long>(q.samples.size()), "sample") + " in " +
-                     std::to_string(o.parts) + " parts, " + division(o) + "\n";
+                     std::to_string(o.division.parts) + " parts, " + division(o) + "\n";
   text += "basis " + to_string(o.basis.family) + (o.as_printed ? " as printed" : "") + ", orders " +
           std::to_string(o.basis.orders.f11) + "," + std::to_string(o.basis.orders.other) + ", weights " +
           to_string(o.weights) + "\n";
@@ -95,7 +59,7 @@ std::string heading(const Question& q, const Options& o) {
 
 std::string percent(const char* what, double value) { return format("%-52s %8.4f %%\n", what, 100 * value); }
 
-std::string text(const Question& q, const Options& o, const std::vector<Split>& splits) {
+std::string text(const Question& q, const Options& o, const std::vector<SubsetSplit>& splits) {
   std::string text = heading(q, o);
   if (splits.size() == 1) {
     const SubsetStatistics& s = splits.front().statistics;
@@ -107,9 +71,9 @@ std::string text(const Question& q, const Options& o, const std::vector<Split>& 
     text += counted(static_cast<long>(splits.size()), "split") + "\n";
   }
   const double predicted = splits.front().predicted;
-  text += percent("standard deviation, root mean square", observed(splits));
+  text += percent("standard deviation, root mean square", root_mean_variance(splits));
   text += percent("the same as the covariance of one fit predicts it", predicted);
-  if (predicted > 0) text += format("%-52s %8.4f\n", "observed / predicted", observed(splits) / predicted);
+  if (predicted > 0) text += format("%-52s %8.4f\n", "observed / predicted", root_mean_variance(splits) / predicted);
   return text;
 }
 
@@ -117,7 +81,7 @@ constexpr std::array<const char*, 4> names{"f_ss", "f_sp", "f_ps", "f_pp"};
 constexpr std::array members{&PolarizedBrdf::ss, &PolarizedBrdf::sp, &PolarizedBrdf::ps, &PolarizedBrdf::pp};
 
 /// The curves of one split.
-std::string curves_csv(const Options& o, const Split& split) {
+std::string curves_csv(const Options& o, const SubsetSplit& split) {
   std::string text = "theta_r_deg";
   for (const std::string name : names) {
     for (std::size_t k = 1; k <= split.curves.size(); ++k) text += "," + name + "_" + std::to_string(k);
@@ -136,11 +100,11 @@ std::string curves_csv(const Options& o, const Split& split) {
   return text + "\n";
 }
 
-std::string splits_csv(const Options& o, const std::vector<Split>& splits) {
+std::string splits_csv(const Options& o, const std::vector<SubsetSplit>& splits) {
   std::string text = "seed,mean_deviation,root_mean_variance,predicted,mean_distance,largest_distance,theta_r_deg\n";
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const SubsetStatistics& s = splits[i].statistics;
-    text += std::to_string(o.seed + i);
+    text += std::to_string(*splits[i].seed);
     for (const double value :
          {s.mean_deviation, s.root_mean_variance, splits[i].predicted, s.mean_distance, s.largest_distance}) {
       text += "," + exact(value);
@@ -150,14 +114,14 @@ std::string splits_csv(const Options& o, const std::vector<Split>& splits) {
   return text;
 }
 
-std::string csv(const Question&, const Options& o, const std::vector<Split>& splits) {
+std::string csv(const Question&, const Options& o, const std::vector<SubsetSplit>& splits) {
   return splits.size() == 1 ? curves_csv(o, splits.front()) : splits_csv(o, splits);
 }
 
-std::string json(const Question& q, const Options& o, const std::vector<Split>& splits) {
+std::string json(const Question& q, const Options& o, const std::vector<SubsetSplit>& splits) {
   nlohmann::ordered_json json{{"data", data_name(o.data)},
                               {"samples", q.samples.size()},
-                              {"parts", o.parts},
+                              {"parts", o.division.parts},
                               {"basis", to_string(o.basis.family)},
                               {"orders", {o.basis.orders.f11, o.basis.orders.other}},
                               {"rotation", to_string(o.basis.rotation)},
@@ -169,7 +133,7 @@ std::string json(const Question& q, const Options& o, const std::vector<Split>& 
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const SubsetStatistics& s = splits[i].statistics;
     nlohmann::ordered_json entry;
-    entry["seed"] = o.by_lot() ? nlohmann::ordered_json(o.seed + i) : nlohmann::ordered_json();
+    entry["seed"] = splits[i].seed ? nlohmann::ordered_json(*splits[i].seed) : nlohmann::ordered_json();
     entry["mean_deviation"] = s.mean_deviation;
     entry["root_mean_variance"] = s.root_mean_variance;
     entry["mean_distance"] = s.mean_distance;
@@ -177,7 +141,7 @@ std::string json(const Question& q, const Options& o, const std::vector<Split>& 
     entry["largest_at_theta_r_deg"] = o.theta_r_deg[s.largest_at];
     json["splits"].push_back(entry);
   }
-  json["observed"] = observed(splits);
+  json["observed"] = root_mean_variance(splits);
   json["predicted"] = splits.front().predicted;
   return printed(json);
 }
@@ -190,10 +154,13 @@ void require_valid(const Options& o) {
       throw std::invalid_argument("--range: " + shortest(theta) + " is not in [-90, 90] degrees");
   if (o.as_printed && !traits(o.basis.family).at_zero_azimuth)
     throw WrongUsage("--as-printed", "goes with --basis germer2017");
-  if (o.parts < 2 || o.parts > max_folds)
-    throw std::invalid_argument("--k " + std::to_string(o.parts) + ": is not in 2..." + std::to_string(max_folds));
-  if (o.splits < 1) throw std::invalid_argument("--splits 0: must be at least 1");
-  if (o.splits > 10000) throw std::invalid_argument("--splits " + std::to_string(o.splits) + ": at most 10000");
+  if (o.division.parts < 2 || o.division.parts > max_folds)
+    throw std::invalid_argument("--k " + std::to_string(o.division.parts) + ": is not in 2..." +
+                                std::to_string(max_folds));
+  if (o.division.splits < 1) throw std::invalid_argument("--splits 0: must be at least 1");
+  if (o.division.splits > max_splits)
+    throw std::invalid_argument("--splits " + std::to_string(o.division.splits) + ": at most " +
+                                std::to_string(max_splits));
   require_kept(o.data, o.output, "data");
   require_kept(o.reference, o.output, "reference");
 }
@@ -215,31 +182,32 @@ double wavelength_of(const std::vector<Sample>& samples, const Options& o) {
 Question question(const Options& o) {
   std::optional<std::vector<double>> wavelengths_nm;
   if (o.wavelength_nm) wavelengths_nm = {*o.wavelength_nm};
-  Question q{samples_at(o.data, wavelengths_nm), 0, {}, {}};
+  Question q;
+  q.basis = o.basis;
+  q.fit = o.fit;
+  q.weights = o.weights;
+  q.samples = samples_at(o.data, wavelengths_nm);
   q.wavelength = wavelength_of(q.samples, o);
   std::vector<double> theta_r;
   for (const double theta : o.theta_r_deg) theta_r.push_back(radians(theta));
   q.geometries = in_plane(radians(o.theta_i_deg), theta_r);
-  if (!o.reference.empty()) q.reference = open_model(o.reference);
+  if (!o.reference.empty()) q.given = open_model(o.reference);
   return q;
 }
 
 void study(Options o) {
   require_valid(o);
   o.basis.rotation = o.as_printed ? Rotation::as_printed : Rotation::covariant;
-  const Question q = question(o);
-  std::vector<Split> splits;
+  Question q = question(o);
+  if (q.given) q.reference = &*q.given;
+  std::vector<SubsetSplit> splits;
   try {
-    for (int i = 0; i < o.splits; ++i) splits.push_back(split(q, o, o.seed + static_cast<unsigned long>(i)));
+    splits = split_samples(q.samples, o.division, q);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(o.data) + ": " + error.what());
   }
   Model range;
-  range.validity.wavelengths = {q.wavelength};
-  for (const Sample& s : q.samples) {
-    range.validity.theta_i_max = std::max(range.validity.theta_i_max.value_or(0), s.geometry.incident.theta);
-    range.validity.theta_r_max = std::max(range.validity.theta_r_max.value_or(0), s.geometry.reflected.theta);
-  }
+  range.validity = splits.front().validity;
   warn_of_directions(range, q, data_name(o.data));
   if (q.reference) warn_of_directions(*q.reference, q, base_name(o.reference));
   write_text(o.output, (o.format == Format::text ? text : o.format == Format::csv ? csv : json)(q, o, splits));
@@ -262,11 +230,11 @@ constexpr const char* footer =
 Run subsets_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
-  add_option(app, "--k", o->parts, whole_number, "K", "Number of parts [3]");
-  add_flag(app, "--random", o->random, "Divide by lot; else every K-th sample is of one part");
-  add_option(app, "--splits", o->splits, whole_number, "N",
+  add_option(app, "--k", o->division.parts, whole_number, "K", "Number of parts [3]");
+  add_flag(app, "--random", o->division.random, "Divide by lot; else every K-th sample is of one part");
+  add_option(app, "--splits", o->division.splits, whole_number, "N",
              "Divide by lot as often as this, with seeds S, S+1, ... [1]");
-  add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the lot [0]");
+  add_option(app, "--seed", o->division.seed, seed, "S", "Whole number that chooses the lot [0]");
   add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM", "Of the samples, in nm, if there are several");
   add_option(app, "--theta-i", o->theta_i_deg, number, "DEG", "Polar angle of incidence [45]");
   add_option(app, "--range", o->theta_r_deg, range_from, "FROM:TO:STEP", "Polar angles of the detector [-60:60:1]");

@@ -5,6 +5,7 @@
 /// degrees of freedom, and what all parts share (scale, angles, misfit of the model) does not show in it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,5 +62,38 @@ SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const
 /// parts is √k times that of the fit to all, and more by √(n / (n − p)) or so where a part has only n samples for p
 /// coefficients of f11. Throws std::invalid_argument as subset_statistics does.
 double relative_rms(const PolarizedCurve& uncertainty, const PolarizedCurve& reference);
+
+/// How samples are divided: dealt in turn, or by lot as often as there are splits, with seeds that count from `seed`.
+struct Division {
+  int parts = 3, splits = 1;
+  bool random = false;
+  unsigned long seed = 0;
+  bool by_lot() const { return random || splits > 1; }
+};
+/// What is asked of each division of samples of one wavelength (micrometres).
+struct SubsetQuestion {
+  double wavelength = 0;
+  std::vector<Geometry> geometries;
+  const Model* reference = nullptr;  ///< what all is relative to; null: the fit to all samples
+  Basis basis;
+  FitOptions fit;
+  Weights weights = Weights::none;
+};
+struct SubsetSplit {
+  std::optional<unsigned long> seed;      ///< of the lot
+  std::vector<PolarizedCurve> curves;     ///< of the fit to each part
+  PolarizedCurve reference, uncertainty;  ///< of the fit to one part, as the covariance of the fit to all says
+  SubsetStatistics statistics;
+  double predicted = 0;  ///< relative_rms of the uncertainty
+  Validity validity;     ///< of the fit to all
+};
+/// Throws std::invalid_argument for fewer splits than 1 or more than max_splits, and as folds_by_row(), fit_parts(),
+/// polarized_curve() and subset_statistics() do.
+std::vector<SubsetSplit> split_samples(std::span<const Sample> samples, const Division& division,
+                                       const SubsetQuestion& question);
+inline constexpr int max_splits = 10000;
+
+/// Root mean square over splits of their root_mean_variance: what `predicted` of any of them says.
+double root_mean_variance(std::span<const SubsetSplit> splits);
 
 }  // namespace mmbrdf
