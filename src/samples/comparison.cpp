@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/samples/comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -77,6 +79,16 @@ Comparison compare(const Model& model, std::span<const Sample> samples) {
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
                    std::span<const Geometry> geometries) {
   return compare(first, simulate(second, wavelengths, geometries));
+}
+
+std::vector<double> common_wavelengths(const Model& first, const Model& second) {
+  const std::vector<double>&a = first.validity.wavelengths, &b = second.validity.wavelengths;
+  if (a.empty() || b.empty()) return a.empty() ? b : a;
+  std::vector<double> common;
+  std::copy_if(a.begin(), a.end(), std::back_inserter(common), [&](double one) {
+    return std::any_of(b.begin(), b.end(), [=](double other) { return same_wavelength(one, other); });
+  });
+  return common;
 }
 
 double polarization_rms(const Comparison& comparison) {

@@ -61,6 +61,14 @@ RC_GTEST_PROP(Comparison, OfTwoModelsTheOtherWayRoundHasTheOtherSign, (unsigned 
   }
 }
 
+TEST(Comparison, IsAtTheWavelengthsThatBothModelsKnow) {
+  const Model all = material("ptfe"), one = material("ptfe-532");
+  EXPECT_EQ(common_wavelengths(all, one), std::vector{0.532});
+  EXPECT_TRUE(common_wavelengths(material("ptfe-351"), one).empty());
+  EXPECT_EQ(common_wavelengths(Model{}, one), std::vector{0.532});
+  EXPECT_EQ(common_wavelengths(all, Model{}), all.validity.wavelengths);
+}
+
 TEST(Comparison, RefusesWhatHasNoAnswer) {
   const Model model = material("ptfe-532");
   EXPECT_NE(message_of([&] { compare(model, {}); }).find("no samples"), std::string::npos);

@@ -29,17 +29,6 @@ struct Options {
   bool as_printed = false;
 };
 
-/// The wavelengths that both models know; what one does not know is left to the other.
-std::vector<double> common_wavelengths(const Model& first, const Model& second) {
-  const std::vector<double>&a = first.validity.wavelengths, &b = second.validity.wavelengths;
-  if (a.empty() || b.empty()) return a.empty() ? b : a;
-  std::vector<double> common;
-  std::copy_if(a.begin(), a.end(), std::back_inserter(common), [&](double one) {
-    return std::any_of(b.begin(), b.end(), [=](double other) { return same_wavelength(one, other); });
-  });
-  return common;
-}
-
 std::vector<double> wavelengths_of(const Model& first, const Model& second, const Options& options) {
   if (options.wavelengths_nm) return micrometres(*options.wavelengths_nm);
   std::vector<double> common = common_wavelengths(first, second);

@@ -42,6 +42,10 @@ Comparison compare(const Model& model, std::span<const Sample> samples);
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
                    std::span<const Geometry> geometries);
 
+/// The wavelengths to which both models were fitted; what one does not know is left to the other. Empty: neither knows,
+/// or they share none.
+std::vector<double> common_wavelengths(const Model& first, const Model& second);
+
 /// Root mean square over the 15 normalised elements.
 double polarization_rms(const Comparison& comparison);
 
