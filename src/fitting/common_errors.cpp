@@ -77,6 +77,19 @@ void add_sample(std::vector<Normal>& normals, const Model& model, const MuellerG
   }
 }
 
+/// There must be a covariance to add to.
+void require_covariance(const FitResult& fitted) {
+  for (std::size_t b = 0; b < fitted.model.blocks.size(); ++b) {
+    const FittedBlock& block = fitted.model.blocks[b];
+    if (block.covariance.empty())
+      throw std::invalid_argument("block " + block.block.name +
+                                  " has no covariance to which that of the instrument could be added: " +
+                                  counted(fitted.solutions[b].rows, "row") + " for " +
+                                  counted(static_cast<long>(block.coefficients.size()), "coefficient") +
+                                  " leave no degrees of freedom; take lower orders, or more samples");
+  }
+}
+
 }  // namespace
 
 std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::span<const Sample> samples) {
@@ -130,6 +143,7 @@ void require_measured_by(std::span<const Sample> samples, const Calibration& ins
 void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Basis& basis, Weights weights,
                     const Calibration& instrument, const std::string& name) {
   require_measured_by(samples, instrument, name);
+  require_covariance(fitted);
   const Reduction reduction(instrument.polarimeter, instrument.covariance);
   add_common_errors(fitted.model, samples, instrument_errors(reduction, samples),
                     fit_weights(samples, basis, fitted, weights));

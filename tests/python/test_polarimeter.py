@@ -3,6 +3,8 @@
 
 import csv
 import json
+import os
+import subprocess
 import warnings
 
 import numpy as np
@@ -227,3 +229,50 @@ def test_what_cannot_be_calibrated_or_reduced_is_refused(chain, tmp_path):
         mmbrdf.fit(elsewhere, orders=(3, 2), instrument=instrument)
     with pytest.raises(ValueError, match="solid"):
         mmbrdf.reduce(folder / "raw.csv", linear, solid_angle=-1)
+
+
+def test_a_fit_as_printed_has_the_uncertainty_of_its_instrument(chain):
+    """Refitted with each error of the instrument in the data, coefficients move as the covariance added says."""
+    goniometer, folder, model = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    polarimeter, geometry = instrument.polarimeter, mmbrdf.random_geometries(200, seed=2)
+    true = model.evaluate(532, *geometry, frame="scattering_plane")
+
+    def fitted(matrices, **options):
+        data = mmbrdf.Dataset(532, *geometry, matrices, frame="scattering_plane")
+        return mmbrdf.fit(data, "germer2017", (3, 2), **options).model
+
+    def added(**options):
+        before, after = fitted(true, **options), fitted(true, instrument=instrument, **options)
+        assert after.provenance["instrument"] == "references.csv" and after.as_printed == before.as_printed
+        return [b.covariance - a.covariance for a, b in zip(before.blocks, after.blocks, strict=True)]
+
+    here, part = added(as_printed=True), 1e-3
+    expected = [np.zeros_like(one) for one in here]
+    coefficients = [block.coefficients.ravel() for block in fitted(true, as_printed=True).blocks]
+    variances, errors = np.linalg.eigh(instrument.covariance)
+    for variance, error in zip(variances, errors.T, strict=True):
+        generator, analyzer = (part * np.sqrt(max(variance, 0)) * error).reshape(2, -1, 4)
+        other = mmbrdf.Polarimeter(polarimeter.generator + generator, polarimeter.analyzer + analyzer)
+        moved = fitted(other.reduce(polarimeter.readings(true)), as_printed=True)
+        for total, before, after in zip(expected, coefficients, moved.blocks, strict=True):
+            change = (after.coefficients.ravel() - before) / part
+            total += np.outer(change, change)
+    for one, there in zip(here, expected, strict=True):
+        np.testing.assert_allclose(one, there, rtol=0, atol=5e-3 * there.max())
+    turned = zip(added(), expected, strict=True)  # has other rows
+    assert any(np.abs(one - there).max() > 0.1 * there.max() for one, there in turned)
+
+
+def test_a_fit_without_degrees_of_freedom_has_no_place_for_an_instrument(chain, tmp_path):
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    instrument.save(tmp_path / "instrument.json")
+    data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle)[:2]
+    data.save(tmp_path / "data.csv")
+    with pytest.raises(ValueError) as refused:
+        mmbrdf.fit(data, orders=(1, 0), instrument=instrument)
+    assert "block 11 has no covariance to which that of the instrument could be added: 2 rows" in str(refused.value)
+    command = [os.environ["MMBRDF_PROGRAM"], "fit", "data.csv", "--orders", "1,0", "--instrument", "instrument.json"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (1, f"mmbrdf: data.csv: {refused.value}\n")

@@ -93,27 +93,12 @@ void require_instrument_of(std::span<const Sample> samples, const Calibration& i
   }
 }
 
-/// There must be a covariance to add to: names the options that leave one.
-void require_covariance(const FitResult& result) {
-  for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
-    const FittedBlock& fitted = result.model.blocks[b];
-    if (fitted.covariance.empty()) {
-      throw std::invalid_argument(
-          "block " + fitted.block.name +
-          " has no covariance to which --instrument could add: " + counted(result.solutions[b].rows, "row") + " for " +
-          counted(static_cast<long>(fitted.coefficients.size()), "coefficient") +
-          " leave no degrees of freedom; take lower --orders, or more samples");
-    }
-  }
-}
-
 /// Adds what the instrument is uncertain by, which is the same error in all its samples.
 void add_instrument(FitResult& result, std::span<const Sample> samples, const Options& options) {
   const Calibration instrument = load_instrument(options.instrument);
   const std::string name = base_name(options.instrument);
   heed(judged(instrument), name);
   require_instrument_of(samples, instrument, name);
-  require_covariance(result);
   mmbrdf::add_instrument(result, samples, options.basis, options.weights, instrument, name);
 }
 
