@@ -107,6 +107,25 @@ Doubles doubles(const char* name, const Given& given) {
   return Doubles(array);
 }
 
+std::vector<double> numbers(const char* name, const Given& given) {
+  const Broadcast broadcast({{name, given}});
+  std::vector<double> result(broadcast.size());
+  broadcast.gather(0, 0, result.size(), result.data());
+  return result;
+}
+
+py::array_t<double> array_of(const Mueller& matrix) {
+  py::array_t<double> result({4, 4});
+  Layout<Mueller>::store(matrix, result.mutable_data());
+  return result;
+}
+
+py::array_t<double> array_of(const std::vector<Mueller>& matrices) {
+  py::array_t<double> result({static_cast<py::ssize_t>(matrices.size()), py::ssize_t{4}, py::ssize_t{4}});
+  for (std::size_t i = 0; i < matrices.size(); ++i) Layout<Mueller>::store(matrices[i], result.mutable_data() + 16 * i);
+  return result;
+}
+
 Broadcast::Broadcast(std::vector<Operand> operands) : operands_(std::move(operands)) {
   for (const Operand& operand : operands_) widen(shape_, outer_shape(operand), operands_);
   for (const py::ssize_t length : shape_) size_ *= static_cast<std::size_t>(length);

@@ -30,6 +30,9 @@ using Doubles = py::array_t<double, py::array::forcecast>;
 /// integers, floating-point numbers or truth values, and ValueError where something is masked: it would count.
 Doubles doubles(const char* name, const Given& given);
 
+/// A number, or an array of numbers, one behind the other.
+std::vector<double> numbers(const char* name, const Given& given);
+
 /// An argument: `core` are the lengths of its last axes, at most two, which do not broadcast. {4, 4} for matrices.
 struct Operand {
   Operand(const char* its_name, const Given& given, std::vector<py::ssize_t> its_core = {})
@@ -129,6 +132,10 @@ py::array_t<Scalar> new_array(const Broadcast& broadcast, const std::vector<py::
 inline py::object unwrapped(const py::array& array) {
   return array.ndim() == 0 ? array.attr("__getitem__")(py::tuple()) : py::object(array);
 }
+
+/// Arrays (4, 4) and (n, 4, 4) of their own.
+py::array_t<double> array_of(const Mueller& matrix);
+py::array_t<double> array_of(const std::vector<Mueller>& matrices);
 
 /// f(position) at each position, without the GIL, on all cores if there are many.
 template <class F>

@@ -68,6 +68,20 @@ void require_place(const std::filesystem::path& path);
 /// Warns, as Python warnings do, that `count` of `size` questions to a model lie outside its fitted range. None: not.
 void warn_outside(const ModelObject& model, unsigned reasons, std::size_t count, std::size_t size);
 
+/// The named tuple mmbrdf.<type> of these values.
+template <class... Values>
+py::object record(const char* type, Values&&... values) {
+  return py::module_::import("mmbrdf").attr(type)(std::forward<Values>(values)...);
+}
+
+/// make(one) of each, as a tuple.
+template <class Sequence, class Make>
+py::tuple tuple_of(const Sequence& all, Make make) {
+  py::tuple result(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) result[i] = make(all[i]);
+  return result;
+}
+
 /// An array that shows memory of `owner` without a copy, and cannot be written to.
 template <class T>
 py::array_t<T> view(const T* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, py::handle owner) {
@@ -82,6 +96,8 @@ ModelClass bind_model(py::module_& m);
 void bind_evaluation(ModelClass& model);
 void bind_dataset(py::module_& m);
 void bind_fit(py::module_& m);
+void bind_selection(py::module_& m);
+void bind_diagnostics(py::module_& m);
 void bind_mueller(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_apertures(py::module_& m);

@@ -108,7 +108,7 @@ DatasetPointer samples_of(const std::filesystem::path& path) {
   return without_gil([&] { return pointer(read_samples(path)); });
 }
 
-py::tuple geometry_of(const std::vector<Geometry>& geometries) {
+py::object geometry_of(const std::vector<Geometry>& geometries) {
   std::array<py::array_t<double>, 4> angles;
   for (py::array_t<double>& one : angles) one = py::array_t<double>(static_cast<py::ssize_t>(geometries.size()));
   for (std::size_t i = 0; i < geometries.size(); ++i) {
@@ -116,7 +116,7 @@ py::tuple geometry_of(const std::vector<Geometry>& geometries) {
     const std::array values{g.incident.theta, g.incident.phi, g.reflected.theta, g.reflected.phi};
     for (std::size_t a = 0; a < 4; ++a) angles[a].mutable_data()[i] = degrees(values[a]);
   }
-  return py::module_::import("mmbrdf").attr("Geometry")(angles[0], angles[1], angles[2], angles[3]);
+  return record("Geometry", angles[0], angles[1], angles[2], angles[3]);
 }
 
 std::vector<Geometry> all_geometries(const Given& theta_i, const Given& phi_i, const Given& theta_r,
@@ -132,14 +132,6 @@ DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wa
   const std::vector<Geometry> geometries = geometries_from(angles);
   return without_gil(
       [&] { return pointer(simulate(model.model(), micrometres(wavelengths_nm), geometries, speckle, seed)); });
-}
-
-/// A number, or a sequence of numbers.
-std::vector<double> numbers(const Given& values) {
-  const Broadcast broadcast({{"wavelength_nm", values}});
-  std::vector<double> result(broadcast.size());
-  broadcast.gather(0, 0, result.size(), result.data());
-  return result;
 }
 
 /// The bits of all samples, behind what tells how they are laid out.
@@ -228,7 +220,7 @@ void bind_class(py::module_& m) {
       .def(
           "at_wavelengths",
           [](const Dataset& d, const Given& nm) {
-            return pointer(at_wavelengths(d.samples, micrometres(numbers(nm))));
+            return pointer(at_wavelengths(d.samples, micrometres(numbers("wavelength_nm", nm))));
           },
           py::arg("wavelength_nm"), "Only the samples at these. Raises ValueError if there are none at one of them.")
       .def(
@@ -249,7 +241,7 @@ void bind_samples(py::module_& m) {
   m.def(
       "simulate",
       [](const ModelObject& model, const Given& nm, const py::sequence& geometry, double speckle, unsigned long seed) {
-        return simulated(model, numbers(nm), geometry, speckle, seed);
+        return simulated(model, numbers("wavelength_nm", nm), geometry, speckle, seed);
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("speckle") = 0.0,
       py::arg("seed") = 0,
@@ -271,7 +263,7 @@ void bind_geometries(py::module_& m) {
   m.def(
       "in_plane",
       [](double theta_i, const Given& theta_r) {
-        std::vector<double> angles = numbers(theta_r);
+        std::vector<double> angles = numbers("theta_r_deg", theta_r);
         for (double& angle : angles) angle = radians(angle);
         return geometry_of(in_plane(radians(theta_i), angles));
       },
@@ -287,6 +279,11 @@ std::vector<Geometry> geometries_from(const py::sequence& angles) {
     throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
                                 " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
   return all_geometries(angles[0], angles[1], angles[2], angles[3]);
+}
+
+py::object geometry_object(const Geometry& g) {
+  return record("Geometry", degrees(g.incident.theta), degrees(g.incident.phi), degrees(g.reflected.theta),
+                degrees(g.reflected.phi));
 }
 
 py::object dataset_object(std::vector<Sample> samples) { return py::cast(pointer(std::move(samples))); }

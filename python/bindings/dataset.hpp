@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::python {
@@ -21,5 +22,11 @@ py::object dataset_object(std::vector<Sample> samples);
 
 /// From four arrays that broadcast: theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg.
 std::vector<Geometry> geometries_from(const py::sequence& angles);
+
+/// Directions in degrees: the Python object Geometry of numbers.
+py::object geometry_object(const Geometry& geometry);
+
+/// The Python object PolarizedBrdf of four arrays.
+py::object polarized(const std::vector<PolarizedBrdf>& curve);
 
 }  // namespace mmbrdf::python

@@ -39,16 +39,6 @@ py::array_t<double> array_of(const std::vector<Stokes>& states) {
   return result;
 }
 
-std::vector<double> numbers(const Given& values, const char* name, double factor = 1) {
-  const Broadcast broadcast({{name, values}});
-  std::vector<double> result(broadcast.size());
-  broadcast.gather(0, 0, result.size(), result.data());
-  for (double& value : result) value *= factor;
-  return result;
-}
-
-constexpr double degree = radians(1);
-
 Operand readings_operand(const Polarimeter& p, const Given& readings, const char* name) {
   return {name, readings, {static_cast<py::ssize_t>(p.analyzer.size()), static_cast<py::ssize_t>(p.generator.size())}};
 }
@@ -216,7 +206,9 @@ void bind_instrument(py::module_& m) {
   m.def(
       "ideal_polarimeter",
       [](double retardance, const Given& azimuths) {
-        return ideal_polarimeter(radians(retardance), numbers(azimuths, "azimuths_deg", degree));
+        std::vector<double> angles = numbers("azimuths_deg", azimuths);
+        for (double& angle : angles) angle *= radians(1);
+        return ideal_polarimeter(radians(retardance), angles);
       },
       py::arg("retardance_deg"), py::arg("azimuths_deg"),
       "A polarizer and behind it a retarder at each of these azimuths; the analyzer mirrors it.");

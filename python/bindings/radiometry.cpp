@@ -4,12 +4,13 @@
 
 #include <pybind11/stl.h>
 
-#include <functional>
-#include <map>
+#include <array>
 #include <mutex>
+#include <string>
 
 #include "dataset.hpp"
 #include "mmbrdf/fitting/subsets.hpp"
+#include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "question.hpp"
@@ -20,33 +21,10 @@ namespace {
 
 using Wavelength = std::optional<Given>;
 
-/// What was made for each wavelength (micrometres). May be asked by many threads.
-template <class T>
-class ForWavelengths {
- public:
-  explicit ForWavelengths(std::function<T(double)> make) : make_(std::move(make)) {}
-  const T& at(double wavelength) {
-    const std::lock_guard lock(mutex_);
-    const auto known = made_.find(wavelength);
-    return known != made_.end() ? known->second : made_.emplace(wavelength, make_(wavelength)).first->second;
-  }
-
- private:
-  std::function<T(double)> make_;
-  std::mutex mutex_;
-  std::map<double, T> made_;
-};
-
-using Uncertainties = ForWavelengths<PreparedUncertainty>;
-
-Uncertainties uncertainties_of(const ModelObject& o) {
-  return Uncertainties([&o](double wavelength) { return prepare_uncertainty(o.model(), wavelength); });
-}
-
 /// Which of the two directions of a geometry is asked for; the other is anywhere.
 enum class Side { incident, reflected };
 
-/// f(wavelength in micrometres, direction, Stokes vector) over arrays.
+/// f(wavelength in micrometres, direction, Stokes vector or null) over arrays.
 template <class F>
 py::object over_directions(const ModelObject& model, Side side, const Wavelength& nm, const Given& theta,
                            const Given& phi, const std::optional<Given>& stokes, F f) {
@@ -61,80 +39,77 @@ py::object over_directions(const ModelObject& model, Side side, const Wavelength
     const Direction direction = direction_from_degrees(broadcast.number(1, i), broadcast.number(2, i));
     const double wavelength = micrometres(broadcast.number(0, i));
     range.count(wavelength, incident ? Geometry{direction, {}} : Geometry{{}, direction});
-    return f(wavelength, direction, stokes ? broadcast.at<4>(3, i) : Stokes{1, 0, 0, 0});
+    const Stokes light = stokes ? broadcast.at<4>(3, i) : Stokes{};
+    return f(wavelength, direction, stokes ? &light : nullptr);
   });
   range.warn(broadcast.size());
   return result;
 }
 
-/// f(wavelength in micrometres) over an array of wavelengths.
+/// The same of a quantity that has no direction.
 template <class F>
 py::object over_wavelengths(const ModelObject& model, const Wavelength& nm, F f) {
   return over_directions(model, Side::incident, nm, py::float_(0.0), py::float_(0.0), {},
-                         [&](double wavelength, const Direction&, const Stokes&) { return f(wavelength); });
+                         [&](double wavelength, const Direction&, const Stokes*) { return f(wavelength); });
 }
 
-void bind_directional_hemispherical(py::module_& m) {
-  m.def(
-      "directional_hemispherical_reflectance",
-      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
-         const std::optional<Given>& stokes) {
-        return over_directions(o, Side::incident, nm, theta, phi, stokes,
-                               [&](double wavelength, const Direction& incident, const Stokes& light) {
-                                 return stokes ? directional_hemispherical_reflectance(o.model(), wavelength, incident,
-                                                                                       light)
-                                               : directional_hemispherical_reflectance(o.model(), wavelength, incident);
-                               });
-      },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg") = 0.0, py::arg("phi_i_deg") = 0.0,
-      py::arg("stokes") = py::none(),
-      "Reflected per incident flux, over the whole hemisphere, for unpolarized light or incident light `stokes`\n"
-      "(..., 4) in the sp frame. All arguments broadcast.");
-  m.def(
-      "directional_hemispherical_uncertainty",
-      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
-         const std::optional<Given>& stokes) {
-        Uncertainties u = uncertainties_of(o);
-        return over_directions(o, Side::incident, nm, theta, phi, stokes,
-                               [&](double wavelength, const Direction& incident, const Stokes& light) {
-                                 return directional_hemispherical_uncertainty(o.model(), u.at(wavelength), incident,
-                                                                              light);
-                               });
-      },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg") = 0.0, py::arg("phi_i_deg") = 0.0,
-      py::arg("stokes") = py::none(), "Its standard uncertainty, of the fit and, where it has one, its instrument.");
-}
+constexpr const char* uncertainty_doc = "Its standard uncertainty, of the fit and, where it has one, its instrument.";
 
-void bind_hemispherical_directional(py::module_& m) {
-  m.def(
-      "hemispherical_directional_reflectance",
-      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
-         const std::optional<Given>& analyzer) {
-        return over_directions(
-            o, Side::reflected, nm, theta, phi, analyzer,
-            [&](double wavelength, const Direction& reflected, const Stokes& passed) {
-              return analyzer ? hemispherical_directional_reflectance(o.model(), wavelength, reflected, passed)
-                              : hemispherical_directional_reflectance(o.model(), wavelength, reflected);
-            });
-      },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_r_deg") = 0.0, py::arg("phi_r_deg") = 0.0,
-      py::arg("analyzer") = py::none(),
-      "Radiance into a direction under uniform unpolarized illumination, per that of the perfect diffuser; seen "
-      "through\n"
-      "an analyzer that passes the light `analyzer` (..., 4), in the sp frame.");
-  m.def(
-      "hemispherical_directional_uncertainty",
-      [](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
-         const std::optional<Given>& analyzer) {
-        Uncertainties u = uncertainties_of(o);
-        return over_directions(o, Side::reflected, nm, theta, phi, analyzer,
-                               [&](double wavelength, const Direction& reflected, const Stokes& passed) {
-                                 return hemispherical_directional_uncertainty(o.model(), u.at(wavelength), reflected,
-                                                                              passed);
-                               });
-      },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_r_deg") = 0.0, py::arg("phi_r_deg") = 0.0,
-      py::arg("analyzer") = py::none(), "Its standard uncertainty, of the fit and, where it has one, its instrument.");
+/// A reflectance between the hemisphere and a direction.
+struct Reflectance {
+  std::string name;
+  Side side;
+  double (*unpolarized)(const Model&, double, const Direction&);
+  double (*value)(const Model&, double, const Direction&, const Stokes&);
+  double (*uncertainty)(const Model&, const PreparedUncertainty&, const Direction&, const Stokes&);
+  const char* doc;
+
+  py::object values(const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+                    const std::optional<Given>& stokes) const {
+    return over_directions(o, side, nm, theta, phi, stokes,
+                           [&](double wavelength, const Direction& direction, const Stokes* light) {
+                             return light ? value(o.model(), wavelength, direction, *light)
+                                          : unpolarized(o.model(), wavelength, direction);
+                           });
+  }
+
+  py::object uncertainties(const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+                           const std::optional<Given>& stokes) const {
+    std::mutex mutex;
+    AtWavelengths prepared([&](double wavelength) { return prepare_uncertainty(o.model(), wavelength); });
+    const auto at = [&](double wavelength) -> const PreparedUncertainty& {
+      const std::lock_guard lock(mutex);
+      return prepared(wavelength);
+    };
+    return over_directions(o, side, nm, theta, phi, stokes,
+                           [&](double wavelength, const Direction& direction, const Stokes* light) {
+                             return uncertainty(o.model(), at(wavelength), direction, light ? *light : Stokes{1});
+                           });
+  }
+};
+
+const std::array reflectances{
+    Reflectance{"directional_hemispherical", Side::incident, directional_hemispherical_reflectance,
+                directional_hemispherical_reflectance, directional_hemispherical_uncertainty,
+                "Reflected per incident flux, over the whole hemisphere, for unpolarized light or incident light "
+                "`stokes`\n(..., 4) in the sp frame. All arguments broadcast."},
+    Reflectance{"hemispherical_directional", Side::reflected, hemispherical_directional_reflectance,
+                hemispherical_directional_reflectance, hemispherical_directional_uncertainty,
+                "Radiance into a direction under uniform unpolarized illumination, per that of the perfect diffuser; "
+                "seen through\nan analyzer that passes the light `analyzer` (..., 4), in the sp frame."}};
+
+void bind_directional(py::module_& m, const Reflectance& one) {
+  const bool incident = one.side == Side::incident;
+  const auto define = [&](const char* what, auto method, const char* doc) {
+    m.def((one.name + what).c_str(),
+          [&one, method](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+                         const std::optional<Given>& stokes) { return (one.*method)(o, nm, theta, phi, stokes); },
+          py::arg("model"), py::arg("wavelength_nm") = py::none(),
+          py::arg(incident ? "theta_i_deg" : "theta_r_deg") = 0.0, py::arg(incident ? "phi_i_deg" : "phi_r_deg") = 0.0,
+          py::arg(incident ? "stokes" : "analyzer") = py::none(), doc);
+  };
+  define("_reflectance", &Reflectance::values, one.doc);
+  define("_uncertainty", &Reflectance::uncertainties, uncertainty_doc);
 }
 
 void bind_bihemispherical(py::module_& m) {
@@ -151,8 +126,7 @@ void bind_bihemispherical(py::module_& m) {
         return over_wavelengths(
             o, nm, [&](double w) { return bihemispherical_uncertainty(o.model(), prepare_uncertainty(o.model(), w)); });
       },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(),
-      "Its standard uncertainty, of the fit and, where it has one, its instrument.");
+      py::arg("model"), py::arg("wavelength_nm") = py::none(), uncertainty_doc);
   m.def(
       "reflectance_factor",
       [](const Given& f11) {
@@ -173,58 +147,44 @@ py::tuple averaged(const ModelObject& o, std::optional<double> nm, const Apertur
   Range range(o);
   range.count(wavelength, {{source.largest_theta(), 0}, {receiver.largest_theta(), 0}});
   range.warn(1);
-  py::array_t<double> mueller({4, 4});
-  Layout<Mueller>::store(result.mueller, mueller.mutable_data());
-  return py::make_tuple(mueller, result.error, result.converged);
+  return py::make_tuple(array_of(result.mueller), result.error, result.converged);
 }
 
-/// Geometries of a curve. Warns of those outside the fitted range.
-std::vector<Geometry> curve_geometries(const ModelObject& o, double wavelength, const py::sequence& angles) {
-  std::vector<Geometry> geometries = geometries_from(angles);
-  Range range(o);
-  for (const Geometry& g : geometries) range.count(wavelength, g);
-  range.warn(geometries.size());
-  return geometries;
+using CurveOf = PolarizedCurve (*)(const Model&, double, std::span<const Geometry>);
+
+void bind_curve(py::module_& m, const char* name, CurveOf curve, const char* doc) {
+  m.def(
+      name,
+      [curve](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
+        const double wavelength = o.wavelength(nm);
+        const std::vector<Geometry> geometries = geometries_from(angles);
+        Range range(o);
+        range.count(wavelength, geometries);
+        range.warn(geometries.size());
+        return polarized(curve(o.turned(as_printed), wavelength, geometries));
+      },
+      py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
+      doc);
 }
 
-py::object polarized(const PolarizedCurve& curve) {
+}  // namespace
+
+py::object polarized(const std::vector<PolarizedBrdf>& curve) {
   std::array<py::array_t<double>, 4> columns;
   for (auto& column : columns) column = py::array_t<double>(static_cast<py::ssize_t>(curve.size()));
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const std::array values{curve[i].ss, curve[i].sp, curve[i].ps, curve[i].pp};
     for (std::size_t c = 0; c < 4; ++c) columns[c].mutable_data()[i] = values[c];
   }
-  return py::module_::import("mmbrdf").attr("PolarizedBrdf")(columns[0], columns[1], columns[2], columns[3]);
+  return record("PolarizedBrdf", columns[0], columns[1], columns[2], columns[3]);
 }
-
-void bind_curves(py::module_& m) {
-  m.def(
-      "polarized_curve",
-      [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
-        const double wavelength = o.wavelength(nm);
-        const std::vector<Geometry> geometries = curve_geometries(o, wavelength, angles);
-        return polarized(polarized_curve(o.turned(as_printed), wavelength, geometries));
-      },
-      py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
-      "PolarizedBrdf(ss, sp, ps, pp) in sr^-1 at each geometry, as in the paper's Fig. 6.");
-  m.def(
-      "polarized_uncertainty",
-      [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
-        const double wavelength = o.wavelength(nm);
-        const std::vector<Geometry> geometries = curve_geometries(o, wavelength, angles);
-        return polarized(polarized_uncertainty(o.turned(as_printed), wavelength, geometries));
-      },
-      py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
-      "Its standard uncertainty, of the fit and, where it has one, its instrument.");
-}
-
-}  // namespace
 
 void bind_radiometry(py::module_& m) {
-  bind_directional_hemispherical(m);
-  bind_hemispherical_directional(m);
+  for (const Reflectance& one : reflectances) bind_directional(m, one);
   bind_bihemispherical(m);
-  bind_curves(m);
+  bind_curve(m, "polarized_curve", polarized_curve,
+             "PolarizedBrdf(ss, sp, ps, pp) in sr^-1 at each geometry, as in the paper's Fig. 6.");
+  bind_curve(m, "polarized_uncertainty", polarized_uncertainty, uncertainty_doc);
   m.def(
       "average", averaged, py::arg("model"), py::arg("wavelength_nm"), py::arg("source"), py::arg("receiver"),
       py::arg("tolerance") = 1e-10,
