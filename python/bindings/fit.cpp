@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From samples to a model, and how the two compare.
+// From samples to a model.
 #include "mmbrdf/fitting/fit.hpp"
 
 #include <pybind11/stl.h>
 
+#include <array>
 #include <stdexcept>
 
-#include "dataset.hpp"
+#include "fit.hpp"
 #include "instrument.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
-#include "mmbrdf/samples/comparison.hpp"
 
 namespace mmbrdf::python {
 
 namespace {
-
-/// A fit, and what it was asked for.
-struct Fitted : std::enable_shared_from_this<Fitted> {
-  Fitted(FitResult its_result, ModelPointer its_model) : result(std::move(its_result)), model(std::move(its_model)) {}
-  FitResult result;
-  ModelPointer model;
-};
-using FittedPointer = std::shared_ptr<Fitted>;
 
 struct Request {
   Basis basis;
@@ -30,16 +22,6 @@ struct Request {
   InstrumentPointer instrument;
   std::string name, attribution;
 };
-
-Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
-  const Family its_family = family_from(family);
-  if (as_printed && !traits(its_family).at_zero_azimuth)
-    throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
-  return {its_family,
-          {orders.first, orders.second},
-          disc_mapping_from(mapping),
-          as_printed ? Rotation::as_printed : Rotation::covariant};
-}
 
 /// Says from what and how the model was made.
 void sign(FitResult& result, const Request& request, std::size_t rows) {
@@ -67,7 +49,7 @@ FittedPointer fitted(const Dataset& data, const Request& request) {
     }
     sign(result, request, data.samples.size());
     auto model = std::make_shared<ModelObject>(result.model);
-    return std::make_shared<Fitted>(std::move(result), std::move(model));
+    return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
   });
 }
 
@@ -78,9 +60,9 @@ py::array matrices_of(const std::vector<Mueller>& matrices, const py::object& ow
 }
 
 py::array_t<double> rms_of(const Fitted& fitted) {
-  py::array_t<double> result({4, 4});
-  for (std::size_t e = 0; e < 16; ++e) result.mutable_data()[e] = fitted.result.elements[e].rms;
-  return result;
+  Mueller rms;
+  for (std::size_t e = 0; e < 16; ++e) rms.elements[e] = fitted.result.elements[e].rms;
+  return array_of(rms);
 }
 
 py::list noise_of(const Fitted& fitted) {
@@ -101,30 +83,6 @@ std::string representation(const Fitted& fitted) {
   return "<mmbrdf.FitResult: " + std::to_string(fitted.result.elements[0].rows) + " samples, rms of f11 " +
          formatted("{:.3g}", fitted.result.elements[0].rms) + ", of the other elements " +
          formatted("{:.3g}", polarization_rms(fitted.result)) + ">";
-}
-
-py::dict dict_of(const Difference& d) {
-  py::dict result;
-  result["rms"] = d.rms;
-  result["mean"] = d.mean;
-  result["largest"] = d.largest;
-  result["wavelength_nm"] = nanometres(d.wavelength);
-  result["theta_i_deg"] = degrees(d.geometry.incident.theta);
-  result["phi_i_deg"] = degrees(d.geometry.incident.phi);
-  result["theta_r_deg"] = degrees(d.geometry.reflected.theta);
-  result["phi_r_deg"] = degrees(d.geometry.reflected.phi);
-  return result;
-}
-
-py::dict compared(const ModelObject& model, const Dataset& data, bool as_printed) {
-  const Comparison comparison = without_gil([&] { return compare(model.turned(as_printed), data.samples); });
-  py::dict result;
-  result["samples"] = comparison.samples;
-  result["f11"] = dict_of(comparison.f11);
-  result["f11_relative"] = dict_of(comparison.f11_relative);
-  result["polarization_rms"] = polarization_rms(comparison);
-  for (std::size_t e = 1; e < 16; ++e) result[py::str("m" + element_name(e))] = dict_of(comparison.normalized[e]);
-  return result;
 }
 
 void bind_result(py::module_& m) {
@@ -161,6 +119,16 @@ constexpr const char* fit_doc =
 
 }  // namespace
 
+Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
+  const Family its_family = family_from(family);
+  if (as_printed && !traits(its_family).at_zero_azimuth)
+    throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
+  return {its_family,
+          {orders.first, orders.second},
+          disc_mapping_from(mapping),
+          as_printed ? Rotation::as_printed : Rotation::covariant};
+}
+
 void bind_fit(py::module_& m) {
   bind_result(m);
   m.def(
@@ -182,22 +150,6 @@ void bind_fit(py::module_& m) {
       py::arg("weights") = "none", py::arg("covariance") = "residuals", py::arg("minimum_norm") = false,
       py::arg("as_printed") = false, py::arg("instrument") = py::none(), py::arg("name") = "",
       py::arg("attribution") = "", fit_doc);
-  m.def(
-      "residuals",
-      [](const ModelObject& model, const Dataset& data, bool as_printed) {
-        const std::vector<Mueller> found =
-            without_gil([&] { return residuals(model.turned(as_printed), data.samples); });
-        py::array_t<double> result({static_cast<py::ssize_t>(found.size()), py::ssize_t{4}, py::ssize_t{4}});
-        for (std::size_t i = 0; i < found.size(); ++i) Layout<Mueller>::store(found[i], result.mutable_data() + 16 * i);
-        return result;
-      },
-      py::arg("model"), py::arg("data"), py::kw_only(), py::arg("as_printed") = false,
-      "Measured - model for each sample, (N, 4, 4) in the xy frame: element 11 of f11 in sr^-1, the others of\n"
-      "f_ij / f11.");
-  m.def(
-      "compare", compared, py::arg("model"), py::arg("data"), py::kw_only(), py::arg("as_printed") = false,
-      "How far samples are from a model: for f11 (sr^-1), f11_relative and each m_ij a dict of rms, mean, largest and\n"
-      "where that is.");
 }
 
 }  // namespace mmbrdf::python

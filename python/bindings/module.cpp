@@ -36,5 +36,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_radiometry(m);
   bind_polarimeter(m);
   bind_fit(m);
+  bind_selection(m);
+  bind_diagnostics(m);
   bind_report(m);
 }

@@ -25,6 +25,7 @@ from ._mmbrdf import Model as Model
 from ._mmbrdf import __version__ as __version__
 from ._mmbrdf import load_model as load_model
 from ._mmbrdf import read_samples as read_samples
+from ._results import *  # noqa: F403: what choosing, judging and comparing fits gives
 
 _Array = _np.ndarray
 

@@ -145,7 +145,7 @@ def test_a_fit_as_printed_is_evaluated_as_it_was_fitted(ptfe, tmp_path):
     f = model.evaluate(532, *data.geometry)
     np.testing.assert_allclose(data.f11 - f[:, 0, 0], result.residuals[:, 0, 0], rtol=0, atol=1e-15)
     np.testing.assert_allclose(mmbrdf.residuals(model, data), result.residuals, rtol=0, atol=0)
-    assert mmbrdf.compare(model, data)["m22"]["rms"] == pytest.approx(result.rms[1, 1], rel=1e-9)
+    assert mmbrdf.compare(model, data).normalized["22"].rms == pytest.approx(result.rms[1, 1], rel=1e-9)
     model.save(tmp_path / "model.json")
     for same in (mmbrdf.load(tmp_path / "model.json"), pickle.loads(pickle.dumps(model)), copy.deepcopy(model)):
         assert same.as_printed and same == model
@@ -183,11 +183,11 @@ def test_data_that_do_not_determine_a_model_are_refused(samples):
 def test_a_comparison_says_how_much_and_where(samples, ptfe):
     there = mmbrdf.compare(ptfe, samples)
     here = mmbrdf.residuals(ptfe, samples)
-    assert there["samples"] == 1824
-    assert there["f11"]["rms"] == pytest.approx(np.sqrt((here[:, 0, 0] ** 2).mean()), rel=1e-12)
+    assert there.samples == 1824
+    assert there.f11.rms == pytest.approx(np.sqrt((here[:, 0, 0] ** 2).mean()), rel=1e-12)
     worst = np.abs(here[:, 1, 1]).argmax()
-    assert there["m22"]["largest"] == pytest.approx(abs(here[worst, 1, 1]), rel=1e-12)
-    assert there["m22"]["theta_r_deg"] == pytest.approx(samples.theta_r_deg[worst])
+    assert there.normalized["22"].largest == pytest.approx(abs(here[worst, 1, 1]), rel=1e-12)
+    assert there.normalized["22"].theta_r_deg == pytest.approx(samples.theta_r_deg[worst])
 
 
 def test_estimated_noise_is_that_of_the_simulation(samples):

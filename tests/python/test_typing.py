@@ -25,6 +25,12 @@ names = model.evaluate(532, 45, 0, [0, 30], 180, as_xarray=True).dims
 u = model.evaluate_uncertainty(theta_i_deg=45, phi_i_deg=0, theta_r_deg=0, phi_r_deg=0)
 values = [part.f11 for part in data[:3]]
 fitted: mmbrdf.Model = mmbrdf.fit(data, weights="speckle", reflectance={532: 0.98}).model
+choice: mmbrdf.Selection = mmbrdf.select(data, orders_f11=(2, 7))
+error: float | None = choice.f11[0].cross_validation["angle"].rms
+spread: float = mmbrdf.subsets(data, reference=model).splits[0].curves[0].ss.mean()
+where: mmbrdf.Geometry = mmbrdf.model_diagnostics(model).margin_at
+most: float = mmbrdf.compare(model, fitted).normalized["22"].largest
+names_of_outliers = [one.element for one in mmbrdf.outliers(mmbrdf.sample_diagnostics(mmbrdf.fit(data), data))]
 """
 
 

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What choosing, judging and comparing fits gives: named tuples, so that a sequence of them makes a table.
+
+    pandas.DataFrame(mmbrdf.select(data).f11)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import NamedTuple as _NamedTuple
+
+import numpy as _np
+
+if _TYPE_CHECKING:
+    from . import Geometry, PolarizedBrdf
+
+_Array = _np.ndarray
+
+
+class HeldOut(_NamedTuple):
+    """How well a candidate predicts what it was not fitted to, each sample without its fold.
+
+    rms           over all samples; None: some fold leaves the model undetermined
+    worst         largest rms of one fold
+    worst_fold    which: 'fold 2', '30 degrees', '532 nm'
+    undetermined  why a fold could not be predicted, and which; '': all could
+    """
+
+    rms: float | None
+    worst: float | None
+    worst_fold: str | None
+    undetermined: str
+
+
+class Candidate(_NamedTuple):
+    """A model that select() has tried, of f11 or of the other elements.
+
+    order, powers     highest radial order, highest power of the wavelength
+    coefficients      how many it has; rank: how many of their combinations the data determine
+    condition         largest condition number of a block
+    rms, aic, bic     of the fit to all samples
+    cross_validation  HeldOut by what is left out: 'rows' or 'random', 'angle', 'wavelength'
+    refused           why it should not be used; None: it may
+    """
+
+    order: int
+    powers: int
+    coefficients: int
+    rank: int
+    condition: float
+    rms: float
+    aic: float
+    bic: float
+    cross_validation: dict[str, HeldOut]
+    refused: str | None
+
+
+class Selection(_NamedTuple):
+    """What select() recommends: fit(data, orders=selection.orders, powers=selection.powers).
+
+    orders, powers            None: no recommendation
+    f11, other                all candidates, by powers, then by order
+    reason_f11, reason_other  of the recommendation, or of there being none
+    note                      what the data do not allow to be left out; '': nothing
+    """
+
+    orders: tuple[int, int] | None
+    powers: int | None
+    f11: tuple[Candidate, ...]
+    other: tuple[Candidate, ...]
+    reason_f11: str
+    reason_other: str
+    note: str
+
+    def __repr__(self) -> str:
+        found = f"orders {self.orders}, powers {self.powers}" if self.orders else "no recommendation"
+        note = f"; {self.note}" if self.note else ""
+        return f"<mmbrdf.Selection: {found}; f11: {self.reason_f11}; others: {self.reason_other}{note}>"
+
+
+class SubsetSplit(_NamedTuple):
+    """One division of the samples: each part is fitted apart.
+
+    seed                of the lot; None: dealt in turn
+    curves              f_ss, f_sp, f_ps, f_pp of the fit to each part, in sr^-1
+    mean, deviation     of the curves; the standard deviation has as many degrees of freedom as parts, less one
+    uncertainty         of the fit to one part, as the covariance of the fit to all samples predicts it
+    reference           the fit to all samples, or the model that was given; what follows is relative to it
+    mean_deviation      mean of deviation; root_mean_variance: its root mean square
+    mean_distance       mean of |mean - 1|; largest_distance: the largest, at largest_at_theta_r_deg
+    """
+
+    seed: int | None
+    curves: tuple[PolarizedBrdf, ...]
+    mean: PolarizedBrdf
+    deviation: PolarizedBrdf
+    uncertainty: PolarizedBrdf
+    reference: PolarizedBrdf
+    mean_deviation: float
+    root_mean_variance: float
+    mean_distance: float
+    largest_distance: float
+    largest_at_theta_r_deg: float
+
+
+class Subsets(_NamedTuple):
+    """The subset method: what subsets() gives.
+
+    splits       one for each division
+    theta_r_deg  (N,), of the curves: positive is forward
+    observed     relative standard deviation of the fits, root mean square over all splits
+    predicted    the same as the covariance of one fit predicts it
+    """
+
+    splits: tuple[SubsetSplit, ...]
+    theta_r_deg: _Array
+    observed: float
+    predicted: float
+
+    def __repr__(self) -> str:
+        splits = f"{len(self.splits)} split{'s' * (len(self.splits) > 1)} in {len(self.splits[0].curves)} parts"
+        found = f"standard deviation {100 * self.observed:.4g} %, predicted {100 * self.predicted:.4g} %"
+        return f"<mmbrdf.Subsets: {splits}, {found}>"
+
+
+class FTest(_NamedTuple):
+    """Whether a block of modes explains more without a symmetry.
+
+    rows, extra, freedom  how many rows, coefficients that come in without it, and degrees of freedom are left then
+    rms, rms_extended     with and without the symmetry
+    f, p                  the ratio, and the probability of one as large from data that have the symmetry
+    """
+
+    block: str
+    rows: int
+    extra: int
+    freedom: int
+    rms: float
+    rms_extended: float
+    f: float
+    p: float
+
+
+class SymmetryTests(_NamedTuple):
+    """FTest of each block: without reciprocity, without mirror symmetry, and with a dependence on phi_i.
+
+    one_azimuth  the source has one azimuth: `azimuth` is empty, and whether the sample is isotropic cannot be told
+    """
+
+    reciprocity: tuple[FTest, ...]
+    mirror: tuple[FTest, ...]
+    azimuth: tuple[FTest, ...]
+    one_azimuth: bool
+
+
+class Leverage(_NamedTuple):
+    """How much each sample determines of a block: `values` (N,) add up to the rank; `largest` is a sample's number."""
+
+    block: str
+    rank: int
+    values: _Array
+    largest: int
+
+
+class SampleDiagnostics(_NamedTuple):
+    """Leverage by block, and studentized residuals (N, 4, 4): near normal with variance 1 if the weights are right."""
+
+    leverage: tuple[Leverage, ...]
+    studentized: _Array
+
+
+class Outlier(_NamedTuple):
+    """A sample, counted from 0, and the element of it ('22') that lies `studentized` standard deviations off."""
+
+    sample: int
+    element: str
+    studentized: float
+
+
+class MirrorPairs(_NamedTuple):
+    """Samples that are each other's mirror image in the plane of incidence.
+
+    pairs  how many there are
+    rms    (4, 4) of their differences over 2^0.5: noise of one sample, and broken symmetry; of f11 relative
+    mean   (4, 4), half the mean difference: 0 but for noise / (2 pairs)^0.5
+    """
+
+    pairs: int
+    rms: _Array
+    mean: _Array
+
+
+class ModelDiagnostics(_NamedTuple):
+    """Where a model is not physical, on a grid of directions up to theta_max_deg.
+
+    margin, margin_at            smallest coherency eigenvalue / f11, and where; unrealizable: how many are negative
+    f11, f11_at                  smallest, in sr^-1; not_positive_f11: how many are not positive
+    dhr, dhr_theta_i_deg         largest directional-hemispherical reflectance, and its angle of incidence
+    """
+
+    wavelength_nm: float
+    theta_max_deg: float
+    geometries: int
+    margin: float
+    margin_at: Geometry
+    unrealizable: int
+    f11: float
+    f11_at: Geometry
+    not_positive_f11: int
+    dhr: float
+    dhr_theta_i_deg: float
+
+
+class Difference(_NamedTuple):
+    """Of one quantity over all samples: largest is without sign, and stands where it is."""
+
+    rms: float
+    mean: float
+    largest: float
+    wavelength_nm: float
+    theta_i_deg: float
+    phi_i_deg: float
+    theta_r_deg: float
+    phi_r_deg: float
+
+
+class Comparison(_NamedTuple):
+    """Samples, or a second model, minus a model.
+
+    f11, f11_relative  in sr^-1, and divided by f11 of the model
+    normalized         of the 15 f_ij / f11, by element: comparison.normalized['22'].rms
+    polarization_rms   root mean square over those
+    largest            of all differences, relative to f11
+    """
+
+    samples: int
+    f11: Difference
+    f11_relative: Difference
+    normalized: dict[str, Difference]
+    polarization_rms: float
+    largest: Difference
+
+    def __repr__(self) -> str:
+        found = f"rms of f11 {self.f11.rms:.3g} sr^-1, of the other elements {self.polarization_rms:.3g}"
+        return (
+            f"<mmbrdf.Comparison: {self.samples} samples, {found}, largest difference / f11 {self.largest.largest:.3g}>"
+        )
