@@ -5,7 +5,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/samples/simulation.hpp"
+#include "pickles.hpp"
 
 namespace mmbrdf::python {
 
@@ -134,21 +134,8 @@ DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wa
       [&] { return pointer(simulate(model.model(), micrometres(wavelengths_nm), geometries, speckle, seed)); });
 }
 
-/// The bits of all samples, behind what tells how they are laid out.
-const std::string pickle_head = "mmbrdf.Dataset 1, " + std::to_string(sizeof(Sample)) + " bytes a sample\n";
-
-py::bytes pickled(const Dataset& data) {
-  std::string text = pickle_head;
-  text.append(reinterpret_cast<const char*>(data.samples.data()), data.samples.size() * sizeof(Sample));
-  return text;
-}
-
 DatasetPointer unpickled(const py::bytes& bytes) {
-  const std::string_view text = bytes;
-  if (!text.starts_with(pickle_head) || (text.size() - pickle_head.size()) % sizeof(Sample) != 0)
-    throw std::invalid_argument("Dataset: not pickled by this version of mmbrdf on such a machine");
-  std::vector<Sample> samples((text.size() - pickle_head.size()) / sizeof(Sample));
-  std::memcpy(samples.data(), text.data() + pickle_head.size(), text.size() - pickle_head.size());
+  std::vector<Sample> samples = from_bits<Sample>("Dataset", bytes);
   require_valid(samples);
   return pointer(std::move(samples));
 }
@@ -231,7 +218,7 @@ void bind_class(py::module_& m) {
             write_samples(path, d.samples);
           },
           py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
-      .def(py::pickle(&pickled, &unpickled));
+      .def(py::pickle([](const Dataset& d) { return bits<Sample>("Dataset", d.samples); }, &unpickled));
 }
 
 void bind_samples(py::module_& m) {

@@ -9,7 +9,9 @@
 
 #include "fit.hpp"
 #include "instrument.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
+#include "pickles.hpp"
 
 namespace mmbrdf::python {
 
@@ -85,6 +87,36 @@ std::string representation(const Fitted& fitted) {
          formatted("{:.3g}", polarization_rms(fitted.result)) + ">";
 }
 
+using Elements = std::array<ElementFit, 16>;
+
+py::tuple pickled(const Fitted& fitted) {
+  const FitResult& r = fitted.result;
+  const auto solution = [](const Solution& s) {
+    return py::make_tuple(s.x, s.singular_values, s.rank, s.residual_norm, s.rows, s.inverse, s.null_space);
+  };
+  return py::make_tuple(py::bytes(to_json(r.model)), tuple_of(r.solutions, solution),
+                        bits<Elements>("FitResult", {&r.elements, 1}), bits<Mueller>("FitResult", r.residuals),
+                        bits<NoiseEstimate>("FitResult", r.noise), bits<Basis>("FitResult", {&fitted.basis, 1}),
+                        to_string(fitted.weights));
+}
+
+FittedPointer unpickled(const py::tuple& state) {
+  using Numbers = std::vector<double>;
+  FitResult r{.model = model_from_json(state[0].cast<std::string>(), "pickle"),
+              .solutions = {},
+              .elements = from_bits<Elements>("FitResult", state[2]).at(0),
+              .residuals = from_bits<Mueller>("FitResult", state[3]),
+              .noise = from_bits<NoiseEstimate>("FitResult", state[4])};
+  for (const py::handle one : state[1]) {
+    const auto s = one.cast<py::tuple>();
+    r.solutions.push_back({s[0].cast<Numbers>(), s[1].cast<Numbers>(), s[2].cast<int>(), s[3].cast<double>(),
+                           s[4].cast<long>(), s[5].cast<Numbers>(), s[6].cast<Numbers>()});
+  }
+  const Basis basis = from_bits<Basis>("FitResult", state[5]).at(0);
+  auto model = std::make_shared<ModelObject>(r.model);
+  return std::make_shared<Fitted>(std::move(r), std::move(model), basis, weights_from(state[6].cast<std::string>()));
+}
+
 void bind_result(py::module_& m) {
   py::class_<Fitted, FittedPointer>(m, "FitResult", "What fit() found: the model, and how well it fits.")
       .def_property_readonly("model", [](const Fitted& f) { return f.model; })
@@ -98,7 +130,8 @@ void bind_result(py::module_& m) {
           "polarization_rms", [](const Fitted& f) { return polarization_rms(f.result); },
           "Root mean square over the 15 normalised elements")
       .def_property_readonly("noise", noise_of, "With weights='estimated': the law found at each wavelength, as dicts")
-      .def("__repr__", representation);
+      .def("__repr__", representation)
+      .def(py::pickle(&pickled, &unpickled));
 }
 
 constexpr const char* fit_doc =

@@ -262,10 +262,17 @@ void bind_calibration(py::module_& m) {
             save_instrument(path, c);
           },
           py::arg("path"), "Writes an instrument file")
-      .def("__repr__", [](const Instrument& c) {
-        return "<mmbrdf.Calibration: " + formatted("{:g}", nanometres(c.wavelength)) + " nm, figure of merit " +
-               formatted("{:.3g}", c.figure_of_merit.total) + ">";
-      });
+      .def("__repr__",
+           [](const Instrument& c) {
+             return "<mmbrdf.Calibration: " + formatted("{:g}", nanometres(c.wavelength)) + " nm, figure of merit " +
+                    formatted("{:.3g}", c.figure_of_merit.total) + ">";
+           })
+      .def(py::pickle([](const Instrument& c) { return py::make_tuple(to_json(c), c.name); },
+                      [](const py::tuple& state) {
+                        return std::make_shared<Instrument>(
+                            calibration_from_json(state[0].cast<std::string>(), "pickle"),
+                            state[1].cast<std::string>());
+                      }));
 }
 
 void bind_measuring(py::module_& m) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 
+#include "aperture.hpp"
 #include "dataset.hpp"
 #include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
@@ -136,8 +137,8 @@ void bind_bihemispherical(py::module_& m) {
       py::arg("f11"), "pi f11: 1 for the perfect diffuser.");
 }
 
-py::tuple averaged(const ModelObject& o, std::optional<double> nm, const Aperture& source, const Aperture& receiver,
-                   double tolerance) {
+py::tuple averaged(const ModelObject& o, std::optional<double> nm, const ApertureObject& source,
+                   const ApertureObject& receiver, double tolerance) {
   const double wavelength = o.wavelength(nm);
   const Average result = without_gil([&] {
     AverageOptions options;

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Frames, conventions, analysis and radiometry over arrays."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -135,3 +138,20 @@ def test_means_over_apertures(ptfe):
     assert port.projected_solid_angle < receiver.projected_solid_angle
     with pytest.raises(ValueError):
         mmbrdf.Aperture.cone(89, 0, 5)
+
+
+def test_copies_of_an_aperture_are_the_same():
+    shapes = [
+        mmbrdf.Aperture.direction(8, 30),
+        mmbrdf.Aperture.annulus(20, 10, 1, 3),
+        mmbrdf.Aperture.ellipse(45, 180, 2, 1, turn_deg=30),
+        mmbrdf.Aperture.rectangle(45, 180, 2, 1),
+        mmbrdf.Aperture.ring(44, 46),
+        mmbrdf.Aperture.hemisphere().without(mmbrdf.Aperture.cone(8, 180, 4)).without(mmbrdf.Aperture.cone(60, 0, 5)),
+    ]
+    ptfe = mmbrdf.material("ptfe-532")
+    for shape in shapes:
+        for same in (pickle.loads(pickle.dumps(shape)), copy.copy(shape)):
+            assert repr(same) == repr(shape) and same.projected_solid_angle == shape.projected_solid_angle
+            there, here = (mmbrdf.average(ptfe, 532, mmbrdf.Aperture.direction(8), one, 1e-3) for one in (same, shape))
+            np.testing.assert_array_equal(there[0], here[0])

@@ -135,6 +135,18 @@ def test_a_fit_says_how_well_it_fits(samples):
     assert "1824 samples" in repr(result)
 
 
+def test_copies_of_a_fit_are_the_same(samples):
+    for options in ({}, {"weights": "estimated", "orders": (3, 2)}):
+        result = mmbrdf.fit(samples, **options)
+        for same in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result)):
+            assert repr(same) == repr(result) and same.model == result.model and same.noise == result.noise
+            np.testing.assert_array_equal(same.residuals, result.residuals)
+            np.testing.assert_array_equal(same.rms, result.rms)
+            there, here = (mmbrdf.sample_diagnostics(one, samples) for one in (same, result))
+            np.testing.assert_array_equal(there.studentized, here.studentized)
+            np.testing.assert_array_equal(there.leverage[0].values, here.leverage[0].values)
+
+
 def test_a_fit_as_printed_is_evaluated_as_it_was_fitted(ptfe, tmp_path):
     data = mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(600, seed=5))
     result = mmbrdf.fit(data, "germer2017", (4, 2), as_printed=True, name="model")

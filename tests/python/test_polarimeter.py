@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From readings to a fitted model, as the program does it."""
 
+import copy
 import csv
 import json
 import os
+import pickle
 import subprocess
 import warnings
 
@@ -78,6 +80,17 @@ def test_the_program_calibrates_and_reduces_to_the_same_numbers(chain, program, 
     ):
         np.testing.assert_array_equal(again.polarimeter.generator, instrument.polarimeter.generator)
         np.testing.assert_array_equal(again.covariance, instrument.covariance)
+
+
+def test_copies_of_an_instrument_are_the_same(chain):
+    goniometer, folder, _ = chain
+    instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
+    for same in (pickle.loads(pickle.dumps(instrument)), copy.deepcopy(instrument)):
+        assert repr(same) == repr(instrument) and same.provenance == instrument.provenance
+        np.testing.assert_array_equal(same.covariance, instrument.covariance)
+        np.testing.assert_array_equal(same.polarimeter.analyzer, instrument.polarimeter.analyzer)
+        data = mmbrdf.reduce(folder / "raw.csv", same, solid_angle=goniometer.solid_angle)
+        assert mmbrdf.fit(data, orders=(3, 2), instrument=same).model.provenance["instrument"] == "references.csv"
 
 
 def test_the_calibrated_instrument_is_the_true_one_within_its_uncertainty(chain):
