@@ -42,6 +42,13 @@ void sign(FitResult& result, const Request& request, std::size_t rows) {
   if (!request.attribution.empty()) model.provenance["attribution"] = request.attribution;
 }
 
+/// As Python holds it.
+FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows) {
+  sign(result, request, rows);
+  auto model = std::make_shared<ModelObject>(result.model);
+  return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
+}
+
 FittedPointer fitted(const Dataset& data, const Request& request) {
   return without_gil([&] {
     FitResult result = fit(data.samples, request.basis, request.options, request.weights);
@@ -49,9 +56,7 @@ FittedPointer fitted(const Dataset& data, const Request& request) {
       add_instrument(result, data.samples, request.basis, request.weights, *request.instrument,
                      request.instrument->name);
     }
-    sign(result, request, data.samples.size());
-    auto model = std::make_shared<ModelObject>(result.model);
-    return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
+    return signed_result(std::move(result), request, data.samples.size());
   });
 }
 
@@ -88,6 +93,7 @@ std::string representation(const Fitted& fitted) {
 }
 
 using Elements = std::array<ElementFit, 16>;
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 py::tuple pickled(const Fitted& fitted) {
   const FitResult& r = fitted.result;
@@ -101,7 +107,7 @@ py::tuple pickled(const Fitted& fitted) {
 }
 
 FittedPointer unpickled(const py::tuple& state) {
-  using Numbers = std::vector<double>;
+  using Values = std::vector<double>;
   FitResult r{.model = model_from_json(state[0].cast<std::string>(), "pickle"),
               .solutions = {},
               .elements = from_bits<Elements>("FitResult", state[2]).at(0),
@@ -109,8 +115,8 @@ FittedPointer unpickled(const py::tuple& state) {
               .noise = from_bits<NoiseEstimate>("FitResult", state[4])};
   for (const py::handle one : state[1]) {
     const auto s = one.cast<py::tuple>();
-    r.solutions.push_back({s[0].cast<Numbers>(), s[1].cast<Numbers>(), s[2].cast<int>(), s[3].cast<double>(),
-                           s[4].cast<long>(), s[5].cast<Numbers>(), s[6].cast<Numbers>()});
+    r.solutions.push_back({s[0].cast<Values>(), s[1].cast<Values>(), s[2].cast<int>(), s[3].cast<double>(),
+                           s[4].cast<long>(), s[5].cast<Values>(), s[6].cast<Values>()});
   }
   const Basis basis = from_bits<Basis>("FitResult", state[5]).at(0);
   auto model = std::make_shared<ModelObject>(r.model);
@@ -150,6 +156,70 @@ constexpr const char* fit_doc =
     "provenance\n\n"
     "Raises ValueError for data that do not determine the model: the message says what is free.";
 
+/// What a FitAccumulator was made of.
+struct Accumulator {
+  Basis basis;
+  FitAccumulator fit{basis};
+
+  FittedPointer solve(std::optional<int> powers, const std::optional<std::map<double, double>>& reflectance,
+                      bool minimum_norm, const std::string& name, const std::string& attribution) const {
+    Request request{basis, {}, Weights::none, nullptr, name, attribution};
+    request.options.powers = powers;
+    request.options.minimum_norm = minimum_norm;
+    if (reflectance) request.options.reflectance = reflectance_table(*reflectance);
+    return without_gil(
+        [&] { return signed_result(fit.solve(request.options), request, static_cast<std::size_t>(fit.samples())); });
+  }
+  py::array_t<double> state() const {
+    const std::vector<double> numbers = fit.state();
+    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+  }
+};
+
+Accumulator from_state(const Basis& basis, const Numbers& state) {
+  if (state.ndim() != 1) throw std::invalid_argument("state: " + std::to_string(state.ndim()) + " dimensions, has one");
+  return {basis, FitAccumulator::from_state(basis, {state.data(), static_cast<std::size_t>(state.size())})};
+}
+
+py::tuple pickled_accumulator(const Accumulator& a) {
+  return py::make_tuple(to_string(a.basis.family), std::pair(a.basis.orders.f11, a.basis.orders.other),
+                        to_string(a.basis.mapping), a.basis.rotation == Rotation::as_printed, a.state());
+}
+
+Accumulator unpickled_accumulator(const py::tuple& t) {
+  return from_state(basis_from(t[0].cast<std::string>(), t[1].cast<std::pair<int, int>>(), t[2].cast<std::string>(),
+                               t[3].cast<bool>()),
+                    t[4].cast<Numbers>());
+}
+
+void bind_accumulator(py::module_& m) {
+  py::class_<Accumulator>(m, "FitAccumulator",
+                          "A fit that samples are added to in any order and number, and in any number of processes:\n"
+                          "memory does not grow with the samples. To send it, pickle it; to save its numbers, state().")
+      .def(py::init([](const std::string& family, std::pair<int, int> orders, const std::string& mapping,
+                       bool as_printed) { return Accumulator{basis_from(family, orders, mapping, as_printed)}; }),
+           py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
+           py::arg("mapping") = "lambert", py::arg("as_printed") = false)
+      .def(
+          "add", [](Accumulator& a, const Dataset& data) { without_gil([&] { a.fit.add(data.samples); }); },
+          py::arg("data"))
+      .def(
+          "merge", [](Accumulator& a, const Accumulator& other) { a.fit.merge(other.fit); }, py::arg("other"),
+          "As if all samples of the other, which has the same basis, had been added here.")
+      .def("solve", &Accumulator::solve, py::kw_only(), py::arg("powers") = py::none(),
+           py::arg("reflectance") = py::none(), py::arg("minimum_norm") = false, py::arg("name") = "",
+           py::arg("attribution") = "", "FitResult of all samples so far, as fit() without weights, but for residuals.")
+      .def_property_readonly("samples", [](const Accumulator& a) { return a.fit.samples(); })
+      .def("state", &Accumulator::state, "Everything there is but for the basis: an array of numbers.")
+      .def_static(
+          "from_state",
+          [](const Numbers& state, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
+             bool as_printed) { return from_state(basis_from(family, orders, mapping, as_printed), state); },
+          py::arg("state"), py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
+          py::arg("mapping") = "lambert", py::arg("as_printed") = false)
+      .def(py::pickle(&pickled_accumulator, &unpickled_accumulator));
+}
+
 }  // namespace
 
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
@@ -164,6 +234,7 @@ Basis basis_from(const std::string& family, std::pair<int, int> orders, const st
 
 void bind_fit(py::module_& m) {
   bind_result(m);
+  bind_accumulator(m);
   m.def(
       "fit",
       [](const Dataset& data, const std::string& family, std::pair<int, int> orders, const std::string& mapping,

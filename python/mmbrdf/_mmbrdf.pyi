@@ -307,6 +307,34 @@ class FitResult:
     @property
     def noise(self) -> list[dict[str, float]]: ...
 
+class FitAccumulator:
+    def __init__(
+        self, basis: str = ..., orders: tuple[int, int] = ..., *, mapping: str = ..., as_printed: bool = ...
+    ) -> None: ...
+    def add(self, data: Dataset) -> None: ...
+    def merge(self, other: FitAccumulator) -> None: ...
+    def solve(
+        self,
+        *,
+        powers: int | None = ...,
+        reflectance: dict[float, float] | None = ...,
+        minimum_norm: bool = ...,
+        name: str = ...,
+        attribution: str = ...,
+    ) -> FitResult: ...
+    @property
+    def samples(self) -> int: ...
+    def state(self) -> NDArray[np.float64]: ...
+    @staticmethod
+    def from_state(
+        state: ArrayLike,
+        basis: str = ...,
+        orders: tuple[int, int] = ...,
+        *,
+        mapping: str = ...,
+        as_printed: bool = ...,
+    ) -> FitAccumulator: ...
+
 class Aperture:
     @staticmethod
     def direction(theta_deg: float, phi_deg: float = 0.0) -> Aperture: ...

@@ -214,3 +214,24 @@ def test_the_published_fits_come_out(published):
     model = mmbrdf.fit(data.at_wavelengths(532), basis="germer2017").model
     file = mmbrdf.load(published / "PTFE.532.coeff.csv")
     assert largest_difference(model, file) < 1e-11
+
+
+def test_a_fit_is_added_up_in_parts_that_were_sent_or_saved(samples, tmp_path):
+    whole = mmbrdf.FitAccumulator("isotropic", (5, 3))
+    whole.add(samples)
+    first, second = (mmbrdf.FitAccumulator("isotropic", (5, 3)) for _ in range(2))
+    first.add(samples[:700])
+    second.add(samples[700:])
+    first = pickle.loads(pickle.dumps(first))
+    np.save(tmp_path / "second.npy", second.state())
+    first.merge(mmbrdf.FitAccumulator.from_state(np.load(tmp_path / "second.npy"), "isotropic", (5, 3)))
+    assert first.samples == len(samples)
+    result, expected = first.solve(name="parts"), mmbrdf.fit(samples, orders=(5, 3))
+    assert largest_difference(result.model, expected.model) < 1e-12
+    assert result.model.provenance["rows"] == "1824" and result.model.name == "parts"
+    assert len(result.residuals) == 0
+    np.testing.assert_allclose(result.rms, expected.rms, rtol=1e-10)
+    with pytest.raises(ValueError, match="state of a fit"):
+        mmbrdf.FitAccumulator.from_state(first.state()[:-1], "isotropic", (5, 3))
+    with pytest.raises(ValueError, match="different bases"):
+        first.merge(mmbrdf.FitAccumulator())
