@@ -2,6 +2,8 @@
 /// Models for tests, and what compares them.
 #pragma once
 
+#include <rapidcheck.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
