@@ -223,13 +223,12 @@ void bind_accumulator(py::module_& m) {
 }  // namespace
 
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
-  const Family its_family = family_from(family);
-  if (as_printed && !traits(its_family).at_zero_azimuth)
-    throw std::invalid_argument("as_printed: only the basis germer2017 can be fitted so, not " + family);
-  return {its_family,
-          {orders.first, orders.second},
-          disc_mapping_from(mapping),
-          as_printed ? Rotation::as_printed : Rotation::covariant};
+  const Basis basis{family_from(family),
+                    {orders.first, orders.second},
+                    disc_mapping_from(mapping),
+                    as_printed ? Rotation::as_printed : Rotation::covariant};
+  require_valid(basis.family, basis.rotation);
+  return basis;
 }
 
 void bind_fit(py::module_& m) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/basis/family.hpp"
 
+#include <stdexcept>
+
 #include "text/names.hpp"
 
 namespace mmbrdf {
@@ -26,6 +28,11 @@ FamilyTraits traits(Family family) {
 
 bool turns(Family family, Rotation rotation) {
   return traits(family).at_zero_azimuth && rotation == Rotation::covariant;
+}
+
+void require_valid(Family family, Rotation rotation) {
+  if (rotation == Rotation::as_printed && !traits(family).at_zero_azimuth)
+    throw std::invalid_argument("as_printed goes with germer2017, not with " + to_string(family));
 }
 
 std::string to_string(Family family) { return name_of(family_names, family); }

@@ -152,7 +152,11 @@ Model read_model(const Field& root) {
   model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });
   model.mapping = checked(root["mapping"], [&] { return disc_mapping_from(root["mapping"].text()); });
   if (root.has("rotation"))
-    model.rotation = checked(root["rotation"], [&] { return rotation_from(root["rotation"].text()); });
+    model.rotation = checked(root["rotation"], [&] {
+      const Rotation rotation = rotation_from(root["rotation"].text());
+      require_valid(model.family, rotation);
+      return rotation;
+    });
   model.powers = root["powers"].integer();
   if (model.powers < 0) root["powers"].refuse(root["powers"].shown() + " is negative");
   model.blocks = read_blocks(root["blocks"], model.family, model.powers);

@@ -107,6 +107,7 @@ double polarization_rms(const FitResult& result) {
 
 FitAccumulator::FitAccumulator(const Basis& basis)
     : basis_(basis), blocks_(blocks(basis.family, basis.orders)), designs_(designs(blocks_, basis.family)) {
+  require_valid(basis.family, basis.rotation);
   block_of_.fill(-1);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (blocks_[b].modes.size() > size(LeastSquares::max_unknowns))

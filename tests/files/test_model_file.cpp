@@ -123,6 +123,8 @@ TEST(Json, SaysHowAzimuthsEnterOnlyWhereTheyEnterAsPrinted) {
   expect_same(model_from_json(with(printed, "as_printed", "covariant"), "m.json"), any_model(Family::germer2017));
   EXPECT_EQ(refusal(with(printed, "as_printed", "printed")),
             "m.json: rotation: rotation 'printed' is not one of covariant, as_printed");
+  EXPECT_EQ(refusal(with(printed, "\"germer2017\"", "\"anisotropic\"")),
+            "m.json: rotation: as_printed goes with germer2017, not with anisotropic");
   EXPECT_EQ(refusal(with(printed, "\"as_printed\"", "true")), "m.json: rotation: must be a string, not true");
 }
 

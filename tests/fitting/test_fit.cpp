@@ -448,6 +448,10 @@ TEST(Fit, RefusesWhatItCannotFit) {
             "sample 7: f11 = 1e+200 with weight 1e+300 is too large");
   EXPECT_EQ(accumulator.samples(), 0);
   EXPECT_THROW(accumulator.merge(FitAccumulator({Family::germer2017, {7, 4}})), std::invalid_argument);
+  EXPECT_EQ(message_of([] {
+              fit({}, {Family::isotropic, {7, 4}, DiscMapping::lambert, Rotation::as_printed});
+            }),
+            "as_printed goes with germer2017, not with isotropic");
   bad = one;
   bad[2].geometry.incident.theta = radians(90);
   EXPECT_NE(message_of([&] { speckle_weights(bad, material("ptfe-532")); }).find("sample 3"), std::string::npos);

@@ -124,7 +124,7 @@ def test_subsets_that_cannot_be_had_are_refused(ring, ptfe):
         ({"k": 1}, "folds: 1 is not in 2...100"),
         ({"splits": 0}, "splits: 0 is not in 1...10000"),
         ({"theta_i_deg": 95}, "theta_i = 95 degrees, must be in 0...90"),
-        ({"as_printed": True}, "only the basis germer2017"),
+        ({"as_printed": True}, "as_printed goes with germer2017"),
     ):
         with pytest.raises(ValueError, match=message):
             mmbrdf.subsets(ring, **wrong)

@@ -35,6 +35,9 @@ FamilyTraits traits(Family family);
 /// Whether samples are turned to phi_i = 0 for a fit, and matrices turned back.
 bool turns(Family family, Rotation rotation);
 
+/// Throws std::invalid_argument for as_printed of a family that is evaluated as it is.
+void require_valid(Family family, Rotation rotation);
+
 /// The names used in files and by the program: isotropic, germer2017, anisotropic; covariant, as_printed.
 std::string to_string(Family family);
 std::string to_string(Rotation rotation);

@@ -104,7 +104,8 @@ double polarization_rms(const FitResult& result);
 /// wavelengths and with the orders, not with the number of samples.
 class FitAccumulator {
  public:
-  /// Throws std::invalid_argument for orders that are out of range or need more than LeastSquares::max_unknowns.
+  /// Throws std::invalid_argument for orders that are out of range or need more than LeastSquares::max_unknowns, and
+  /// for as_printed of another family than germer2017.
   explicit FitAccumulator(const Basis& basis);
 
   /// Weights, one matrix for each sample: element 11 is the weight of f11 / reflectance, the others those of m_ij (of
