@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <string>
 
+#include "mmbrdf/polarization/exchange_sign.hpp"
+
 namespace mmbrdf {
 
 using Stokes = std::array<double, 4>;
@@ -55,9 +57,6 @@ Mueller rotator(double angle);
 
 /// R(a) from the direction of the double angle: cos 2a and sin 2a. For callers that have no angle, only a vector.
 Mueller rotator(double cos_2a, double sin_2a);
-
-/// −1 for elements 13, 23, 34 and their transposes, else 1 (Eq. 13); row and column from 0.
-constexpr int exchange_sign(int row, int column) { return (row == 2) != (column == 2) ? -1 : 1; }
 
 /// A Mᵀ A with A = diag(1, 1, −1, 1): the matrix measured when source and detector change places (Eq. 12).
 /// Elements 13, 23, 34 and their transposes change sign. Valid in each of the frames of geometry.hpp.

@@ -2,6 +2,7 @@
 /// Directions as points of the disc, and their products.
 #pragma once
 
+#include "mmbrdf/polarization/exchange_sign.hpp"
 #include "model/kernel/kernel.hpp"
 #include "model/kernel/pack.hpp"
 
@@ -179,6 +180,14 @@ MMBRDF_INLINE void turn(Complex<R> e, R (&f)[16]) {
     f[i + 1] = fma(s, b, c * a);
     f[i + 2] = fnma(s, a, c * b);
   }
+}
+
+/// An element above the diagonal and its transpose, from sums over what is even and odd under exchange.
+template <int row, int column, class R>
+MMBRDF_INLINE void put_exchanged(R f11, R even, R odd, R* f) {
+  constexpr bool changes = exchange_sign(row, column) < 0;
+  f[4 * row + column] = f11 * (even + odd);
+  f[4 * column + row] = f11 * (changes ? odd - even : even - odd);
 }
 
 }  // namespace

@@ -202,20 +202,14 @@ MMBRDF_INLINE void germer2017(const C& a, R scale, Complex<R> w_i, Complex<R> w_
   f[5] = f11 * c.m22;
   f[10] = f11 * c.m33;
   f[15] = f11 * c.m44;
-  f[1] = f11 * (c.m12.s + c.m12.d);
-  f[4] = f11 * (c.m12.s - c.m12.d);
-  f[11] = f11 * (c.m34.s + c.m34.d);
-  f[14] = f11 * (c.m34.d - c.m34.s);  // exchange changes the sign of 13, 23 and 34
+  put_exchanged<0, 1>(f11, c.m12.s, c.m12.d, f);
+  put_exchanged<2, 3>(f11, c.m34.s, c.m34.d, f);
   Sines<R, C> s(a, m);
   s.add_all(i, r, d);
-  f[3] = f11 * (s.m14.s + s.m14.d);
-  f[12] = f11 * (s.m14.s - s.m14.d);
-  f[2] = f11 * (s.m13.s + s.m13.d);
-  f[8] = f11 * (s.m13.d - s.m13.s);
-  f[7] = f11 * (s.m24.s + s.m24.d);
-  f[13] = f11 * (s.m24.s - s.m24.d);
-  f[6] = f11 * (s.m23.s + s.m23.d);
-  f[9] = f11 * (s.m23.d - s.m23.s);
+  put_exchanged<0, 3>(f11, s.m14.s, s.m14.d, f);
+  put_exchanged<0, 2>(f11, s.m13.s, s.m13.d, f);
+  put_exchanged<1, 3>(f11, s.m24.s, s.m24.d, f);
+  put_exchanged<1, 2>(f11, s.m23.s, s.m23.d, f);
 }
 
 }  // namespace

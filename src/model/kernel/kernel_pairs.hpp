@@ -143,15 +143,16 @@ void pairs(const C* a, const PairList& list, const R* scale, const Complex<R>* w
     add_any_run(a, *run, list.pairs, k_i, k_r, total);
   for (int h = 0; h < packs_together; ++h) {
     const R f11 = scale[h] * total[0].pack[h];
-    for (int row = 0; row < 4; ++row) {
-      f[h][5 * row] = f11 * total[5 * row].pack[h];
-      for (int column = row + 1; column < 4; ++column) {
-        const R s = total[4 * row + column].pack[h], d = total[4 * column + row].pack[h];
-        const bool changes = (row == 2) != (column == 2);  // exchange_sign
-        f[h][4 * row + column] = f11 * (s + d);
-        f[h][4 * column + row] = f11 * (changes ? d - s : s - d);
-      }
-    }
+    const auto put = [&]<int row, int column>() {
+      put_exchanged<row, column>(f11, total[4 * row + column].pack[h], total[4 * column + row].pack[h], f[h]);
+    };
+    put.template operator()<0, 1>();
+    put.template operator()<0, 2>();
+    put.template operator()<0, 3>();
+    put.template operator()<1, 2>();
+    put.template operator()<1, 3>();
+    put.template operator()<2, 3>();
+    for (int e = 5; e < 16; e += 5) f[h][e] = f11 * total[e].pack[h];
     f[h][0] = f11;
   }
 }
