@@ -8,6 +8,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"
+#include "model/kernel/layouts.hpp"
 #include "model/kernel/plan.hpp"
 #include "models.hpp"
 

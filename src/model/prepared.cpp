@@ -11,7 +11,6 @@
 
 #include "mmbrdf/model/batch.hpp"
 #include "model/kernel/plan.hpp"
-#include "model/kernel/plan_incidence.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {

@@ -18,23 +18,6 @@ enum class Form {
   functions,  ///< any: coefficient 16 j + e is that of function j in element e
 };
 
-/// Where the functions of the isotropic family begin among its coefficients.
-struct IsotropicLayout {
-  static constexpr int f11 = 0, m44 = 40, m14 = 54, g = 64, h = 88, u = 112, v_re = 120, v_im = 134, count = 142;
-};
-
-/// Of element ij, i < j: pairs of even (S), then of odd (D) symmetry, by |k|, |l| = 11, 22, 33, 44, 13, 24, 02 or 04.
-struct Germer2017Layout {
-  static constexpr int f11 = 0, m12 = 40, m34 = 70, m14 = 100, m13 = 136, m24 = 184, m23 = 232, m22 = 274, m33 = 295,
-                       m44 = 316, count = 330;
-};
-
-/// Elements even in phi_r have nine coefficients, odd ones six, f11 twenty.
-struct PlaneLayout {
-  static constexpr int f11 = 0, m12 = 20, m21 = 29, m34 = 38, m43 = 47, m44 = 56, u_re = 65, v_re = 74, m13 = 83,
-                       m31 = 89, m14 = 95, m41 = 101, m24 = 107, m42 = 113, u_im = 119, v_im = 125, count = 131;
-};
-
 /// S, D = K_a(i) K_b(r) ± K_b(i) K_a(r), without the norms of K; positions are those of zernike_index.
 struct KernelPair {
   int a, b;

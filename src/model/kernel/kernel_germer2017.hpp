@@ -60,9 +60,8 @@ struct Element {
   int at_s, at_d;  // first coefficients
   R s, d;
 
-  MMBRDF_INLINE Element(const C& coefficients, int first, int sums)
-      : a(coefficients), at_s(first), at_d(first + sums), s(R(0)), d(R(0)) {}
-  MMBRDF_INLINE void add(int j, const Both<R>& pair) { add(j, j, pair); }
+  MMBRDF_INLINE Element(const C& coefficients, int first, const ProductList& sums)
+      : a(coefficients), at_s(first), at_d(first + sums.count()), s(R(0)), d(R(0)) {}
   MMBRDF_INLINE void add(int j_s, int j_d, const Both<R>& pair) {
     s = fma(a(at_s + j_s), pair.s, s);
     d = fma(a(at_d + j_d), pair.d, d);
@@ -81,56 +80,56 @@ struct Cosines {
   MMBRDF_INLINE Cosines(const C& coefficients, const Monomials<R>& monomials)
       : a(coefficients),
         m(monomials),
-        m22(m.sum2(a, L::m22 + 12)),
-        m33(m.sum2(a, L::m33 + 12)),
-        m44(m.sum2(a, L::m44 + 8)),
-        m12(coefficients, L::m12, 18),
-        m34(coefficients, L::m34, 18) {}
+        m22(m.template sum<2>(a, L::m22 + diagonal_22_33.begin(0, 0))),
+        m33(m.template sum<2>(a, L::m33 + diagonal_22_33.begin(0, 0))),
+        m44(m.template sum<2>(a, L::m44 + diagonal_44.begin(0, 0))),
+        m12(coefficients, L::m12, cosine_sums),
+        m34(coefficients, L::m34, cosine_sums) {}
 
-  /// C_k(i) C_k(r) with polynomials of t, k = 1 and 2.
-  MMBRDF_INLINE void add_equal(int j, R product, R d) {
-    const R odd = product * d;
-    m12.s = fma(product, m.sum1(a, L::m12 + 3 * j), m12.s);
-    m12.d = fma(a(L::m12 + 18 + j), odd, m12.d);
-    m34.s = fma(product, m.sum1(a, L::m34 + 3 * j), m34.s);
-    m34.d = fma(a(L::m34 + 18 + j), odd, m34.d);
-    m22 = fma(product, m.sum1(a, L::m22 + 3 * j), m22);
-    m33 = fma(product, m.sum1(a, L::m33 + 3 * j), m33);
-    m44 = fma(product, m.sum1(a, L::m44 + 3 * j), m44);
+  /// C_k(i) C_k(r) with polynomials of t.
+  template <int k>
+  MMBRDF_INLINE void add_equal(R product, R d) {
+    constexpr int degree = powers_of_t(k) - 1, in_s = cosine_sums.begin(k, k), in_d = cosine_differences.begin(k, k);
+    const auto add_above = [&](Element<R, C>& e) {
+      e.s = fma(product, m.template sum<degree>(a, e.at_s + in_s), e.s);
+      if constexpr (in_d >= 0) e.d = fma(a(e.at_d + in_d), product * d, e.d);
+    };
+    const auto add_diagonal = [&](R& e, int at) { e = fma(product, m.template sum<degree>(a, at), e); };
+    add_above(m12);
+    add_above(m34);
+    add_diagonal(m22, L::m22 + diagonal_22_33.begin(k, k));
+    add_diagonal(m33, L::m33 + diagonal_22_33.begin(k, k));
+    add_diagonal(m44, L::m44 + diagonal_44.begin(k, k));
   }
-  /// The same without t, k = 3 and 4.
-  MMBRDF_INLINE void add_equal(int j, R product) {
-    m12.s = fma(a(L::m12 + j), product, m12.s);
-    m34.s = fma(a(L::m34 + j), product, m34.s);
-    m22 = fma(a(L::m22 + j), product, m22);
-    m33 = fma(a(L::m33 + j), product, m33);
-    m44 = fma(a(L::m44 + j), product, m44);
-  }
-  /// C_1 with C_3, C_2 with C_4.
-  MMBRDF_INLINE void add_different(int j, const Both<R>& pair) {
-    m12.add(j, j - 6, pair);
-    m34.add(j, j - 6, pair);
-    m22 = fma(a(L::m22 + j), pair.s, m22);
-    m33 = fma(a(L::m33 + j), pair.s, m33);
+  /// Pair number j of C_k with C_l.
+  template <int k, int l>
+  MMBRDF_INLINE void add(int j, const Both<R>& pair) {
+    constexpr int s = cosine_sums.begin(k, l), d = cosine_differences.begin(k, l), at = diagonal_22_33.begin(k, l);
+    m12.add(s + j, d + j, pair);
+    m34.add(s + j, d + j, pair);
+    if constexpr (at >= 0) {
+      m22 = fma(a(L::m22 + at + j), pair.s, m22);
+      m33 = fma(a(L::m33 + at + j), pair.s, m33);
+    }
   }
   MMBRDF_INLINE void add_all(const Direction<R>& i, const Direction<R>& r, R d) {
-    add_equal(0, i.w1.re * r.w1.re, d);
-    add_equal(1, i.w2.re * r.w2.re, d);
-    add_equal(6, i.w3.re * r.w3.re);
-    add_equal(7, i.w4.re * r.w4.re);
-    add_different(8, both(i.w1.re, r.w3.re, i.w3.re, r.w1.re));
-    add_different(9, both(i.t * i.w1.re, r.w3.re, i.w3.re, r.t * r.w1.re));
-    add_different(10, both(i.w2.re, r.w4.re, i.w4.re, r.w2.re));
-    add_different(11, both(i.t * i.w2.re, r.w4.re, i.w4.re, r.t * r.w2.re));
+    add_equal<1>(i.w1.re * r.w1.re, d);
+    add_equal<2>(i.w2.re * r.w2.re, d);
+    add_equal<3>(i.w3.re * r.w3.re, d);
+    add_equal<4>(i.w4.re * r.w4.re, d);
+    add<1, 3>(0, both(i.w1.re, r.w3.re, i.w3.re, r.w1.re));
+    add<1, 3>(1, both(i.t * i.w1.re, r.w3.re, i.w3.re, r.t * r.w1.re));
+    add<2, 4>(0, both(i.w2.re, r.w4.re, i.w4.re, r.w2.re));
+    add<2, 4>(1, both(i.t * i.w2.re, r.w4.re, i.w4.re, r.t * r.w2.re));
     const SixPairs<R> six(i, r, m.p, i.w2.re, r.w2.re);
-    for (int j = 0; j < 6; ++j) {
-      m12.add(12 + j, 6 + j, six.pair[j]);
-      m34.add(12 + j, 6 + j, six.pair[j]);
-    }
+    for (int j = 0; j < 6; ++j) add<0, 2>(j, six.pair[j]);
     const R with_0 = r.w4.re + i.w4.re, with_t = fma(i.t, r.w4.re, i.w4.re * r.t),
             with_tt = fma(i.tt, r.w4.re, i.w4.re * r.tt);
-    m22 = fma(a(L::m22 + 20), with_tt, fma(a(L::m22 + 19), with_t, fma(a(L::m22 + 18), with_0, m22)));
-    m33 = fma(a(L::m33 + 20), with_tt, fma(a(L::m33 + 19), with_t, fma(a(L::m33 + 18), with_0, m33)));
+    const auto with_4 = [&](int at, R sum) {
+      return fma(a(at + 2), with_tt, fma(a(at + 1), with_t, fma(a(at), with_0, sum)));
+    };
+    m22 = with_4(L::m22 + diagonal_22_33.begin(0, 4), m22);
+    m33 = with_4(L::m33 + diagonal_22_33.begin(0, 4), m33);
   }
 };
 
@@ -142,50 +141,56 @@ struct Sines {
   using L = Germer2017Layout;
 
   MMBRDF_INLINE Sines(const C& a, const Monomials<R>& monomials)
-      : m(monomials), m14(a, L::m14, 18), m13(a, L::m13, 24), m24(a, L::m24, 24), m23(a, L::m23, 21) {}
+      : m(monomials),
+        m14(a, L::m14, sines_14),
+        m13(a, L::m13, sines_13_24),
+        m24(a, L::m24, sines_13_24),
+        m23(a, L::m23, sines_23) {}
 
+  /// Pair number j of C_k with S_l, where the element has them.
+  template <int k, int l>
   MMBRDF_INLINE void add(int j, const Both<R>& pair) {
-    m14.add(j, pair);
-    m13.add(j, pair);
-    m24.add(j, pair);
-    m23.add(j, pair);
+    constexpr int in_14 = sines_14.begin(k, l), in_13 = sines_13_24.begin(k, l), in_23 = sines_23.begin(k, l);
+    if constexpr (in_14 >= 0) m14.add(in_14 + j, in_14 + j, pair);
+    if constexpr (in_13 >= 0) m13.add(in_13 + j, in_13 + j, pair);
+    if constexpr (in_13 >= 0) m24.add(in_13 + j, in_13 + j, pair);
+    if constexpr (in_23 >= 0) m23.add(in_23 + j, in_23 + j, pair);
   }
   /// C_k with S_k and polynomials of t, k = 1 and 2: pairs times 1, s, p; those of the other symmetry times d.
-  MMBRDF_INLINE void add_equal(int j, const Both<R>& pair, R d) {
-    const Both<R> odd{pair.d * d, pair.s * d};
-    add(j + 3, odd);
+  template <int k>
+  MMBRDF_INLINE void add_equal(const Both<R>& pair, R d) {
+    add<k, k>(3, {pair.d * d, pair.s * d});
+    constexpr int at = sines_14.begin(k, k);
     const auto polynomials = [&](Element<R, C>& e) {
-      e.s = fma(pair.s, m.sum1(e.a, e.at_s + j), e.s);
-      e.d = fma(pair.d, m.sum1(e.a, e.at_d + j), e.d);
+      e.s = fma(pair.s, m.template sum<1>(e.a, e.at_s + at), e.s);
+      e.d = fma(pair.d, m.template sum<1>(e.a, e.at_d + at), e.d);
     };
     polynomials(m14);
     polynomials(m13);
     polynomials(m24);
     polynomials(m23);
   }
-  /// C_k with S_k and t times the first, and C_k' S_k' for the other way round.
-  MMBRDF_INLINE void add_different(int j, R t_i, R t_r, Complex<R> low_i, Complex<R> low_r, Complex<R> high_i,
+  /// C_k with S_l and t times the first, and C_l with S_k and t times the second, k < l.
+  template <int k, int l>
+  MMBRDF_INLINE void add_different(R t_i, R t_r, Complex<R> low_i, Complex<R> low_r, Complex<R> high_i,
                                    Complex<R> high_r) {
-    add(j, both(low_i.re, high_r.im, high_i.im, low_r.re));
-    add(j + 1, both(t_i * low_i.re, high_r.im, high_i.im, t_r * low_r.re));
-    add(j + 2, both(high_i.re, low_r.im, low_i.im, high_r.re));
-    add(j + 3, both(high_i.re, t_r * low_r.im, t_i * low_i.im, high_r.re));
+    add<k, l>(0, both(low_i.re, high_r.im, high_i.im, low_r.re));
+    add<k, l>(1, both(t_i * low_i.re, high_r.im, high_i.im, t_r * low_r.re));
+    add<l, k>(0, both(high_i.re, low_r.im, low_i.im, high_r.re));
+    add<l, k>(1, both(high_i.re, t_r * low_r.im, t_i * low_i.im, high_r.re));
   }
   MMBRDF_INLINE void add_all(const Direction<R>& i, const Direction<R>& r, R d) {
-    add_equal(0, both(i.w1.re, r.w1.im, i.w1.im, r.w1.re), d);
-    add_equal(4, both(i.w2.re, r.w2.im, i.w2.im, r.w2.re), d);
-    add(8, both(i.w3.re, r.w3.im, i.w3.im, r.w3.re));
-    add(9, both(i.w4.re, r.w4.im, i.w4.im, r.w4.re));
-    add_different(10, i.t, r.t, i.w1, r.w1, i.w3, r.w3);
-    add_different(14, i.t, r.t, i.w2, r.w2, i.w4, r.w4);
+    add_equal<1>(both(i.w1.re, r.w1.im, i.w1.im, r.w1.re), d);
+    add_equal<2>(both(i.w2.re, r.w2.im, i.w2.im, r.w2.re), d);
+    add<3, 3>(0, both(i.w3.re, r.w3.im, i.w3.im, r.w3.re));
+    add<4, 4>(0, both(i.w4.re, r.w4.im, i.w4.im, r.w4.re));
+    add_different<1, 3>(i.t, r.t, i.w1, r.w1, i.w3, r.w3);
+    add_different<2, 4>(i.t, r.t, i.w2, r.w2, i.w4, r.w4);
     const SixPairs<R> six(i, r, m.p, i.w2.im, r.w2.im);
-    for (int j = 0; j < 6; ++j) {
-      m13.add(18 + j, six.pair[j]);
-      m24.add(18 + j, six.pair[j]);
-    }
-    m23.add(18, {r.w4.im + i.w4.im, r.w4.im - i.w4.im});
-    m23.add(19, both(i.t, r.w4.im, i.w4.im, r.t));
-    m23.add(20, both(i.tt, r.w4.im, i.w4.im, r.tt));
+    for (int j = 0; j < 6; ++j) add<0, 2>(j, six.pair[j]);
+    add<0, 4>(0, {r.w4.im + i.w4.im, r.w4.im - i.w4.im});
+    add<0, 4>(1, both(i.t, r.w4.im, i.w4.im, r.t));
+    add<0, 4>(2, both(i.tt, r.w4.im, i.w4.im, r.tt));
   }
 };
 
@@ -195,7 +200,7 @@ MMBRDF_INLINE void germer2017(const C& a, R scale, Complex<R> w_i, Complex<R> w_
   const Direction<R> i(w_i), r(w_r);
   const R d = i.t - r.t;
   const Monomials<R> m(i.t + r.t, i.t * r.t);
-  const R f11 = scale * symmetric7(a, Germer2017Layout::f11, fma(w_i.im, w_r.im, w_i.re * w_r.re), m);
+  const R f11 = scale * symmetric<7>(a, Germer2017Layout::f11, fma(w_i.im, w_r.im, w_i.re * w_r.re), m);
   Cosines<R, C> c(a, m);
   c.add_all(i, r, d);
   f[0] = f11;

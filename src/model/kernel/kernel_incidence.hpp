@@ -3,6 +3,7 @@
 #pragma once
 
 #include "model/kernel/kernel_pairs.hpp"
+#include "model/kernel/layouts.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {
@@ -22,31 +23,32 @@ struct Harmonics {
     www = ww * w;
     wwww = square(ww);
   }
-  /// Nine coefficients: 1, t, t², then the real parts of w, wt, w², w²t, w³, w⁴.
+  /// Coefficients by k, then powers of t.
   template <class C>
-  MMBRDF_INLINE R cosines(const C& a, int f) const {
-    const R low = fma(a(f + 2), tt, fma(a(f + 1), t, a(f)));
-    const R middle = fma(a(f + 5), ww.re, fma(a(f + 4), wt.re, a(f + 3) * w.re));
-    const R high = fma(a(f + 8), wwww.re, fma(a(f + 7), www.re, a(f + 6) * wwt.re));
+  MMBRDF_INLINE R cosines(const C& a, int first) const {
+    const auto of = [&](int k, int power) { return a(first + even_cosines.begin[k] + power); };
+    const R low = fma(of(0, 2), tt, fma(of(0, 1), t, of(0, 0)));
+    const R middle = fma(of(2, 0), ww.re, fma(of(1, 1), wt.re, of(1, 0) * w.re));
+    const R high = fma(of(4, 0), wwww.re, fma(of(3, 0), www.re, of(2, 1) * wwt.re));
     return low + (middle + high);
   }
-  /// Six: the imaginary parts of w, wt, w², w²t, w³, w⁴.
   template <class C>
-  MMBRDF_INLINE R sines(const C& a, int f) const {
-    const R low = fma(a(f + 2), ww.im, fma(a(f + 1), wt.im, a(f) * w.im));
-    return low + fma(a(f + 5), wwww.im, fma(a(f + 4), www.im, a(f + 3) * wwt.im));
+  MMBRDF_INLINE R sines(const C& a, int first) const {
+    const auto of = [&](int k, int power) { return a(first + odd_sines.begin[k] + power); };
+    const R low = fma(of(2, 0), ww.im, fma(of(1, 1), wt.im, of(1, 0) * w.im));
+    return low + fma(of(4, 0), wwww.im, fma(of(3, 0), www.im, of(2, 1) * wwt.im));
   }
-  /// Twenty: polynomials of t of degrees 3, 3, 2, 2, 1, 1, 0, 0 with the real parts of w⁰ … w⁷.
   template <class C>
-  MMBRDF_INLINE R f11(const C& a, int f) const {
-    const auto cubic = [&](int g) { return fma(fma(a(g + 3), t, a(g + 2)), tt, fma(a(g + 1), t, a(g))); };
-    const auto quadratic = [&](int g) { return fma(a(g + 2), tt, fma(a(g + 1), t, a(g))); };
-    const auto linear = [&](int g) { return fma(a(g + 1), t, a(g)); };
+  MMBRDF_INLINE R f11(const C& a, int first) const {
+    const auto of = [&](int k, int power) { return a(first + f11_cosines.begin[k] + power); };
+    const auto cubic = [&](int k) { return fma(fma(of(k, 3), t, of(k, 2)), tt, fma(of(k, 1), t, of(k, 0))); };
+    const auto quadratic = [&](int k) { return fma(of(k, 2), tt, fma(of(k, 1), t, of(k, 0))); };
+    const auto linear = [&](int k) { return fma(of(k, 1), t, of(k, 0)); };
     const R w5 = fnma(wwww.im, w.im, wwww.re * w.re), w6 = fms(www.re, www.re, www.im * www.im);
     const R w7 = fnma(wwww.im, www.im, wwww.re * www.re);
-    const R low = fma(quadratic(f + 8), ww.re, fma(cubic(f + 4), w.re, cubic(f)));
-    const R middle = fma(linear(f + 16), w5, fma(linear(f + 14), wwww.re, quadratic(f + 11) * www.re));
-    return low + fma(a(f + 19), w7, fma(a(f + 18), w6, middle));
+    const R low = fma(quadratic(2), ww.re, fma(cubic(1), w.re, cubic(0)));
+    const R middle = fma(linear(5), w5, fma(linear(4), wwww.re, quadratic(3) * www.re));
+    return low + fma(of(7, 0), w7, fma(of(6, 0), w6, middle));
   }
 };
 

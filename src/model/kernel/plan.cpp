@@ -6,8 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "model/kernel/plan_germer2017.hpp"
-#include "model/kernel/plan_isotropic.hpp"
+#include "model/kernel/plan_parts.hpp"
 
 namespace mmbrdf {
 
@@ -18,8 +17,6 @@ double table_norm(int index) {
 }
 
 namespace {
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 /// What feeds one sum: a pair, its coefficient and the number of the sum.
 struct PairUse {

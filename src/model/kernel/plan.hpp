@@ -52,6 +52,11 @@ struct PreparedPattern {
   std::size_t modes() const { return terms_end.size() - 1; }
 };
 
+/// The form for one incident direction, and its coefficients from those of the modes.
+Form incidence_form(const Plan& plan);
+std::vector<double> incidence_coefficients(const PreparedPattern& pattern, std::span<const double> of_modes,
+                                           const Direction& incident);
+
 /// For the kernel; refers to `plan` and `coefficients`. All powers: not folded.
 template <class T>
 KernelModel<T> kernel_model(const Plan& plan, std::span<const T> coefficients, int powers, T scale) {

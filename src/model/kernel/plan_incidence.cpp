@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/kernel/plan_incidence.hpp"
-
-// How a model at one incident direction becomes the coefficients of kernel_incidence.hpp.
-#include <algorithm>
 #include <array>
-#include <cstdlib>
 
 #include "model/kernel/plan_parts.hpp"
 
+// How a model at one incident direction becomes the coefficients of kernel_incidence.hpp.
+
 namespace mmbrdf {
 namespace {
-
-std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 /// For each element and each K(reflected) the factor of that K without its norm.
 std::array<std::vector<double>, 16> factors(const PreparedPattern& pattern, std::span<const double> of_modes,
@@ -30,50 +25,35 @@ std::array<std::vector<double>, 16> factors(const PreparedPattern& pattern, std:
   return result;
 }
 
-/// Adds the functions with k ≥ 0, or with k < 0, of one element as powers of t: those of each |k| begin at first[|k|].
-void add_powers(std::vector<double>& coefficients, std::span<const int> first, bool even, double weight,
-                const std::vector<double>& of_element) {
-  const int highest = static_cast<int>(first.size()) - 1;
-  for (int n = 0; n <= highest; ++n)
+/// Adds the functions with k ≥ 0, or with k < 0, of one element as powers of t, which begin at `first`.
+void add_powers(std::vector<double>& coefficients, int first, const HarmonicList& list, int order, bool even,
+                double weight, const std::vector<double>& of_element) {
+  for (int n = 0; n <= order; ++n)
     for (int k = n % 2; k <= n; k += 2) {
       const std::size_t index = size(zernike_index(n, even ? k : -k));
       if ((k == 0 && !even) || index >= of_element.size()) continue;
       const Radial radial = radial_polynomial(n, k);
       for (std::size_t a = 0; a < radial.size(); ++a)
-        coefficients[size(first[size(k)]) + a] += weight * of_element[index] * radial[a];
+        coefficients[size(first + list.begin[k]) + a] += weight * of_element[index] * radial[a];
     }
 }
 
 std::vector<double> plane_coefficients(const std::array<std::vector<double>, 16>& f) {
   using L = PlaneLayout;
+  static constexpr struct {
+    int first;
+    std::size_t element;
+    double weight = 1;
+  } even[] = {{L::m12, 1},       {L::m21, 4},        {L::m34, 11},      {L::m43, 14},       {L::m44, 15},
+              {L::u_re, 5, 0.5}, {L::u_re, 10, 0.5}, {L::v_re, 5, 0.5}, {L::v_re, 10, -0.5}},
+    odd[] = {{L::m13, 2},  {L::m31, 8},       {L::m14, 3},        {L::m41, 12},      {L::m24, 7},
+             {L::m42, 13}, {L::u_im, 9, 0.5}, {L::u_im, 6, -0.5}, {L::v_im, 9, 0.5}, {L::v_im, 6, 0.5}};
+  // m22 = Re(u + v), m33 = Re(u − v), m32 = Im(u + v), m23 = Im(v − u)
   std::vector<double> result(L::count);
-  const auto f11 = std::array{0, 4, 8, 11, 14, 16, 18, 19};
-  add_powers(result, f11, true, 1, f[0]);
-  const auto even = [&](int at, std::size_t element, double weight = 1) {
-    add_powers(result, std::array{at, at + 3, at + 5, at + 7, at + 8}, true, weight, f[element]);
-  };
-  const auto odd = [&](int at, std::size_t element, double weight = 1) {
-    add_powers(result, std::array{at, at, at + 2, at + 4, at + 5}, false, weight, f[element]);
-  };
-  even(L::m12, 1);
-  odd(L::m13, 2);
-  odd(L::m14, 3);
-  even(L::m21, 4);
-  odd(L::m24, 7);
-  odd(L::m31, 8);
-  even(L::m34, 11);
-  odd(L::m41, 12);
-  odd(L::m42, 13);
-  even(L::m43, 14);
-  even(L::m44, 15);
-  even(L::u_re, 5, 0.5);  // m22 = Re(u + v), m33 = Re(u − v), m32 = Im(u + v), m23 = Im(v − u)
-  even(L::u_re, 10, 0.5);
-  even(L::v_re, 5, 0.5);
-  even(L::v_re, 10, -0.5);
-  odd(L::u_im, 9, 0.5);
-  odd(L::u_im, 6, -0.5);
-  odd(L::v_im, 9, 0.5);
-  odd(L::v_im, 6, 0.5);
+  add_powers(result, L::f11, f11_cosines, 7, true, 1, f[0]);
+  for (const auto& [first, element, weight] : even)
+    add_powers(result, first, even_cosines, 4, true, weight, f[element]);
+  for (const auto& [first, element, weight] : odd) add_powers(result, first, odd_sines, 4, false, weight, f[element]);
   return result;
 }
 

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Polynomials in which plans are written.
+/// The plans of the straight lines, and the polynomials in which they are written.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <vector>
 
+#include "model/kernel/layouts.hpp"
 #include "model/kernel/plan.hpp"
 
 namespace mmbrdf {
 
+inline std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
 using Shares = std::vector<Plan::Share>;
+
+/// What a mode gives to the coefficients of Form::isotropic, or of Form::germer2017: nothing if that form does not have
+/// the mode. Its orders must be within 7, 4.
+Shares isotropic_shares(const Mode& mode);
+std::optional<Shares> germer2017_shares(const Mode& mode);
+
 using Radial = std::vector<double>;  ///< coefficients by powers of t
 
 /// Q of R_n^k = ρ^k Q(t), t = 2ρ² − 1, k ≥ 0.
@@ -33,7 +43,15 @@ Polynomial symmetric_product(const Radial& a, const Radial& b);
 Polynomial real_power(int k);
 Polynomial imaginary_power(int k);
 
-/// Shares of a polynomial in the list of a symmetric function of some order that begins at `first`.
-void add_symmetric(Shares& shares, int first, int order, const Polynomial& polynomial);
+/// Adds those of a polynomial among the coefficients of a symmetric function of some order, which begin at `first`.
+Shares symmetric_shares(int first, int order, const Polynomial& polynomial, Shares shares = {});
+
+/// value × t_i^a t_r^b, a, b ≤ 1, as shares of the monomials 1, s, p (number, value) and of d (value).
+template <class Even, class Odd>
+void add_with_d(int a, int b, double value, Even add_even, Odd add_odd) {
+  if (a == b) return add_even(monomial(0, a), value);
+  add_even(monomial(1, 0), value / 2);  // t_i is (s + d)/2, t_r is (s − d)/2
+  add_odd(a > b ? value / 2 : -value / 2);
+}
 
 }  // namespace mmbrdf
