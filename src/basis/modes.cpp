@@ -135,6 +135,9 @@ Element element_of(Function function) {
   return {name[0] - '1', name[1] - '1'};
 }
 
+/// A_nm^k of Eq. 10, corrected (theory 7).
+double normalisation(int n, int m, int k) { return (n == m ? 2 : 1) * (k == 0 ? 2 : 1); }
+
 /// H_nm^kl of Eq. 2 (m11 anisotropic, and the other diagonal elements of both families, Eq. 14) and the products of
 /// Eqs. 15 and 16; for m11 of germer2017 I_nm^k of Eq. 9.
 std::vector<Term> published_terms(const Mode& mode, Family family) {
@@ -145,14 +148,13 @@ std::vector<Term> published_terms(const Mode& mode, Family family) {
   if (row != column) {
     t.add(row, column, first, second, 1);
     t.add(column, row, second, first, exchange_sign(row, column));
-  } else if (function == Function::m11 && family == Family::germer2017 && k > 0) {
-    // A_nm^k of Eq. 10 is 2 for n = m, else 1; cos kΔφ = cos kφi cos kφr + sin kφi sin kφr
-    const double weight = n == m ? 1 / std::sqrt(8.0) : 0.5;
-    for (const int azimuthal : {k, -k}) {
+  } else if (function == Function::m11 && family == Family::germer2017) {
+    const double weight = 0.5 / std::sqrt(normalisation(n, m, k));
+    for (const int azimuthal : {k, -k}) {  // cos kΔφ = cos kφi cos kφr + sin kφi sin kφr
       t.add(0, 0, zernike_index(n, azimuthal), zernike_index(m, azimuthal), weight);
       t.add(0, 0, zernike_index(m, azimuthal), zernike_index(n, azimuthal), weight);
     }
-  } else {  // I_nm^0 is H_nm^00
+  } else {
     const double weight = first == second ? 0.5 : 1 / std::numbers::sqrt2;
     t.add(row, column, first, second, weight);
     t.add(row, column, second, first, weight);

@@ -41,20 +41,18 @@ std::optional<std::pair<Mode, double>> published_mode(const Term& term) {
   auto [m, l] = from_index(term.reflected);
   if (k < 0) return {};  // sin k phi_i is zero
   int row = term.row, column = term.column;
-  double factor = 1;
+  int sign = 1;
   if (row > column) {
     if (l >= 0) return {};
     std::swap(row, column);
     std::swap(n, m);
     std::swap(k, l);
-    factor = exchange_sign(row, column);
-  } else if (row == column) {
-    const auto first = std::tuple(n, k), second = std::tuple(m, l);
-    if (first < second) return {};                // its twin is there too
-    const bool twice_cosine = row == 0 && k > 0;  // I_nm^k of Eq. 9 is (H^kk + H^−k−k) / √2
-    factor = (first == second ? 1 : std::numbers::sqrt2) * (twice_cosine ? std::numbers::sqrt2 : 1);
+    sign = exchange_sign(row, column);
+  } else if (row == column && std::tuple(n, k) < std::tuple(m, l)) {
+    return {};  // its twin is there too
   }
-  return {{Mode{function_of(row, column), n, m, k, l}, factor}};
+  const Mode mode{function_of(row, column), n, m, k, l};
+  return {{mode, sign / terms(mode, Family::germer2017).front().weight}};
 }
 
 }  // namespace
