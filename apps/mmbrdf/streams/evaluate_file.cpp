@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "options/files.hpp"
 #include "pages/output.hpp"
 #include "streams/in_order.hpp"
 #include "streams/npy.hpp"
-#include "streams/recent_wavelengths.hpp"
 #include "streams/waiting_input.hpp"
 
 namespace mmbrdf::program {
@@ -163,7 +163,7 @@ void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated
 class RowsEvaluator {
  public:
   RowsEvaluator(const Model& model, Frame frame, bool normalized, bool binary)
-      : models_([first = prepare(model, 1)](double wavelength) { return first.at(wavelength); }),
+      : models_([first = prepare(model, 1)](double wavelength) { return first.at(wavelength); }, 16),
         frame_(frame),
         normalized_(normalized),
         binary_(binary) {}
@@ -184,7 +184,7 @@ class RowsEvaluator {
     long outside = 0;
     std::size_t row = first;
     try {
-      const PreparedModel& prepared = models_.at(rows.wavelengths[first]);
+      const PreparedModel& prepared = models_(rows.wavelengths[first]);
       matrices_.resize(end - first);
       prepared.evaluate(std::span(rows.geometries).subspan(first, end - first), frame_, matrices_);
       for (; row < end; ++row) {
@@ -218,7 +218,7 @@ class RowsEvaluator {
     }
   }
 
-  RecentWavelengths<PreparedModel> models_;
+  AtWavelengths<std::function<PreparedModel(double)>> models_;
   std::vector<Mueller> matrices_;
   Frame frame_;
   bool normalized_, binary_;
