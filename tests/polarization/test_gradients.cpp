@@ -19,47 +19,34 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 namespace {
 
-using Quantity = std::function<double(const Mueller&)>;
+using Value = std::function<double(const Mueller&)>;
 using Gradient = std::function<Mueller(const Mueller&)>;
 
 struct Pair {
   std::string name;
-  Quantity value;
+  Value value;
   Gradient gradient;
 };
 
 const Stokes partly_polarized{2, 0.5, -0.7, 0.4};
 
 std::vector<Pair> every_quantity() {
-  const auto polarized = co_and_cross_polarized_gradients();
-  return {
-      {"depolarization", depolarization, depolarization_gradient},
-      {"diattenuation", diattenuation, diattenuation_gradient},
-      {"polarizance", polarizance, polarizance_gradient},
-      {"eigenvalue", [](const Mueller& m) { return coherency_eigenvalues(m)[0]; }, smallest_eigenvalue_gradient},
-      {"margin", realizability_margin, realizability_margin_gradient},
-      {"purity", purity, purity_gradient},
-      {"entropy", entropy, entropy_gradient},
-      {"degree", [](const Mueller& m) { return degree_of_polarization(m, partly_polarized); },
-       [](const Mueller& m) { return degree_of_polarization_gradient(m, partly_polarized); }},
-      {"ss", [](const Mueller& m) { return co_and_cross_polarized(m).ss; },
-       [polarized](const Mueller&) { return polarized.ss; }},
-      {"sp", [](const Mueller& m) { return co_and_cross_polarized(m).sp; },
-       [polarized](const Mueller&) { return polarized.sp; }},
-      {"ps", [](const Mueller& m) { return co_and_cross_polarized(m).ps; },
-       [polarized](const Mueller&) { return polarized.ps; }},
-      {"pp", [](const Mueller& m) { return co_and_cross_polarized(m).pp; },
-       [polarized](const Mueller&) { return polarized.pp; }},
-  };
+  std::vector<Pair> result{
+      {"eigenvalue", [](const Mueller& m) { return coherency_eigenvalues(m)[0]; }, smallest_eigenvalue_gradient}};
+  for (const Quantity& q : quantities())
+    result.push_back({std::string(q.name), [&q](const Mueller& m) { return q.value(m, partly_polarized); },
+                      [&q](const Mueller& m) { return q.gradient(m, partly_polarized); }});
+  return result;
 }
 
-Mueller by_differences(const Quantity& value, const Mueller& m) {
+Mueller by_differences(const Value& value, const Mueller& m) {
   constexpr double step = 1e-5;
   Mueller result;
   for (std::size_t e = 0; e < 16; ++e) {

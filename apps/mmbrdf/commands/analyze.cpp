@@ -21,7 +21,8 @@ namespace {
 struct Options : Question {
   std::vector<std::string> scan_texts, term_texts;
   std::vector<Scan> scans;
-  AnalysisOptions analysis;
+  AnswerOptions asked;
+  bool strict = false;
   std::optional<Format> format;
 };
 
@@ -70,34 +71,34 @@ void require_possible(const Stokes& light) {
 }
 
 /// Draws and covariances may be refused, and are the model's: "name: …".
-std::unique_ptr<Analyzer> analyzer_of(const Model& model, const Options& options) {
-  AnalysisOptions analysis = options.analysis;
-  analysis.frame = options.frame;
-  std::unique_ptr<Analyzer> analyzer;
+Answers answers_of(const Model& model, const Options& options) {
+  AnswerOptions asked = options.asked;
+  asked.frame = options.frame;
   try {
-    analyzer = std::make_unique<Analyzer>(model, analysis);
+    const Answers answers(model, asked);
+    if (!answers.unknown_uncertainty().empty()) warn("uncertainties are not known: " + answers.unknown_uncertainty());
+    return answers;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.model) + ": " + error.what());
   }
-  if (!analyzer->unknown_uncertainty().empty()) warn("uncertainties are not known: " + analyzer->unknown_uncertainty());
-  return analyzer;
 }
 
 void analyze_one(const Options& options) {
   const Model model = model_of(options);
   const double wavelength = wavelength_from(options.wavelength_nm, model);
-  const auto analyzer = analyzer_of(model, options);
+  const Answers answers = answers_of(model, options);
   const Place place = place_of(model, options, wavelength);
   const Geometry geometry = geometry_of(options);
   if (options.format == Format::csv) {
-    const AddedColumns columns = analyzed_columns(*analyzer);
+    const AddedColumns columns = analyzed_columns(answers, options.strict);
     std::string row = fields(place);
     warn_if_outside(place.model, columns.append(row, wavelength, geometry), model.validity);
     std::cout << place_columns << columns.names << '\n' << row << '\n';
     return;
   }
-  const AnalysisReport report{options, place, *analyzer, analyzer->at(wavelength, geometry)};
-  warn_if_outside(place.model, report.analysis.outside, model.validity);
+  const AnalysisReport report{options, place, answers, answers.at(wavelength).at(geometry)};
+  if (options.strict) require_inside(report.answer.outside, model.validity);
+  warn_if_outside(place.model, report.answer.outside, model.validity);
   (options.format == Format::json ? print_json : print_text)(report);
 }
 
@@ -121,8 +122,8 @@ void analyze_scan(const Options& options) {
   require_model_kept(options.model, options.output);
   const Model model = model_of(options);
   wavelength_from(at_row(options.scans, options, 0).wavelength_nm, model);
-  const auto analyzer = analyzer_of(model, options);
-  const AddedColumns columns = analyzed_columns(*analyzer);
+  const Answers answers = answers_of(model, options);
+  const AddedColumns columns = analyzed_columns(answers, options.strict);
   long outside = 0;
   if (is_standard_output(options.output))
     outside = write_scan(std::cout, model, options, columns);
@@ -133,19 +134,18 @@ void analyze_scan(const Options& options) {
 
 void analyze_file(const Options& options) {
   const Model model = model_of_rows(options);
-  const auto analyzer = analyzer_of(model, options);
-  evaluate_file(model, rows_of(options), one_by_one(analyzed_columns(*analyzer)));
+  const Answers answers = answers_of(model, options);
+  evaluate_file(model, rows_of(options), one_by_one(analyzed_columns(answers, options.strict)));
 }
 
 void analyze(Options& options) {
   if (is_npy(options.output)) throw WrongUsage("--output", "only evaluate writes .npy");
   const bool rows = !options.geometries.empty() || !options.scan_texts.empty();
   for (const std::string& text : options.scan_texts) options.scans.push_back(parsed("--scan", text, scan_from));
-  for (const std::string& text : options.term_texts)
-    options.analysis.terms.push_back(parsed("--term", text, term_from));
+  for (const std::string& text : options.term_texts) options.asked.terms.push_back(parsed("--term", text, term_from));
   if (rows && options.format && *options.format != Format::csv)
     throw WrongUsage("--format", "only csv goes with --geometries and --scan");
-  if (options.analysis.light) require_possible(*options.analysis.light);
+  if (options.asked.light) require_possible(*options.asked.light);
   if (!rows && !options.output.empty()) throw WrongUsage("--output", "needs --geometries or --scan");
   if (!options.geometries.empty()) return analyze_file(options);
   if (!options.scans.empty()) return analyze_scan(options);
@@ -188,12 +188,12 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
   add_texts(app, "--term", o->term_texts, "[NAME:]KIND=U",
             "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
             "calibration=0.001; repeatable");
-  add_option(app, "--stokes", o->analysis.light, stokes_from, "S1,S2,S3,S4",
+  add_option(app, "--stokes", o->asked.light, stokes_from, "S1,S2,S3,S4",
              "Incident light, in the frame: adds degree_of_polarization");
-  const Option draws = add_option(app, "--monte-carlo", o->analysis.draws, draws_from, "N",
+  const Option draws = add_option(app, "--monte-carlo", o->asked.draws, draws_from, "N",
                                   "Uncertainties of ratios from N draws [first order]");
-  add_option(app, "--seed", o->analysis.seed, seed, "S", "Whole number that chooses the draws [0]").needs(draws);
-  add_flag(app, "--strict", o->analysis.strict, "Refuse what is not known to be inside the fitted range");
+  add_option(app, "--seed", o->asked.seed, seed, "S", "Whole number that chooses the draws [0]").needs(draws);
+  add_flag(app, "--strict", o->strict, "Refuse what is not known to be inside the fitted range");
   add_as_printed(app, *o);
   add_option(app, "--format", o->format, format_from, "FORMAT",
              "text, csv or json for one geometry [text]; csv for files and scans");

@@ -3,16 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
+#include <memory>
 
+#include "mmbrdf/model/at_wavelengths.hpp"
+#include "mmbrdf/model/description.hpp"
 #include "pages/describe.hpp"
 #include "pages/output.hpp"
+#include "pages/rounded.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-const char* unit_of(const std::string& quantity) { return quantity.starts_with("f") ? " sr^-1" : ""; }
 
 std::string validity_words(Outside outside) {
   const std::string name = to_string(outside);
@@ -27,19 +30,19 @@ std::string estimable_words(const std::optional<bool>& estimable) {
                       : "no, the data of the fit leave elements free here: uncertainties are too small";
 }
 
-std::string realizable_words(const Analysis& a) {
+std::string realizable_words(const Answer& a) {
   if (a.realizable) return "yes, a scatterer can have this matrix";
   return a.elements(0, 0) > 0 ? "no, no scatterer can have this matrix: eigenvalue_min is negative"
                               : "no, no scatterer can have this matrix: f11 is not positive";
 }
 
 std::string uncertainty_words(const AnalysisReport& r) {
-  const AnalysisOptions& options = r.analyzer.options();
-  if (!r.analysis.budget) {
-    return r.analyzer.unknown_uncertainty().empty() ? "not known: at theta_r = 90 a term theta_r has no limit"
-                                                    : "not known: " + r.analyzer.unknown_uncertainty();
+  const AnswerOptions& options = r.answers.options();
+  if (!r.answer.budget) {
+    return r.answers.unknown_uncertainty().empty() ? "not known: at theta_r = 90 a term theta_r has no limit"
+                                                   : "not known: " + r.answers.unknown_uncertainty();
   }
-  const bool has_instrument = r.analyzer.model().provenance.contains("instrument");
+  const bool has_instrument = r.answers.model().provenance.contains("instrument");
   const std::string alone = has_instrument ? "of the fit and its instrument" : "of the fit alone";
   const std::string among =
       has_instrument ? "of the fit, its instrument and the terms below" : "of the fit and of the terms below";
@@ -48,24 +51,15 @@ std::string uncertainty_words(const AnalysisReport& r) {
          (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
 }
 
-/// As many decimals as two digits of the uncertainty have: the last one of 0.0123 is the second after its first.
-std::string to_digits_of(double value, const std::optional<double>& uncertainty) {
-  const int decimals =
-      uncertainty && *uncertainty > 0 ? 1 - static_cast<int>(std::floor(std::log10(*uncertainty))) : -1;
-  return decimals < 0 || decimals > 12 ? format("%.6g", value) : format("%.*f", decimals, value);
-}
-
-void print_quantity(const Quantity& q, const Analysis& a) {
-  std::cout << format("%-24s", q.name.c_str());
+void print_quantity(const Answered& q, std::string_view name, std::string_view unit, const Answer& a) {
+  std::cout << format("%-24.*s", static_cast<int>(name.size()), name.data());
   if (!q.value) {
     std::cout << (a.elements(0, 0) > 0 ? "has no meaning here\n" : "has no meaning where f11 is not positive\n");
     return;
   }
-  std::cout << rounded(*q.value, q.uncertainty) << unit_of(q.name);
-  if (q.low && q.high) {
-    std::cout << "   95 % from " << to_digits_of(*q.low, q.uncertainty) << " to "
-              << to_digits_of(*q.high, q.uncertainty);
-  }
+  std::cout << rounded(*q.value, q.uncertainty) << (unit.empty() ? "" : " ") << unit;
+  if (q.low && q.high)
+    std::cout << "   95 % from " << to_place_of(*q.low, q.uncertainty) << " to " << to_place_of(*q.high, q.uncertainty);
   std::cout << '\n';
 }
 
@@ -79,23 +73,12 @@ void print_matrix(const Mueller& m) {
   }
 }
 
-/// u of f11 and of D from one covariance, in the sp frame.
+/// u of f11 and of the depolarization from one term of a budget, or from all.
 struct Contribution {
+  std::string_view term;
   double f11 = 0;
-  std::optional<double> depolarization;
+  std::optional<double> depolarization = {};
 };
-
-Contribution contribution(const MuellerCovariance& covariance, const Mueller& elements) {
-  Contribution result{standard_uncertainty(covariance)(0, 0), std::nullopt};
-  if (elements(0, 0) > 0) result.depolarization = standard_uncertainty(depolarization_gradient(elements), covariance);
-  return result;
-}
-
-/// What is left of a cancellation, such as of a scale in a ratio, is 0.
-double without_rounding(double u, double total) {
-  constexpr double rounding = 1e-6;
-  return u > rounding * total ? u : 0;
-}
 
 /// "0.000316   9.3 %": u, and its part of the variance.
 std::string with_share(double u, double total) {
@@ -103,25 +86,22 @@ std::string with_share(double u, double total) {
   return format("%10.3g %6.1f %%", u, 100 * part * part);
 }
 
-/// Of terms, then of the total. `elements` are in the frame of the budget.
-std::vector<std::pair<std::string, Contribution>> contributions(const Budget& budget, const Mueller& elements) {
-  const Contribution total = contribution(budget.total, elements);
-  std::vector<std::pair<std::string, Contribution>> result;
-  for (const BudgetTerm& term : budget.terms) {
-    Contribution c = contribution(term.covariance, elements);
-    if (c.depolarization) c.depolarization = without_rounding(*c.depolarization, *total.depolarization);
-    result.emplace_back(term.name, c);
-  }
-  result.emplace_back("total", total);
+std::vector<Contribution> contributions(const Answer& a) {
+  std::vector<Contribution> result;
+  for (const BudgetTerm& term : a.budget->terms)
+    result.push_back({term.name, standard_uncertainty(term.covariance)(0, 0)});
+  result.push_back({"total", standard_uncertainty(a.budget->total)(0, 0)});
+  const Answered& depolarization = a.quantities.front();
+  for (std::size_t i = 0; i < depolarization.parts.size(); ++i) result[i].depolarization = depolarization.parts[i];
   return result;
 }
 
-void print_budget(const AnalysisReport& r) {
-  const auto rows = contributions(*r.analysis.budget, r.analysis.elements_sp);
-  const Contribution& total = rows.back().second;
+void print_budget(const Answer& a) {
+  const std::vector<Contribution> rows = contributions(a);
+  const Contribution& total = rows.back();
   std::cout << "\nterm                     u(f11)    share   u(depol.)    share\n";
-  for (const auto& [name, c] : rows) {
-    std::cout << format("%-20.20s ", name.c_str()) << with_share(c.f11, total.f11);
+  for (const Contribution& c : rows) {
+    std::cout << format("%-20.20s ", std::string(c.term).c_str()) << with_share(c.f11, total.f11);
     if (c.depolarization) std::cout << "  " << with_share(*c.depolarization, *total.depolarization);
     std::cout << '\n';
   }
@@ -139,23 +119,55 @@ nlohmann::ordered_json rows_of(const std::optional<Mueller>& m) {
   return rows;
 }
 
-}  // namespace
-
-std::string rounded(double value, const std::optional<double>& uncertainty) {
-  return to_digits_of(value, uncertainty) +
-         (uncertainty ? " +- " + (*uncertainty > 0 ? to_digits_of(*uncertainty, uncertainty) : "0") : "");
+void append(std::string& text, const std::optional<double>& value) {
+  text += ',';
+  if (value) append_exact(text, *value);
 }
 
+std::string columns(const Answers& answers) {
+  std::string text = element_columns(false) + ",validity";
+  for (std::size_t element = 0; element < 16; ++element) text += ",u_f" + element_name(element);
+  for (const Quantity& quantity : quantities(answers.options().light.has_value())) {
+    const std::string name(quantity.name);
+    text += "," + name + ",u_" + name;
+    text += answers.has_interval(quantity) ? "," + name + "_low," + name + "_high" : "";
+    text += name == "eigenvalue_min" ? ",realizable" : "";
+  }
+  return text + ",estimable";
+}
+
+void append_fields(std::string& text, const Answer& a, const Answers& answers) {
+  append_elements(text, a.elements);
+  text += ',' + to_string(a.outside);
+  for (std::size_t element = 0; element < 16; ++element)
+    append(text, a.uncertainties ? std::optional(a.uncertainties->elements[element]) : std::nullopt);
+  for (const Answered& q : a.quantities) {
+    append(text, q.value);
+    append(text, q.uncertainty);
+    if (answers.has_interval(*q.quantity)) {
+      append(text, q.low);
+      append(text, q.high);
+    }
+    text += q.quantity->name != "eigenvalue_min" ? "" : a.realizable ? ",1" : ",0";
+  }
+  text += ',' + (a.estimable ? std::string(*a.estimable ? "1" : "0") : "");
+}
+
+/// Draws of several wavelengths are kept while they are not more than some 160 MB.
+std::size_t wavelengths_to_keep(int draws) {
+  return draws > 0 ? static_cast<std::size_t>(std::clamp(20000 / draws, 1, 16)) : 16;
+}
+
+}  // namespace
+
 void print_text(const AnalysisReport& r) {
-  const Analysis& a = r.analysis;
+  const Answer& a = r.answer;
   std::cout << heading(r.place) << "validity: " << validity_words(a.outside)
             << "\nestimable: " << estimable_words(a.estimable) << "\nrealizable: " << realizable_words(a)
             << "\nuncertainties: " << uncertainty_words(r) << "\n\n";
-  print_quantity({.name = "f11",
-                  .value = a.elements(0, 0),
-                  .uncertainty = a.uncertainties ? std::optional((*a.uncertainties)(0, 0)) : std::nullopt},
-                 a);
-  for (const Quantity& quantity : a.quantities) print_quantity(quantity, a);
+  const auto u_f11 = a.uncertainties ? std::optional((*a.uncertainties)(0, 0)) : std::nullopt;
+  print_quantity({.value = a.elements(0, 0), .uncertainty = u_f11}, "f11", "sr^-1", a);
+  for (const Answered& q : a.quantities) print_quantity(q, q.quantity->name, q.quantity->unit, a);
   std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
             << convention_note(r.question.frame) << ")"
             << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n';
@@ -164,11 +176,11 @@ void print_text(const AnalysisReport& r) {
     std::cout << "its standard uncertainties\n";
     print_matrix(*a.uncertainties);
   }
-  if (a.budget && a.budget->terms.size() > 1) print_budget(r);
+  if (a.budget && a.budget->terms.size() > 1) print_budget(a);
 }
 
 void print_json(const AnalysisReport& r) {
-  const Analysis& a = r.analysis;
+  const Answer& a = r.answer;
   nlohmann::ordered_json json = to_json(r.place);
   add_frame(json, r.question.frame, r.place.rotation);
   json["unit"] = "sr^-1";
@@ -177,23 +189,43 @@ void print_json(const AnalysisReport& r) {
   json["realizable"] = a.realizable;
   json["mueller"] = rows_of(a.elements);
   json["u_mueller"] = rows_of(a.uncertainties);
-  for (const Quantity& q : a.quantities) {
+  for (const Answered& q : a.quantities) {
     nlohmann::ordered_json entry{{"value", number_or_null(q.value)}, {"uncertainty", number_or_null(q.uncertainty)}};
-    if (q.has_interval) {
+    if (r.answers.has_interval(*q.quantity)) {
       entry["low"] = number_or_null(q.low);
       entry["high"] = number_or_null(q.high);
     }
-    json["quantities"][q.name] = entry;
+    json["quantities"][std::string(q.quantity->name)] = entry;
   }
   json["budget"] = nullptr;
   if (a.budget) {
     json["budget"] = nlohmann::ordered_json::array();
-    for (const auto& [name, c] : contributions(*a.budget, a.elements_sp)) {
+    for (const Contribution& c : contributions(a)) {
       json["budget"].push_back(
-          {{"term", name}, {"u_f11", c.f11}, {"u_depolarization", number_or_null(c.depolarization)}});
+          {{"term", c.term}, {"u_f11", c.f11}, {"u_depolarization", number_or_null(c.depolarization)}});
     }
   }
   print(json);
+}
+
+void require_inside(Outside outside, const Validity& validity) {
+  if (leaves_known_range(outside)) {
+    throw std::invalid_argument("outside the fitted range (" + to_string(outside) +
+                                "), refused by --strict: fitted are " + fitted_range(validity));
+  }
+  if (outside != inside) throw std::invalid_argument("the fitted range is not known, refused by --strict");
+}
+
+AddedColumns analyzed_columns(const Answers& answers, bool strict) {
+  using ByWavelength = AtWavelengths<std::function<PreparedAnswers(double)>>;
+  const auto prepared = std::make_shared<ByWavelength>([answers](double wavelength) { return answers.at(wavelength); },
+                                                       wavelengths_to_keep(answers.options().draws));
+  return {columns(answers), [=](std::string& text, double wavelength, const Geometry& geometry) {
+            const Answer a = (*prepared)(wavelength).at(geometry);
+            if (strict) require_inside(a.outside, answers.model().validity);
+            append_fields(text, a, answers);
+            return a.outside;
+          }};
 }
 
 }  // namespace mmbrdf::program

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What analyze prints about one geometry.
+// What analyze prints: about one geometry, and as columns about many.
 #pragma once
 
+#include "mmbrdf/quantities/answer.hpp"
 #include "options/question.hpp"
-#include "pages/analyzer.hpp"
 
 namespace mmbrdf::program {
 
 struct AnalysisReport {
   const Question& question;
   Place place;
-  const Analyzer& analyzer;
-  Analysis analysis;
+  const Answers& answers;
+  Answer answer;
 };
 
 void print_text(const AnalysisReport& report);
 void print_json(const AnalysisReport& report);
 
-/// A value to the digits that its standard uncertainty leaves: "0.3284 +- 0.0012". Without one: six digits.
-std::string rounded(double value, const std::optional<double>& uncertainty);
+/// ",f11,…,f44,validity,u_f11,…,u_f44,depolarization,u_depolarization,…,estimable"
+AddedColumns analyzed_columns(const Answers& answers, bool strict);
+
+/// Throws std::invalid_argument, for --strict, unless a place is known to be inside the fitted range.
+void require_inside(Outside outside, const Validity& validity);
 
 }  // namespace mmbrdf::program

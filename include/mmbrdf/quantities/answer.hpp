@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A model asked at a geometry: its matrix with all quantities, their uncertainties, and where these come from.
+///
+///   const Answers answers(model, {.terms = {{"plaque", ErrorOf::scale, 0.003}}});
+///   const PreparedAnswers here = answers.at(0.532);
+///   for (const Answered& q : here.at(geometry).quantities) q.quantity->name, q.value, q.uncertainty, q.parts …
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
+
+namespace mmbrdf {
+
+struct AnswerOptions {
+  Frame frame = Frame::xy;  ///< of the elements, and of `light`
+  std::vector<TypeBTerm> terms = {};
+  std::optional<Stokes> light = {};  ///< incident; with it come the quantities that take light
+  int draws = 0;                     ///< 0: uncertainties in first order
+  unsigned long seed = 0;
+};
+
+/// A quantity: no value where it has no meaning, no uncertainty where it is not known.
+struct Answered {
+  const Quantity* quantity = nullptr;
+  std::optional<double> value = {}, uncertainty = {};  ///< standard (k = 1)
+  std::optional<double> low = {}, high = {};           ///< of 95 % coverage, from draws
+  /// Standard uncertainties in first order from each term of the budget alone, then from all. What is left of a
+  /// cancellation, such as of a scale in a ratio, is 0. None if there is no budget.
+  std::vector<double> parts = {};
+};
+
+struct Answer {
+  Mueller elements;                      ///< in sr⁻¹
+  std::optional<Mueller> uncertainties;  ///< of the elements
+  std::vector<Answered> quantities;      ///< at each geometry the same ones, in their order
+  std::optional<Budget> budget;          ///< in the frame sp; none where theta_r has no limit (budget.hpp)
+  std::optional<bool> estimable;
+  bool realizable = false;  ///< f11 > 0, and no coherency eigenvalue below 0
+  Outside outside = inside;
+};
+
+/// The answers of a model at one wavelength. May be asked in many threads at once.
+class PreparedAnswers {
+ public:
+  /// Throws std::invalid_argument for an invalid geometry, and as budget() does.
+  Answer at(const Geometry& geometry) const;
+
+ private:
+  friend class Answers;
+  struct Prepared;
+  explicit PreparedAnswers(std::shared_ptr<const Prepared> prepared) : prepared_(std::move(prepared)) {}
+  std::shared_ptr<const Prepared> prepared_;
+};
+
+class Answers {
+ public:
+  /// Throws std::invalid_argument for a covariance that is not positive semidefinite, light that cannot exist, or as
+  /// Draws does.
+  explicit Answers(const Model& model, AnswerOptions options = {});
+
+  /// At a wavelength in micrometres. Throws std::invalid_argument as prepare() does.
+  PreparedAnswers at(double wavelength) const;
+
+  /// Whether its uncertainty is from draws, with an interval.
+  bool has_interval(const Quantity& quantity) const { return options().draws > 0 && !quantity.first_order; }
+
+  /// Why there are no uncertainties; empty if there are.
+  const std::string& unknown_uncertainty() const;
+
+  const AnswerOptions& options() const;
+  const Model& model() const;
+
+ private:
+  friend class PreparedAnswers;
+  struct Asked;
+  std::shared_ptr<const Asked> asked_;
+};
+
+}  // namespace mmbrdf

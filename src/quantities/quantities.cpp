@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/quantities/quantities.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using M = const Mueller&;
+using S = const Stokes&;
+
+/// A row for what does not take light.
+template <double (*value)(M), Mueller (*gradient)(M)>
+constexpr Quantity of_matrix(std::string_view name, std::string_view meaning) {
+  return {name, "", meaning, false, false, [](M m, S) { return value(m); }, [](M m, S) { return gradient(m); }};
+}
+
+template <double PolarizedBrdf::*part, Mueller PolarizedBrdfGradients::*slopes>
+constexpr Quantity polarized(std::string_view name, std::string_view meaning) {
+  return {name,
+          "sr^-1",
+          meaning,
+          true,
+          false,
+          [](M m, S) { return co_and_cross_polarized(m).*part; },
+          [](M, S) { return co_and_cross_polarized_gradients().*slopes; }};
+}
+
+using P = PolarizedBrdf;
+using G = PolarizedBrdfGradients;
+
+constexpr Quantity table[] = {
+    of_matrix<depolarization, depolarization_gradient>(
+        "depolarization", "0 for a perfect depolarizer, 1 where no light is depolarized (Gil and Bernabeu)"),
+    polarized<&P::ss, &G::ss>("f_ss", "BRDF from s- to s-polarized light"),
+    polarized<&P::sp, &G::sp>("f_sp", "BRDF from s- to p-polarized light"),
+    polarized<&P::ps, &G::ps>("f_ps", "BRDF from p- to s-polarized light"),
+    polarized<&P::pp, &G::pp>("f_pp", "BRDF from p- to p-polarized light"),
+    of_matrix<diattenuation, diattenuation_gradient>("diattenuation", "length of (M12, M13, M14) / M11"),
+    of_matrix<polarizance, polarizance_gradient>("polarizance", "length of (M21, M31, M41) / M11"),
+    of_matrix<realizability_margin, realizability_margin_gradient>(
+        "eigenvalue_min", "smallest eigenvalue of the coherency matrix / M11: negative for what cannot exist"),
+    of_matrix<purity, purity_gradient>("purity", "1/4 for a perfect depolarizer, 1 for a Jones matrix"),
+    of_matrix<entropy, entropy_gradient>(
+        "entropy", "of the coherency eigenvalues: 1 for a perfect depolarizer, 0 for a Jones matrix"),
+    {"degree_of_polarization", "", "of the scattered light", false, true, degree_of_polarization,
+     degree_of_polarization_gradient},
+};
+
+constexpr std::size_t without_light =
+    static_cast<std::size_t>(std::ranges::find(table, true, &Quantity::takes_light) - std::begin(table));
+
+}  // namespace
+
+std::span<const Quantity> quantities(bool with_light) {
+  return std::span(table).first(with_light ? std::size(table) : without_light);
+}
+
+const Quantity& quantity(std::string_view name) {
+  const auto found = std::ranges::find(table, name, &Quantity::name);
+  if (found == std::end(table)) throw std::invalid_argument("quantity '" + std::string(name) + "' is not known");
+  return *found;
+}
+
+}  // namespace mmbrdf

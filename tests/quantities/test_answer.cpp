@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/quantities/answer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "given/cases.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/polarization/gradients.hpp"
+
+namespace mmbrdf {
+namespace {
+
+const Geometry oblique{{0.8, 0.3}, {0.5, 2.6}};
+const std::vector<TypeBTerm> terms{{"plaque", ErrorOf::scale, 0.003}, {"dial", ErrorOf::calibration, 0.001}};
+
+TEST(Answer, HasTheValueAndTheUncertaintyOfEachQuantity) {
+  const Model model = material("ptfe-532");
+  const Answer a = Answers(model, {.terms = terms}).at(0.532).at(oblique);
+  const PreparedModel prepared = prepare(model, 0.532);
+  const Mueller m = prepared.evaluate(oblique, Frame::sp);
+  const Budget b = budget(prepared, prepare_uncertainty(model, 0.532), terms, oblique, Frame::sp);
+  EXPECT_EQ(a.elements, prepared.evaluate(oblique));
+  ASSERT_EQ(a.quantities.size(), quantities(false).size());
+  for (const Answered& q : a.quantities) {
+    EXPECT_EQ(q.value, q.quantity->value(m, {})) << q.quantity->name;
+    EXPECT_EQ(q.uncertainty, standard_uncertainty(q.quantity->gradient(m, {}), b.total)) << q.quantity->name;
+  }
+  EXPECT_EQ(a.estimable, true);
+  EXPECT_TRUE(a.realizable);
+}
+
+// Errors of terms are independent of each other. Of a scale a ratio has no part, not even from rounding.
+TEST(Answer, HasPartsThatAddUpInSquares) {
+  const Answer a = Answers(material("ptfe-532"), {.terms = terms}).at(0.532).at(oblique);
+  for (const Answered& q : a.quantities) {
+    ASSERT_EQ(q.parts.size(), 4U);
+    EXPECT_EQ(q.parts.back(), q.uncertainty);
+    const double squares = std::inner_product(q.parts.begin(), q.parts.end() - 1, q.parts.begin(), 0.0);
+    EXPECT_NEAR(std::sqrt(squares), q.parts.back(), 1e-12 * q.parts.back()) << q.quantity->name;
+    EXPECT_EQ(q.parts[1] == 0, q.quantity->unit.empty()) << q.quantity->name;
+  }
+}
+
+TEST(Answer, TakesTheLightInTheFrameAskedFor) {
+  const Model model = material("ptfe-532");
+  const Mueller m = prepare(model, 0.532).evaluate(oblique, Frame::sp);
+  const Answer sp = Answers(model, {.frame = Frame::sp, .light = Stokes{1, 1, 0, 0}}).at(0.532).at(oblique);
+  const Answer xy = Answers(model, {.light = rotator(0.3) * Stokes{1, 1, 0, 0}}).at(0.532).at(oblique);
+  for (std::size_t i = 0; i < quantities().size(); ++i) {
+    EXPECT_NEAR(*sp.quantities[i].value, quantities()[i].value(m, {1, 1, 0, 0}), 1e-14);
+    EXPECT_NEAR(*xy.quantities[i].value, *sp.quantities[i].value, 1e-13) << quantities()[i].name;
+  }
+  const std::string refusal = message_of([&] { Answers(model, {.light = Stokes{1, 1, 1, 0}}); });
+  EXPECT_TRUE(refusal.starts_with("light (1, 1, 1, 0) cannot exist")) << refusal;
+}
+
+TEST(Answer, HasIntervalsFromDrawsForWhatIsNotLinear) {
+  const Answers answers(material("ptfe-532"), {.draws = 200, .seed = 3});
+  const Answer drawn = answers.at(0.532).at(oblique), first = Answers(answers.model()).at(0.532).at(oblique);
+  for (std::size_t i = 0; i < drawn.quantities.size(); ++i) {
+    const Answered &d = drawn.quantities[i], &f = first.quantities[i];
+    EXPECT_EQ(d.low.has_value(), answers.has_interval(*d.quantity)) << d.quantity->name;
+    EXPECT_EQ(d.parts, f.parts);
+    EXPECT_TRUE(d.low || d.uncertainty == f.uncertainty) << d.quantity->name;
+    EXPECT_TRUE(!d.low || (*d.low < *d.value && *d.value < *d.high)) << d.quantity->name;
+    EXPECT_NEAR(*d.uncertainty / *f.uncertainty, 1, 0.2) << d.quantity->name;  // 1/√400 of 200 draws, four times
+  }
+}
+
+TEST(Answer, HasNoValueWhereAQuantityHasNoMeaningAndNoUncertaintyWhereItIsNotKnown) {
+  const Geometry grazing{{radians(90), 0}, {radians(90), 0}};
+  const Answer a = Answers(material("ptfe-1064")).at(1.064).at(grazing);
+  ASSERT_LT(a.elements(0, 0), 0);
+  EXPECT_FALSE(a.realizable);
+  for (const Answered& q : a.quantities) EXPECT_EQ(q.value.has_value(), q.quantity->first_order) << q.quantity->name;
+  Model silent = material("ptfe-532");
+  silent.blocks.front().covariance.clear();
+  const Answers answers(silent, {.draws = 100});
+  EXPECT_EQ(answers.unknown_uncertainty(), "the covariance of block 11 is not known");
+  const Answer unknown = answers.at(0.532).at(oblique);
+  EXPECT_FALSE(unknown.budget || unknown.uncertainties || unknown.estimable);
+  for (const Answered& q : unknown.quantities) EXPECT_TRUE(q.value && !q.uncertainty && !q.low && q.parts.empty());
+}
+
+TEST(Answer, HasNoBudgetWhereATermHasNoLimit) {
+  const Answers answers(material("ptfe-532"), {.terms = {{"arm", ErrorOf::theta_r, 1e-3}}});
+  EXPECT_TRUE(answers.at(0.532).at(oblique).budget);
+  EXPECT_FALSE(answers.at(0.532).at({{0.8, 0}, {radians(90), 0}}).budget);
+}
+
+}  // namespace
+}  // namespace mmbrdf

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/quantities/quantities.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "given/cases.hpp"
+#include "given/random_mueller.hpp"
+
+namespace mmbrdf {
+namespace {
+
+TEST(Quantities, HaveNamesOfTheirOwnAndAreFoundByThem) {
+  std::set<std::string_view> names;
+  for (const Quantity& q : quantities()) {
+    EXPECT_TRUE(names.insert(q.name).second) << q.name;
+    EXPECT_EQ(&quantity(q.name), &q);
+    EXPECT_FALSE(q.meaning.empty()) << q.name;
+  }
+  EXPECT_EQ(message_of([] { quantity("albedo"); }), "quantity 'albedo' is not known");
+}
+
+TEST(Quantities, ThatTakeLightComeLast) {
+  const auto all = quantities(), of_matrices = quantities(false);
+  EXPECT_EQ(of_matrices.data(), all.data());
+  for (const Quantity& q : all) EXPECT_EQ(q.takes_light, &q >= &*of_matrices.end()) << q.name;
+}
+
+// Their slopes are tested by Sensitivity.IsTheSlopeOfTheQuantity.
+RC_GTEST_PROP(Quantities, WithoutLightDoNotDependOnIt, ()) {
+  RandomMueller random(*rc::gen::arbitrary<std::uint64_t>());
+  const Mueller m = random.pure(0) + random.pure(0);
+  for (const Quantity& q : quantities(false)) {
+    RC_ASSERT(q.value(m, {1, 1, 0, 0}) == q.value(m, {2, 0, 0, -1}));
+    RC_ASSERT(q.gradient(m, {1, 1, 0, 0}) == q.gradient(m, {2, 0, 0, -1}));
+  }
+}
+
+}  // namespace
+}  // namespace mmbrdf
