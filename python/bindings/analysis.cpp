@@ -4,9 +4,12 @@
 
 #include <pybind11/complex.h>
 
+#include <cctype>
+
 #include "bindings.hpp"
 #include "mmbrdf/polarization/decompositions.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
 
 namespace mmbrdf::python {
 
@@ -41,13 +44,6 @@ py::tuple split_matrices(const py::object& values, py::ssize_t n) {
   return result;
 }
 
-/// (..., n) → n arrays (...).
-py::tuple split(const py::object& values, std::size_t n) {
-  py::tuple result(n);
-  for (std::size_t i = 0; i < n; ++i) result[i] = values[py::make_tuple(py::ellipsis(), i)];
-  return result;
-}
-
 py::object named(const char* name, const py::tuple& values) {
   return py::module_::import("mmbrdf").attr(name)(*values);
 }
@@ -61,22 +57,62 @@ py::object standard_uncertainties(const Given& gradient, const Given& covariance
   });
 }
 
+/// "Length of (M12, M13, M14) / M11."
+std::string documentation(const Quantity& q) {
+  std::string text = std::string(q.meaning) + ".";
+  text.front() = static_cast<char>(std::toupper(text.front()));
+  if (!q.unit.empty()) text += "\nOf matrices in the frame sp";
+  if (q.unit == "sr^-1") text += ", in their units";
+  if (!q.unit.empty()) text += ".";
+  return q.takes_light ? text + "\nstokes (..., 4) is the incident light, in the frame of the matrices." : text;
+}
+
+/// A function of an array (..., 4, 4), and of one (..., 4) if it takes light.
+template <class Result>
+void define(py::module_& m, const std::string& name, Result (*function)(const Mueller&, const Stokes&),
+            bool takes_light, const std::string& doc) {
+  if (!takes_light) {
+    m.def(
+        name.c_str(),
+        [=](const Given& mueller) {
+          return over_matrices(mueller, [=](const Mueller& matrix) { return function(matrix, {}); });
+        },
+        py::arg("mueller"), doc.c_str());
+    return;
+  }
+  m.def(
+      name.c_str(),
+      [=](const Given& mueller, const Given& stokes) {
+        const Broadcast broadcast({{"mueller", mueller, {4, 4}}, {"stokes", stokes, {4}}});
+        return map(broadcast, [&](std::size_t i) { return function(broadcast.mueller(0, i), broadcast.at<4>(1, i)); });
+      },
+      py::arg("mueller"), py::arg("stokes"), doc.c_str());
+}
+
 void bind_quantities(py::module_& m) {
-  define(m, "depolarization", depolarization,
-         "D of Gil & Bernabeu (Eq. 21): 0 for a perfect depolarizer, 1 where no light is depolarized.");
-  define(m, "diattenuation", diattenuation, "Length of (M12, M13, M14) / M11.");
-  define(m, "polarizance", polarizance, "Length of (M21, M31, M41) / M11.");
+  for (const Quantity& q : quantities()) {
+    const std::string name(q.name), slopes = "Derivatives of " + name + " with respect to M_ij: array (..., 4, 4).";
+    define(m, name, q.value, q.takes_light, documentation(q));
+    define(m, name + "_gradient", q.gradient, q.takes_light, slopes);
+  }
+  for (const std::string suffix : {"", "_gradient"})  // as C++ has it
+    m.attr(("realizability_margin" + suffix).c_str()) = m.attr(("eigenvalue_min" + suffix).c_str());
+  m.def(
+      "quantities",
+      [] {
+        return tuple_of(quantities(),
+                        [](const Quantity& q) { return record("Quantity", q.name, q.unit, q.meaning, q.takes_light); });
+      },
+      "The Quantity of each number that is derived from a matrix: what Model.analyze() gives, and the program.");
+}
+
+void bind_properties(py::module_& m) {
   define(m, "diattenuation_vector", diattenuation_vector, "(M12, M13, M14) / M11: array (..., 3).");
   define(m, "polarizance_vector", polarizance_vector, "(M21, M31, M41) / M11: array (..., 3).");
   define(m, "coherency_eigenvalues", coherency_eigenvalues,
          "Of Cloude's coherency matrix, rising, in units of M: array (..., 4).");
   define(m, "coherency", coherency, "Cloude's coherency matrix, row-major: complex array (..., 16), in units of M.");
-  define(m, "realizability_margin", realizability_margin,
-         "Smallest coherency eigenvalue / M11: negative for what cannot exist.");
   define(m, "realizable", realizable, "Whether a medium can have this matrix: array of bool.");
-  define(m, "purity", purity, "tr T^2 / M11^2: 1/4 for a perfect depolarizer, 1 for a Jones matrix.");
-  define(m, "entropy", entropy,
-         "Of the coherency eigenvalues, base 4: 1 for a perfect depolarizer, 0 for a Jones matrix.");
   m.def(
       "retardance",
       [](const Given& mueller) {
@@ -84,39 +120,16 @@ void bind_quantities(py::module_& m) {
       },
       py::arg("mueller"), "Angle in degrees, 0 to 180, by which a retarder turns the Poincare sphere.");
   define(m, "depolarization_power", depolarization_power, "1 - |tr m| / 3 of a depolarizer (Lu & Chipman).");
-  m.def(
-      "degree_of_polarization",
-      [](const Given& mueller, const Given& stokes) {
-        const Broadcast broadcast({{"mueller", mueller, {4, 4}}, {"stokes", stokes, {4}}});
-        return map(broadcast, [&](std::size_t i) {
-          return degree_of_polarization(broadcast.mueller(0, i), broadcast.at<4>(1, i));
-        });
-      },
-      py::arg("mueller"), py::arg("stokes"), "Of the light that M makes of the incident Stokes vectors (..., 4).");
 }
 
 void bind_gradients(py::module_& m) {
-  define(m, "depolarization_gradient", depolarization_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
-  define(m, "diattenuation_gradient", diattenuation_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
-  define(m, "polarizance_gradient", polarizance_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
   define(m, "smallest_eigenvalue_gradient", smallest_eigenvalue_gradient,
          "Derivatives with respect to M_ij: array (..., 4, 4).");
-  define(m, "realizability_margin_gradient", realizability_margin_gradient,
-         "Derivatives with respect to M_ij: array (..., 4, 4).");
-  define(m, "purity_gradient", purity_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
-  define(m, "entropy_gradient", entropy_gradient, "Derivatives with respect to M_ij: array (..., 4, 4).");
   m.def(
       "co_and_cross_polarized_gradients",
       [] {
         const PolarizedBrdfGradients g = co_and_cross_polarized_gradients();
-        py::tuple result(4);
-        const std::array all{g.ss, g.sp, g.ps, g.pp};
-        for (std::size_t i = 0; i < all.size(); ++i) {
-          py::array_t<double> one({4, 4});
-          Layout<Mueller>::store(all[i], one.mutable_data());
-          result[i] = one;
-        }
-        return named("PolarizedBrdf", result);
+        return record("PolarizedBrdf", array_of(g.ss), array_of(g.sp), array_of(g.ps), array_of(g.pp));
       },
       "PolarizedBrdf of the derivatives of f_ss, f_sp, f_ps, f_pp with respect to M_ij in the sp frame: (4, 4) each.");
   m.def(
@@ -128,13 +141,8 @@ void bind_gradients(py::module_& m) {
 void bind_sums(py::module_& m) {
   m.def(
       "co_and_cross_polarized",
-      [](const Given& mueller) {
-        return named("PolarizedBrdf", split(over_matrices(mueller,
-                                                          [](const Mueller& f) {
-                                                            const PolarizedBrdf p = co_and_cross_polarized(f);
-                                                            return std::array{p.ss, p.sp, p.ps, p.pp};
-                                                          }),
-                                            4));
+      [=](const Given& f) {
+        return record("PolarizedBrdf", m.attr("f_ss")(f), m.attr("f_sp")(f), m.attr("f_ps")(f), m.attr("f_pp")(f));
       },
       py::arg("mueller_sp"),
       "PolarizedBrdf(ss, sp, ps, pp) of matrices in the sp frame, in their units; the first letter is the incident\n"
@@ -203,6 +211,7 @@ void bind_factors(py::module_& m) {
 
 void bind_analysis(py::module_& m) {
   bind_quantities(m);
+  bind_properties(m);
   bind_gradients(m);
   bind_sums(m);
   bind_factors(m);

@@ -10,6 +10,23 @@
 
 namespace mmbrdf::python {
 
+std::vector<TypeBTerm> terms_from(const Terms& named) {
+  static const std::map<std::string, ErrorOf> known{{"scale", ErrorOf::scale},
+                                                    {"theta_i_deg", ErrorOf::theta_i},
+                                                    {"theta_r_deg", ErrorOf::theta_r},
+                                                    {"azimuth_deg", ErrorOf::azimuth},
+                                                    {"calibration", ErrorOf::calibration}};
+  std::vector<TypeBTerm> terms;
+  for (const auto& [name, uncertainty] : named.value_or(std::map<std::string, double>{})) {
+    const auto what = known.find(name);
+    if (what == known.end())
+      throw std::invalid_argument("terms: " + name +
+                                  ": expected scale, theta_i_deg, theta_r_deg, azimuth_deg or calibration");
+    terms.push_back({name, what->second, name.ends_with("_deg") ? radians(uncertainty) : uncertainty});
+  }
+  return terms;
+}
+
 namespace {
 
 /// The array that the caller gave for the result, or a new one.
@@ -73,26 +90,6 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
   range.warn(question.broadcast().size());
   return result;
 }
-
-/// {"scale": 0.003, "theta_i_deg": 0.02}: names as in the program's --term, angles with their unit.
-std::vector<TypeBTerm> terms_from(const std::optional<std::map<std::string, double>>& named) {
-  static const std::map<std::string, ErrorOf> known{{"scale", ErrorOf::scale},
-                                                    {"theta_i_deg", ErrorOf::theta_i},
-                                                    {"theta_r_deg", ErrorOf::theta_r},
-                                                    {"azimuth_deg", ErrorOf::azimuth},
-                                                    {"calibration", ErrorOf::calibration}};
-  std::vector<TypeBTerm> terms;
-  for (const auto& [name, uncertainty] : named.value_or(std::map<std::string, double>{})) {
-    const auto what = known.find(name);
-    if (what == known.end())
-      throw std::invalid_argument("terms: " + name +
-                                  ": expected scale, theta_i_deg, theta_r_deg, azimuth_deg or calibration");
-    terms.push_back({name, what->second, name.ends_with("_deg") ? radians(uncertainty) : uncertainty});
-  }
-  return terms;
-}
-
-using Terms = std::optional<std::map<std::string, double>>;
 
 MuellerCovariance covariance_at(const PreparedUncertainty& uncertainty, const PreparedModel& model,
                                 const Geometry& geometry, Frame frame, const std::vector<TypeBTerm>& terms) {
@@ -215,16 +212,6 @@ py::object labelled(const py::object& values, const char* quantity, ModelObject&
       .attr("labelled")(values, quantity, model.shared_from_this(), frame, arguments,
                         py::arg("as_printed") = as_printed, py::arg("terms") = terms);
 }
-
-/// Declares a method that has the arguments of a question before its own.
-template <class Function, class... Arguments>
-void define(ModelClass& c, const char* name, Function function, const char* doc, const Arguments&... own) {
-  c.def(name, function, py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"), py::arg("phi_i_deg"),
-        py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), own..., doc);
-}
-
-using Wavelength = std::optional<Given>;
-using Threads = std::optional<int>;
 
 py::dict arguments(const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr) {
   py::dict result;

@@ -30,6 +30,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   ModelClass model = bind_model(m);
   bind_dataset(m);
   bind_evaluation(model);
+  bind_answer(model);
   bind_mueller(m);
   bind_analysis(m);
   bind_apertures(m);

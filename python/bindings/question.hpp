@@ -12,6 +12,7 @@
 
 #include "bindings.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
 
 namespace mmbrdf::python {
 
@@ -131,5 +132,19 @@ class Question {
   Broadcast broadcast_;
   bool one_wavelength_;
 };
+
+/// Declares a method that has the arguments of a question before its own.
+template <class Function, class... Arguments>
+void define(ModelClass& c, const char* name, Function function, const char* doc, const Arguments&... own) {
+  c.def(name, function, py::arg("wavelength_nm") = py::none(), py::arg("theta_i_deg"), py::arg("phi_i_deg"),
+        py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::kw_only(), own..., doc);
+}
+
+using Wavelength = std::optional<Given>;
+using Threads = std::optional<int>;
+
+/// {"scale": 0.003, "theta_i_deg": 0.02}: names as in the program's --term, angles with their unit.
+using Terms = std::optional<std::map<std::string, double>>;
+std::vector<TypeBTerm> terms_from(const Terms& named);
 
 }  // namespace mmbrdf::python

@@ -66,6 +66,28 @@ class PolarizedBrdf(_NamedTuple):
     pp: _Array
 
 
+class Quantity(_NamedTuple):
+    """A number that is derived from a Mueller matrix, and from incident light if it takes some."""
+
+    name: str
+    unit: str
+    meaning: str
+    takes_light: bool
+
+
+class Analyzed(_NamedTuple):
+    """A quantity at many geometries: what Model.analyze() gives. Arrays of one shape."""
+
+    value: _Array
+    u: _Array
+    """Standard uncertainty (k = 1)."""
+    parts: dict[str, _Array]
+    """u in first order of the fit alone, and of each term alone: their squares add up."""
+    low: _Array
+    """With draws: low to high hold 95 % of them."""
+    high: _Array
+
+
 class CloudeDecomposition(_NamedTuple):
     """M = sum of weights (..., 4), falling, times components (..., 4, 4, 4) that do not depolarize."""
 

@@ -155,3 +155,38 @@ def test_copies_of_an_aperture_are_the_same():
             assert repr(same) == repr(shape) and same.projected_solid_angle == shape.projected_solid_angle
             there, here = (mmbrdf.average(ptfe, 532, mmbrdf.Aperture.direction(8), one, 1e-3) for one in (same, shape))
             np.testing.assert_array_equal(there[0], here[0])
+
+
+def test_analyze_is_everything_at_once(ptfe):
+    question = {"wavelength_nm": [[532], [633]], "theta_i_deg": 45, "phi_i_deg": 0,
+                "theta_r_deg": [0, 30, 60], "phi_r_deg": 170}  # fmt: skip
+    terms, light = {"scale": 0.003, "theta_r_deg": 0.02}, [1, 0.5, 0, -0.5]
+    analyzed = ptfe.analyze(**question, frame="sp", terms=terms, stokes=light)
+    m, v = ptfe.evaluate(**question, frame="sp"), ptfe.covariance(**question, frame="sp", terms=terms)
+    assert list(analyzed) == [q.name for q in mmbrdf.quantities()]
+    for q in mmbrdf.quantities():
+        arguments = (m, light) if q.takes_light else (m,)
+        gradient = getattr(mmbrdf, q.name + "_gradient")(*arguments)
+        a = analyzed[q.name]
+        np.testing.assert_array_equal(a.value, getattr(mmbrdf, q.name)(*arguments))
+        np.testing.assert_allclose(a.u, mmbrdf.standard_uncertainty(gradient, v), rtol=1e-12)
+        assert list(a.parts) == ["fit", *terms]
+        np.testing.assert_allclose(np.sqrt(sum(part**2 for part in a.parts.values())), a.u, rtol=1e-9)
+        assert np.isnan(a.low).all() and np.isnan(a.high).all()
+
+
+def test_analyze_has_intervals_from_draws(ptfe):
+    analyzed = ptfe.analyze(532, 45, 0, [0, 30], 180, draws=200, seed=3)
+    d = mmbrdf.depolarization(ptfe.evaluate_draws(200, 3, 532, 45, 0, [0, 30], 180))
+    np.testing.assert_allclose(analyzed["depolarization"].u, d.std(axis=0, ddof=1), rtol=1e-9)
+    assert (analyzed["depolarization"].low < analyzed["depolarization"].value).all()
+    assert np.isnan(analyzed["f_ss"].low).all() and "degree_of_polarization" not in analyzed
+
+
+def test_analyze_has_nan_where_there_is_no_number(ptfe):
+    published = mmbrdf.in_published_form(mmbrdf.material("ptfe-1064"))
+    with pytest.warns(mmbrdf.ExtrapolationWarning):
+        analyzed = published.analyze(None, 90, 0, 90, 0)
+    assert np.isnan(analyzed["depolarization"].value) and analyzed["f_ss"].value < 0
+    with pytest.raises(ValueError, match="cannot exist"):
+        ptfe.analyze(532, 45, 0, 30, 180, stokes=[1, 1, 1, 0])
