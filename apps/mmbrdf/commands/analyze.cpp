@@ -153,15 +153,15 @@ void analyze(Options& options) {
   analyze_one(options);
 }
 
-constexpr const char* footer =
+constexpr const char* columns =
     "Columns behind those of the geometry: f11 ... f44 in sr^-1 in the frame asked for, validity and u_f11 ... u_f44 "
     "as\n"
-    "for evaluate; depolarization; f_ss, f_sp, f_ps, f_pp in sr^-1 (the first letter is the incident polarization);\n"
-    "diattenuation; polarizance; eigenvalue_min, the smallest eigenvalue of the coherency matrix divided by f11;\n"
-    "realizable, 1 unless f11 or an eigenvalue is negative; purity; entropy; estimable, 1 where the data of the fit\n"
-    "determine every element. u_NAME is the standard uncertainty (k = 1) of NAME. A field is empty where a quantity "
-    "has\n"
-    "no meaning (f11 is not positive) or its uncertainty is not known.\n"
+    "for evaluate; then of the matrix in the frame sp, each with its standard uncertainty (k = 1) in u_NAME:\n";
+
+constexpr const char* footer =
+    "and realizable, 1 unless f11 or an eigenvalue is negative; estimable, 1 where the data of the fit determine "
+    "every\n"
+    "element. A field is empty where a quantity has no meaning (f11 is not positive) or its uncertainty is not known.\n"
     "\n"
     "A scan of theta_r without --reflected runs in the plane of incidence: forward (phi_r = phi_i + 180) for\n"
     "theta_r > 0, back towards the source for theta_r < 0.\n"
@@ -177,6 +177,14 @@ constexpr const char* footer =
     "  mmbrdf analyze ptfe -w 532 -i 45,0 --scan theta_r=-75:75:1 -o scan.csv\n"
     "  mmbrdf analyze ptfe --geometries directions.csv --monte-carlo 1000 -o values.csv";
 
+std::string quantity_lines() {
+  std::string text;
+  for (const Quantity& q : quantities())
+    text += format("  %-24s", std::string(q.name).c_str()) + std::string(q.meaning) +
+            (q.unit.empty() ? "" : ", in " + std::string(q.unit)) + (q.takes_light ? " (with --stokes)\n" : "\n");
+  return text;
+}
+
 }  // namespace
 
 Run analyze_command(CLI::App& app, const CommandLine&) {
@@ -189,7 +197,7 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
             "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
             "calibration=0.001; repeatable");
   add_option(app, "--stokes", o->asked.light, stokes_from, "S1,S2,S3,S4",
-             "Incident light, in the frame: adds degree_of_polarization");
+             "Incident light, in the frame: adds what becomes of it");
   const Option draws = add_option(app, "--monte-carlo", o->asked.draws, draws_from, "N",
                                   "Uncertainties of ratios from N draws [first order]");
   add_option(app, "--seed", o->asked.seed, seed, "S", "Whole number that chooses the draws [0]").needs(draws);
@@ -197,7 +205,7 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
   add_as_printed(app, *o);
   add_option(app, "--format", o->format, format_from, "FORMAT",
              "text, csv or json for one geometry [text]; csv for files and scans");
-  set_footer(app, footer);
+  set_footer(app, columns + quantity_lines() + footer);
   return [o] { analyze(*o); };
 }
 

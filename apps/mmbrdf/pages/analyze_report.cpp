@@ -131,9 +131,8 @@ std::string columns(const Answers& answers) {
     const std::string name(quantity.name);
     text += "," + name + ",u_" + name;
     text += answers.has_interval(quantity) ? "," + name + "_low," + name + "_high" : "";
-    text += name == "eigenvalue_min" ? ",realizable" : "";
   }
-  return text + ",estimable";
+  return text + ",realizable,estimable";
 }
 
 void append_fields(std::string& text, const Answer& a, const Answers& answers) {
@@ -148,9 +147,9 @@ void append_fields(std::string& text, const Answer& a, const Answers& answers) {
       append(text, q.low);
       append(text, q.high);
     }
-    text += q.quantity->name != "eigenvalue_min" ? "" : a.realizable ? ",1" : ",0";
   }
-  text += ',' + (a.estimable ? std::string(*a.estimable ? "1" : "0") : "");
+  text += a.realizable ? ",1," : ",0,";
+  if (a.estimable) text += *a.estimable ? '1' : '0';
 }
 
 /// Draws of several wavelengths are kept while they are not more than some 160 MB.
