@@ -2,6 +2,8 @@
 #include "mmbrdf/quantities/quantities.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -31,6 +33,33 @@ constexpr Quantity polarized(std::string_view name, std::string_view meaning) {
           [](M, S) { return co_and_cross_polarized_gradients().*slopes; }};
 }
 
+/// M · light, of light that can exist.
+Stokes scattered(M m, S light) {
+  degree_of_polarization(light);  // refuses
+  const Stokes result = m * light;
+  if (!std::ranges::all_of(result, [](double s) { return std::isfinite(s); }))
+    throw std::invalid_argument("the scattered light is not finite");
+  return result;
+}
+
+/// Of component k of the scattered light.
+Mueller scattered_gradient(std::size_t k, S light) {
+  Mueller result;
+  std::ranges::copy(light, result.elements.begin() + static_cast<std::ptrdiff_t>(4 * k));
+  return result;
+}
+
+template <std::size_t k>
+constexpr Quantity component(std::string_view name, std::string_view meaning) {
+  return {name,
+          "sr^-1",
+          meaning,
+          true,
+          true,
+          [](M m, S light) { return scattered(m, light)[k]; },
+          [](M m, S light) { return scattered(m, light), scattered_gradient(k, light); }};
+}
+
 using P = PolarizedBrdf;
 using G = PolarizedBrdfGradients;
 
@@ -48,6 +77,10 @@ constexpr Quantity table[] = {
     of_matrix<purity, purity_gradient>("purity", "1/4 for a perfect depolarizer, 1 for a Jones matrix"),
     of_matrix<entropy, entropy_gradient>(
         "entropy", "of the coherency eigenvalues: 1 for a perfect depolarizer, 0 for a Jones matrix"),
+    component<0>("scattered_S1", "scattered light: intensity"),
+    component<1>("scattered_S2", "scattered light: s- minus p-polarized"),
+    component<2>("scattered_S3", "scattered light: at +45 minus at -45 degrees, from s towards p"),
+    component<3>("scattered_S4", "scattered light: left- minus right-handed"),
     {"degree_of_polarization", "", "of the scattered light", false, true, degree_of_polarization,
      degree_of_polarization_gradient},
 };

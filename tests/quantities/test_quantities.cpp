@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "given/cases.hpp"
 #include "given/random_mueller.hpp"
@@ -37,6 +38,20 @@ RC_GTEST_PROP(Quantities, WithoutLightDoNotDependOnIt, ()) {
     RC_ASSERT(q.value(m, {1, 1, 0, 0}) == q.value(m, {2, 0, 0, -1}));
     RC_ASSERT(q.gradient(m, {1, 1, 0, 0}) == q.gradient(m, {2, 0, 0, -1}));
   }
+}
+
+// The half of unpolarized light that a polarizer along s lets through is s-polarized: (1, 1, 0, 0) / 2.
+TEST(Quantities, OfTheScatteredLightAreItsStokesVector) {
+  Mueller polarizer;
+  for (const auto& [row, column] : {std::pair(0, 0), {0, 1}, {1, 0}, {1, 1}}) polarizer(row, column) = 0.5;
+  const Stokes unpolarized{3, 0, 0, 0};
+  EXPECT_EQ(quantity("scattered_S1").value(polarizer, unpolarized), 1.5);
+  EXPECT_EQ(quantity("scattered_S2").value(polarizer, unpolarized), 1.5);
+  EXPECT_EQ(quantity("scattered_S3").value(polarizer, unpolarized), 0);
+  EXPECT_EQ(quantity("scattered_S4").value(polarizer, unpolarized), 0);
+  for (const char* name : {"scattered_S1", "scattered_S4"})
+    for (const Stokes& light : {Stokes{1, 1, 1, 0}, Stokes{0, 0, 0, 0}})
+      EXPECT_NE(message_of([&] { quantity(name).gradient(polarizer, light); }), "nothing was thrown");
 }
 
 }  // namespace
