@@ -9,6 +9,7 @@
 
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -31,6 +32,23 @@ constexpr Quantity polarized(std::string_view name, std::string_view meaning) {
           false,
           [](M m, S) { return co_and_cross_polarized(m).*part; },
           [](M, S) { return co_and_cross_polarized_gradients().*slopes; }};
+}
+
+/// f_ss + f_pp > 0.
+double co_polarized(M m) {
+  const PolarizedBrdf f = co_and_cross_polarized(m);
+  if (!(f.ss + f.pp > 0)) throw std::invalid_argument("f_ss + f_pp = " + shortest(f.ss + f.pp) + ", must be positive");
+  return f.ss + f.pp;
+}
+
+double depolarization_ratio(M m) {
+  const PolarizedBrdf f = co_and_cross_polarized(m);
+  return (f.sp + f.ps) / co_polarized(m);
+}
+
+Mueller depolarization_ratio_gradient(M m) {
+  const PolarizedBrdfGradients g = co_and_cross_polarized_gradients();
+  return (1 / co_polarized(m)) * (g.sp + g.ps - depolarization_ratio(m) * (g.ss + g.pp));
 }
 
 /// M · light, of light that can exist.
@@ -70,6 +88,8 @@ constexpr Quantity table[] = {
     polarized<&P::sp, &G::sp>("f_sp", "BRDF from s- to p-polarized light"),
     polarized<&P::ps, &G::ps>("f_ps", "BRDF from p- to s-polarized light"),
     polarized<&P::pp, &G::pp>("f_pp", "BRDF from p- to p-polarized light"),
+    of_matrix<depolarization_ratio, depolarization_ratio_gradient>(
+        "depolarization_ratio", "linear depolarization ratio, (f_sp + f_ps) / (f_ss + f_pp)"),
     of_matrix<diattenuation, diattenuation_gradient>("diattenuation", "length of (M12, M13, M14) / M11"),
     of_matrix<polarizance, polarizance_gradient>("polarizance", "length of (M21, M31, M41) / M11"),
     of_matrix<realizability_margin, realizability_margin_gradient>(

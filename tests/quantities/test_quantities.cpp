@@ -40,6 +40,15 @@ RC_GTEST_PROP(Quantities, WithoutLightDoNotDependOnIt, ()) {
   }
 }
 
+// (1 − 0.6) / (1 + 0.6). Nothing is co-polarized behind what turns s into p.
+TEST(Quantities, HaveTheDepolarizationRatioOfTheTextbook) {
+  const Quantity& ratio = quantity("depolarization_ratio");
+  EXPECT_NEAR(ratio.value(diagonal(1, 0.6, -0.6, -0.4), {}), 0.25, 1e-15);
+  EXPECT_EQ(ratio.value(diagonal(1, 0, 0, 0), {}), 1);
+  EXPECT_EQ(ratio.value(identity(), {}), 0);
+  EXPECT_EQ(message_of([&] { ratio.value(diagonal(1, -1, -1, 1), {}); }), "f_ss + f_pp = 0, must be positive");
+}
+
 // The half of unpolarized light that a polarizer along s lets through is s-polarized: (1, 1, 0, 0) / 2.
 TEST(Quantities, OfTheScatteredLightAreItsStokesVector) {
   Mueller polarizer;
