@@ -9,6 +9,7 @@
 
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -78,6 +79,34 @@ constexpr Quantity component(std::string_view name, std::string_view meaning) {
           [](M m, S light) { return scattered(m, light), scattered_gradient(k, light); }};
 }
 
+struct LinearPart {
+  double s2, s3;
+};
+
+/// Of the scattered light, none of it from rounding.
+LinearPart linear_part(M m, S light) {
+  constexpr double rounding = 1e-14;
+  const Stokes s = scattered(m, light);
+  double largest = 0;
+  for (const double element : m.elements) largest = std::max(largest, std::abs(element));
+  const auto part = [&](double x) { return std::abs(x) > rounding * largest * light[0] ? x : 0; };
+  const LinearPart result{part(s[1]), part(s[2])};
+  if (result.s2 == 0 && result.s3 == 0) throw std::invalid_argument("the scattered light has no linear polarization");
+  return result;
+}
+
+double orientation_deg(M m, S light) {
+  const auto [s2, s3] = linear_part(m, light);
+  return degrees(std::atan2(s3, s2)) / 2;
+}
+
+/// d ½ atan2(S3, S2) = (S2 dS3 − S3 dS2) / 2 (S2² + S3²)
+Mueller orientation_deg_gradient(M m, S light) {
+  const auto [s2, s3] = linear_part(m, light);
+  const double length = std::hypot(s2, s3), factor = degrees(1) / 2 / length;
+  return factor * (s2 / length) * scattered_gradient(2, light) - factor * (s3 / length) * scattered_gradient(1, light);
+}
+
 using P = PolarizedBrdf;
 using G = PolarizedBrdfGradients;
 
@@ -103,6 +132,8 @@ constexpr Quantity table[] = {
     component<3>("scattered_S4", "scattered light: left- minus right-handed"),
     {"degree_of_polarization", "", "of the scattered light", false, true, degree_of_polarization,
      degree_of_polarization_gradient},
+    {"orientation_deg", "deg", "scattered light: angle of linear polarization from s to p, -90 to 90", true, true,
+     orientation_deg, orientation_deg_gradient},
 };
 
 constexpr std::size_t without_light =

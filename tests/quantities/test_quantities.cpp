@@ -63,5 +63,15 @@ TEST(Quantities, OfTheScatteredLightAreItsStokesVector) {
       EXPECT_NE(message_of([&] { quantity(name).gradient(polarizer, light); }), "nothing was thrown");
 }
 
+TEST(Quantities, HaveTheAngleOfLinearPolarizationFromSTowardsP) {
+  const Quantity& angle = quantity("orientation_deg");
+  EXPECT_EQ(angle.value(identity(), {1, 1, 0, 0}), 0);
+  EXPECT_EQ(angle.value(identity(), {2, 0, 1, 1}), 45);
+  EXPECT_EQ(angle.value(identity(), {1, 0, -1, 0}), -45);
+  for (const double rounding : {0.0, 1e-16, -1e-16}) EXPECT_EQ(angle.value(identity(), {1, -1, rounding, 0}), 90);
+  for (const Stokes& light : {Stokes{1, 0, 0, 1}, Stokes{1, 1e-16, -1e-16, 0}})
+    EXPECT_EQ(message_of([&] { angle.gradient(identity(), light); }), "the scattered light has no linear polarization");
+}
+
 }  // namespace
 }  // namespace mmbrdf

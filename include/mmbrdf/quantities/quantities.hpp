@@ -17,7 +17,8 @@ struct Quantity {
   std::string_view name;     ///< "f_ss": of a column, a key and a function
   std::string_view unit;     ///< "sr^-1"; empty for a ratio
   std::string_view meaning;  ///< a line of words
-  bool first_order;          ///< its uncertainty is that of first order, even where there are draws: it is linear in M
+  bool first_order;  ///< its uncertainty is that of first order, even where there are draws: it is linear in M, or an
+                     ///< angle, of which draws have no order
   bool takes_light;
   double (*value)(const Mueller& m_sp, const Stokes& light_sp);
   Mueller (*gradient)(const Mueller& m_sp, const Stokes& light_sp);  ///< derivatives with respect to M_ij
