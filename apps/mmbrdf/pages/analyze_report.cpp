@@ -9,9 +9,9 @@
 
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/text/rounding.hpp"
 #include "pages/describe.hpp"
 #include "pages/output.hpp"
-#include "pages/rounded.hpp"
 
 namespace mmbrdf::program {
 
@@ -51,25 +51,33 @@ std::string uncertainty_words(const AnalysisReport& r) {
          (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
 }
 
+/// What is left of a cancellation is 0, and not -0.0000000000.
+double without_rounding(double x) { return std::abs(x) < 5e-11 ? 0 : x; }
+
 void print_quantity(const Answered& q, std::string_view name, std::string_view unit, const Answer& a) {
   std::cout << format("%-24.*s", static_cast<int>(name.size()), name.data());
   if (!q.value) {
     std::cout << (a.elements(0, 0) > 0 ? "has no meaning here\n" : "has no meaning where f11 is not positive\n");
     return;
   }
-  std::cout << rounded(*q.value, q.uncertainty) << (unit.empty() ? "" : " ") << unit;
-  if (q.low && q.high)
-    std::cout << "   95 % from " << to_place_of(*q.low, q.uncertainty) << " to " << to_place_of(*q.high, q.uncertainty);
+  const auto u = q.uncertainty ? std::optional(without_rounding(*q.uncertainty)) : std::nullopt;
+  std::cout << to_place_of(without_rounding(*q.value), u) << (u ? " +- " + to_place_of(*u, u) : "")
+            << (unit.empty() ? "" : " ") << unit;
+  if (q.low && q.high) std::cout << "   95 % from " << to_place_of(*q.low, u) << " to " << to_place_of(*q.high, u);
   std::cout << '\n';
 }
 
-void print_matrix(const Mueller& m) {
+/// Elements to the place of their uncertainties, if these are known, with the points below each other.
+void print_matrix(const Mueller& m, const std::optional<Mueller>& u) {
   for (int row = 0; row < 4; ++row) {
+    std::string line;
     for (int column = 0; column < 4; ++column) {
-      const double value = m(row, column);
-      std::cout << format("%16.10f", std::abs(value) < 5e-11 ? 0 : value);  // no -0.0000000000
+      const double value = without_rounding(m(row, column));
+      const std::string text = u ? to_place_of(value, without_rounding((*u)(row, column))) : format("%.10f", value);
+      const auto point = static_cast<int>(std::min(text.find('.'), text.size()));
+      line += format("%5.*s%-11s", point, text.c_str(), text.c_str() + point);
     }
-    std::cout << '\n';
+    std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
   }
 }
 
@@ -80,10 +88,10 @@ struct Contribution {
   std::optional<double> depolarization = {};
 };
 
-/// "0.000316   9.3 %": u, and its part of the variance.
+/// "0.00032   9.3 %": u, and its part of the variance.
 std::string with_share(double u, double total) {
   const double part = total > 0 ? u / total : 0;
-  return format("%10.3g %6.1f %%", u, 100 * part * part);
+  return format("%10s %6.1f %%", to_place_of(u, u).c_str(), 100 * part * part);
 }
 
 std::vector<Contribution> contributions(const Answer& a) {
@@ -170,10 +178,10 @@ void print_text(const AnalysisReport& r) {
   std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
             << convention_note(r.question.frame) << ")"
             << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n';
-  print_matrix(a.elements);
+  print_matrix(a.elements, a.uncertainties);
   if (a.uncertainties) {
     std::cout << "its standard uncertainties\n";
-    print_matrix(*a.uncertainties);
+    print_matrix(*a.uncertainties, a.uncertainties);
   }
   if (a.budget && a.budget->terms.size() > 1) print_budget(a);
 }
