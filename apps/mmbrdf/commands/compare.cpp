@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "command.hpp"
@@ -13,7 +12,7 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
@@ -81,18 +80,6 @@ Second second_of(const Model& first, const Options& options) {
   return {std::move(samples), data_name(options.second) + if_printed(second)};
 }
 
-/// One row of the table.
-struct Row {
-  std::string element, unit;
-  const Difference& difference;
-};
-
-std::vector<Row> rows_of(const Comparison& comparison) {
-  std::vector<Row> rows{{"11", "sr^-1", comparison.f11}, {"11", "f11", comparison.f11_relative}};
-  for (std::size_t e = 1; e < 16; ++e) rows.push_back({element_name(e), "f11", comparison.normalized[e]});
-  return rows;
-}
-
 /// Wavelength in nm, and the four angles in degrees, of the largest difference.
 std::array<double, 5> place(const Difference& d) {
   return {nanometres(d.wavelength), degrees(d.geometry.incident.theta), degrees(d.geometry.incident.phi),
@@ -106,52 +93,47 @@ struct Report {
   Rotation rotation;
 };
 
+Table table(const Comparison& comparison) {
+  Table table{{{"element", "%-8s"},
+               {"unit", "%-6s"},
+               {"rms", "%11.6g"},
+               {"mean", "%12.6g"},
+               {"largest", "%12.6g"},
+               {.name = "wavelength_nm", .format = "%7.6g", .heading = "at nm", .digits = shortest}}};
+  for (const std::string angle : {"theta_i", "phi_i", "theta_r", "phi_r"})
+    table.columns.push_back({.name = angle + "_deg", .format = "%8.2f", .heading = angle, .digits = shortest});
+  const auto add = [&](const std::string& element, const std::string& unit, const Difference& d) {
+    Table::Row& row = table.rows.emplace_back(Table::Row{element, unit, d.rms, d.mean, d.largest});
+    std::ranges::copy(place(d), std::back_inserter(row));
+  };
+  add("11", "sr^-1", comparison.f11);
+  add("11", "f11", comparison.f11_relative);
+  for (std::size_t e = 1; e < 16; ++e) add(element_name(e), "f11", comparison.normalized[e]);
+  return table;
+}
+
 std::string text(const Report& report) {
-  std::string text = report.second + " - " + report.first +
-                     (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
-                     counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) +
-                     ", frame xy\n\nelement  unit           rms         mean      largest   at nm  theta_i    phi_i  "
-                     "theta_r    phi_r\n";
-  for (const auto& [element, unit, d] : rows_of(report.comparison)) {
-    const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(d);
-    text += format("%-8s %-6s %11.6g %12.6g %12.6g %7.6g %8.2f %8.2f %8.2f %8.2f\n", element.c_str(), unit.c_str(),
-                   d.rms, d.mean, d.largest, nm, theta_i, phi_i, theta_r, phi_r);
-  }
-  return text + format("\nrms of the 15 others / f11         %.6g\n", polarization_rms(report.comparison)) +
+  return report.second + " - " + report.first + (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
+         counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) + ", frame xy\n\n" +
+         text(table(report.comparison)) +
+         format("\nrms of the 15 others / f11         %.6g\n", polarization_rms(report.comparison)) +
          format("largest difference / f11           %.6g\n", largest(report.comparison).largest);
 }
 
 std::string csv(const Report& report) {
-  std::string text = "element,unit,rms,mean,largest,wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg\n";
-  for (const auto& [element, unit, d] : rows_of(report.comparison)) {
-    text += element + "," + unit;
-    for (const double value : {d.rms, d.mean, d.largest}) text += "," + exact(value);
-    for (const double value : place(d)) text += "," + shortest(value);
-    text += "\n";
-  }
-  return text + "polarization,f11," + exact(polarization_rms(report.comparison)) + ",,,,,,,\n";
+  Table all = table(report.comparison);
+  all.rows.push_back({"polarization", "f11", polarization_rms(report.comparison)});
+  return csv(all);
 }
 
 std::string json(const Report& report) {
-  nlohmann::ordered_json json{{"model", report.first},
-                              {"compared_with", report.second},
-                              {"rotation", to_string(report.rotation)},
-                              {"frame", "xy"},
-                              {"samples", report.comparison.samples}};
+  Json json{{"model", report.first},
+            {"compared_with", report.second},
+            {"rotation", to_string(report.rotation)},
+            {"frame", "xy"},
+            {"samples", report.comparison.samples}};
   for (const double wavelength : report.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
-  for (const auto& [element, unit, d] : rows_of(report.comparison)) {
-    const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(d);
-    json["elements"].push_back({{"element", element},
-                                {"unit", unit},
-                                {"rms", d.rms},
-                                {"mean", d.mean},
-                                {"largest", d.largest},
-                                {"wavelength_nm", nm},
-                                {"theta_i_deg", theta_i},
-                                {"phi_i_deg", phi_i},
-                                {"theta_r_deg", theta_r},
-                                {"phi_r_deg", phi_r}});
-  }
+  json["elements"] = json_of(table(report.comparison));
   json["rms_polarization"] = polarization_rms(report.comparison);
   json["largest"] = largest(report.comparison).largest;
   return printed(json);

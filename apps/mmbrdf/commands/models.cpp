@@ -12,7 +12,7 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
@@ -38,15 +38,22 @@ std::string functions_line(const Block& block) {
   return text;
 }
 
-void print_blocks(const Model& model) {
-  std::cout << "\nblock                modes                coefficients   rank   condition  covariance\n";
-  for (const FittedBlock& fitted : model.blocks) {
-    std::cout << format("%-20s %-20s %12zu", fitted.block.name.c_str(), functions_line(fitted.block).c_str(),
-                        fitted.coefficients.size())
-              << (fitted.rank > 0 ? format(" %6d", fitted.rank) : "      -")
-              << (fitted.condition > 0 ? format(" %11.4g", fitted.condition) : "           -")
-              << (fitted.covariance.empty() ? "  no\n" : "  yes\n");
-  }
+/// Rank and condition are 0 in JSON where they are not known.
+Table blocks(const Model& model) {
+  Table table{{{"block", "%-20s"},
+               {"modes", "%-20s"},
+               {"coefficients", "%12s"},
+               {"rank", "%6s", "rank", in_text},
+               {"condition", "%11.4g", "condition", in_text},
+               {"rank", "", "", in_json},
+               {"condition", "", "", in_json},
+               {"covariance", " %s"}}};
+  for (const FittedBlock& fitted : model.blocks)
+    table.rows.push_back({fitted.block.name, functions_line(fitted.block), fitted.coefficients.size(),
+                          fitted.rank > 0 ? Json(fitted.rank) : Json(),
+                          fitted.condition > 0 ? Json(fitted.condition) : Json(), fitted.rank, fitted.condition,
+                          !fitted.covariance.empty()});
+  return table;
 }
 
 void print_line(const std::string& name, const std::string& value) {
@@ -66,34 +73,18 @@ void print_text(const Model& model) {
   print_line("frame", frame_line);
   print_line("convention", convention_line);
   print_line("units", unit_line);
-  print_blocks(model);
-  std::cout << (model.provenance.empty() ? "" : "\n");
+  std::cout << '\n' << text(blocks(model)) << (model.provenance.empty() ? "" : "\n");
   for (const auto& [key, value] : model.provenance) print_line(key, value);
 }
 
-nlohmann::ordered_json blocks_json(const Model& model) {
-  auto json = nlohmann::ordered_json::array();
-  for (const FittedBlock& fitted : model.blocks) {
-    json.push_back({{"block", fitted.block.name},
-                    {"modes", functions_line(fitted.block)},
-                    {"coefficients", fitted.coefficients.size()},
-                    {"rank", fitted.rank},
-                    {"condition", fitted.condition},
-                    {"covariance", !fitted.covariance.empty()}});
-  }
-  return json;
-}
-
-nlohmann::ordered_json degrees_json(const std::optional<double>& angle) {
-  return angle ? nlohmann::ordered_json(degrees(*angle)) : nlohmann::ordered_json(nullptr);
-}
+Json degrees_json(const std::optional<double>& angle) { return angle ? Json(degrees(*angle)) : Json(); }
 
 void print_json(const Model& model) {
-  nlohmann::ordered_json json{{"name", model.name}};
+  Json json{{"name", model.name}};
   json.update(basis_json(model));
   json["theta_i_max_deg"] = degrees_json(model.validity.theta_i_max);
   json["theta_r_max_deg"] = degrees_json(model.validity.theta_r_max);
-  json["reflectance"] = nlohmann::ordered_json::array();
+  json["reflectance"] = Json::array();
   for (std::size_t i = 0; i < model.reflectance.values.size(); ++i) {
     json["reflectance"].push_back(
         {{"wavelength_nm", nanometres(model.reflectance.wavelengths[i])}, {"value", model.reflectance.values[i]}});
@@ -102,7 +93,7 @@ void print_json(const Model& model) {
   json["frame"] = "xy";
   json["convention"] = "germer2017";
   json["unit_f11"] = "sr^-1";
-  json["blocks"] = blocks_json(model);
+  json["blocks"] = json_of(blocks(model));
   json["provenance"] = model.provenance;
   print(json);
 }
@@ -118,12 +109,12 @@ Format text_or_json(const std::string& name) {
 }
 
 void list_materials() {
-  std::cout << "name        wavelengths              model\n";
+  Table table{{{"name", "%-11s"}, {"wavelengths", "%-24s"}, {"model"}}};
   for (const std::string& name : materials()) {
     const Model model = material(name);
-    std::cout << format("%-11s %-24s ", name.c_str(), nanometre_list(model.validity.wavelengths).c_str())
-              << basis_line(model) << '\n';
+    table.rows.push_back({name, nanometre_list(model.validity.wavelengths), basis_line(model)});
   }
+  std::cout << text(table);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "command.hpp"
 #include "mmbrdf/fitting/leverage.hpp"
@@ -13,13 +12,11 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string model, data, output;
@@ -33,50 +30,12 @@ Format report_format_from(const std::string& name) {
   throw std::invalid_argument("\"" + name + "\": expected markdown or json");
 }
 
-/// A cell of a table: | would end it, and a line end would end the row.
-std::string cell(const Json& value) {
-  if (value.is_null()) return "not known";
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_float()) return format("%.6g", value.get<double>());
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  for (std::size_t at = 0; (at = text.find_first_of("|\n", at)) != std::string::npos; at += 2)
-    text.replace(at, 1, text[at] == '|' ? "\\|" : "  ");
-  return text;
-}
-
-std::string row(const std::vector<std::string>& cells) {
-  std::string text = "|";
-  for (const std::string& one : cells) text += " " + one + " |";
-  return text + "\n";
-}
-
-/// An array of objects: their names are the columns.
-std::string table(const Json& rows) {
-  std::vector<std::string> names, line;
-  for (const auto& [name, value] : rows.front().items()) {
-    names.push_back(name);
-    line.emplace_back("---");
-  }
-  std::string text = row(names) + row(line);
-  for (const Json& object : rows) {
-    std::vector<std::string> cells;
-    for (const auto& [name, value] : object.items()) cells.push_back(cell(value));
-    text += row(cells);
-  }
-  return text;
-}
-
 /// A field of the report: prose, a list of lines, a table of names and values, or a table.
 std::string section(const Json& value) {
   if (value.is_string()) return value.get<std::string>() + "\n";
   if (value.empty()) return "none\n";
+  if (value.is_object() || value.front().is_object()) return markdown(table_of(value));
   std::string text;
-  if (value.is_object()) {
-    text = row({"", ""}) + row({"---", "---"});
-    for (const auto& [name, field] : value.items()) text += row({name, cell(field)});
-    return text;
-  }
-  if (value.front().is_object()) return table(value);
   for (const Json& line : value) text += "- " + line.get<std::string>() + "\n";
   return text;
 }

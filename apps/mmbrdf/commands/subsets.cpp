@@ -6,13 +6,12 @@
 
 #include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "command.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
@@ -100,47 +99,42 @@ std::string curves_csv(const Options& o, const SubsetSplit& split) {
   return text + "\n";
 }
 
-std::string splits_csv(const Options& o, const std::vector<SubsetSplit>& splits) {
-  std::string text = "seed,mean_deviation,root_mean_variance,predicted,mean_distance,largest_distance,theta_r_deg\n";
+/// A row for each split.
+Table table(const Options& o, const std::vector<SubsetSplit>& splits) {
+  Table table{{{.name = "seed"},
+               {.name = "mean_deviation"},
+               {.name = "root_mean_variance"},
+               {.name = "predicted", .where = in_csv},
+               {.name = "mean_distance"},
+               {.name = "largest_distance"},
+               {.name = "theta_r_deg", .where = in_csv, .digits = shortest},
+               {.name = "largest_at_theta_r_deg", .where = in_json}}};
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const SubsetStatistics& s = splits[i].statistics;
-    text += std::to_string(*splits[i].seed);
-    for (const double value :
-         {s.mean_deviation, s.root_mean_variance, splits[i].predicted, s.mean_distance, s.largest_distance}) {
-      text += "," + exact(value);
-    }
-    text += "," + shortest(o.theta_r_deg[s.largest_at]) + "\n";
+    const double at = o.theta_r_deg[s.largest_at];
+    table.rows.push_back({splits[i].seed ? Json(*splits[i].seed) : Json(), s.mean_deviation, s.root_mean_variance,
+                          splits[i].predicted, s.mean_distance, s.largest_distance, at, at});
   }
-  return text;
+  return table;
 }
 
 std::string csv(const Question&, const Options& o, const std::vector<SubsetSplit>& splits) {
-  return splits.size() == 1 ? curves_csv(o, splits.front()) : splits_csv(o, splits);
+  return splits.size() == 1 ? curves_csv(o, splits.front()) : csv(table(o, splits));
 }
 
 std::string json(const Question& q, const Options& o, const std::vector<SubsetSplit>& splits) {
-  nlohmann::ordered_json json{{"data", data_name(o.data)},
-                              {"samples", q.samples.size()},
-                              {"parts", o.division.parts},
-                              {"basis", to_string(o.basis.family)},
-                              {"orders", {o.basis.orders.f11, o.basis.orders.other}},
-                              {"rotation", to_string(o.basis.rotation)},
-                              {"weights", to_string(o.weights)},
-                              {"wavelength_nm", nanometres(q.wavelength)},
-                              {"theta_i_deg", o.theta_i_deg},
-                              {"angles", o.theta_r_deg.size()}};
-  json["reference"] = o.reference.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(base_name(o.reference));
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    const SubsetStatistics& s = splits[i].statistics;
-    nlohmann::ordered_json entry;
-    entry["seed"] = splits[i].seed ? nlohmann::ordered_json(*splits[i].seed) : nlohmann::ordered_json();
-    entry["mean_deviation"] = s.mean_deviation;
-    entry["root_mean_variance"] = s.root_mean_variance;
-    entry["mean_distance"] = s.mean_distance;
-    entry["largest_distance"] = s.largest_distance;
-    entry["largest_at_theta_r_deg"] = o.theta_r_deg[s.largest_at];
-    json["splits"].push_back(entry);
-  }
+  Json json{{"data", data_name(o.data)},
+            {"samples", q.samples.size()},
+            {"parts", o.division.parts},
+            {"basis", to_string(o.basis.family)},
+            {"orders", {o.basis.orders.f11, o.basis.orders.other}},
+            {"rotation", to_string(o.basis.rotation)},
+            {"weights", to_string(o.weights)},
+            {"wavelength_nm", nanometres(q.wavelength)},
+            {"theta_i_deg", o.theta_i_deg},
+            {"angles", o.theta_r_deg.size()}};
+  json["reference"] = o.reference.empty() ? Json() : Json(base_name(o.reference));
+  json["splits"] = json_of(table(o, splits));
   json["observed"] = root_mean_variance(splits);
   json["predicted"] = splits.front().predicted;
   return printed(json);

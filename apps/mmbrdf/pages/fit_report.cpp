@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "mmbrdf/model/description.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
@@ -32,23 +31,47 @@ long polarization_rows(const FitResult& result) {
   return rows;
 }
 
+Table::Row block_row(const FitResult& result, std::size_t b) {
+  const Solution& solution = result.solutions[b];
+  return {result.model.blocks[b].block.name, solution.x.size(), solution.rank, solution.condition()};
+}
+
+Table blocks(const FitResult& result) {
+  Table table{{{"block", "%-20s"}, {"coefficients", "%12s"}, {"rank", "%6s"}, {"condition", "%11.4g"}}};
+  for (std::size_t b = 0; b < result.solutions.size(); ++b) table.rows.push_back(block_row(result, b));
+  return table;
+}
+
+/// In CSV with its block, and with a line of all but 11.
+Table elements(const FitResult& result) {
+  Table table{{{"element", "%-7s"}, {"rows", "%8s"}, {"rms", "%12.6g"}, {"chi_squared", "%12.6g", "chi^2"}}};
+  for (const Column& column : blocks(result).columns) table.columns.push_back({column.name, "", "", in_csv});
+  table.columns.push_back({"", " %s", "", in_text, ""});
+  for (std::size_t element = 0; element < 16; ++element) {
+    const ElementFit& fit = result.elements[element];
+    const std::size_t b = block_of(result.model, element);
+    const bool fitted = b < result.solutions.size();
+    Table::Row row{element_name(element), fit.rows, fit.rms, fit.chi_squared};
+    std::ranges::move(fitted ? block_row(result, b) : Table::Row{"no modes", 0, 0, {}}, std::back_inserter(row));
+    row.push_back(fitted ? "" : "no modes");
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+void print_csv(const FitReport& report) {
+  Table table = elements(report.result);
+  table.rows.push_back({"polarization", polarization_rows(report.result), polarization_rms(report.result)});
+  std::cout << csv(table);
+}
+
 void print_text(const FitReport& report) {
   const Model& model = report.result.model;
   std::cout << report.data << ": " << counted(report.rows, "row") << " at "
             << nanometre_list(model.validity.wavelengths) << '\n'
-            << "basis " << basis_line(model) << ", weights " << report.weights
-            << "\n\nelement     rows          rms        chi^2\n";
-  for (std::size_t element = 0; element < 16; ++element) {
-    const ElementFit& fit = report.result.elements[element];
-    std::cout << format("%-7s %8ld %12.6g %12.6g", element_name(element).c_str(), fit.rows, fit.rms, fit.chi_squared)
-              << (block_of(model, element) < model.blocks.size() ? "\n" : "  no modes\n");
-  }
-  std::cout << "\nblock                coefficients   rank   condition\n";
-  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
-    const Solution& solution = report.result.solutions[b];
-    std::cout << format("%-20s %12zu %6d %11.4g\n", model.blocks[b].block.name.c_str(), solution.x.size(),
-                        solution.rank, solution.condition());
-  }
+            << "basis " << basis_line(model) << ", weights " << report.weights << "\n\n"
+            << text(elements(report.result)) << '\n'
+            << text(blocks(report.result));
   const char* f11 = model.reflectance.values.empty() ? "f11, sr^-1" : "f11 / reflectance, sr^-1";
   std::cout << format("\nrms of %-27s %.6g\n", f11, report.result.elements[0].rms)
             << format("rms of %-27s %.6g\n", "the 15 others / f11", polarization_rms(report.result))
@@ -57,50 +80,6 @@ void print_text(const FitReport& report) {
     std::cout << (i == 0 ? "\nnoise of elements 14 and 41, relative for f11\n" : "") << noise_line(report.result, i)
               << '\n';
   }
-}
-
-void print_csv(const FitReport& report) {
-  std::cout << "element,rows,rms,chi_squared,block,coefficients,rank,condition\n";
-  for (std::size_t element = 0; element < 16; ++element) {
-    const ElementFit& fit = report.result.elements[element];
-    std::cout << element_name(element) << ',' << fit.rows << ',' << exact(fit.rms) << ',' << exact(fit.chi_squared);
-    const std::size_t b = block_of(report.result.model, element);
-    if (b == report.result.solutions.size()) {
-      std::cout << ",no modes,0,0,\n";
-      continue;
-    }
-    const Solution& solution = report.result.solutions[b];
-    std::string block = report.result.model.blocks[b].block.name;
-    std::replace(block.begin(), block.end(), ',', ' ');
-    std::cout << ',' << block << ',' << solution.x.size() << ',' << solution.rank << ',' << exact(solution.condition())
-              << '\n';
-  }
-  std::cout << "polarization," << polarization_rows(report.result) << ',' << exact(polarization_rms(report.result))
-            << ",,,,,\n";
-}
-
-using Json = nlohmann::ordered_json;
-
-Json elements_json(const FitResult& result) {
-  Json json = Json::array();
-  for (std::size_t element = 0; element < 16; ++element) {
-    const ElementFit& fit = result.elements[element];
-    json.push_back(
-        {{"element", element_name(element)}, {"rows", fit.rows}, {"rms", fit.rms}, {"chi_squared", fit.chi_squared}});
-  }
-  return json;
-}
-
-Json blocks_json(const FitResult& result) {
-  Json json = Json::array();
-  for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
-    const Solution& solution = result.solutions[b];
-    json.push_back({{"block", result.model.blocks[b].block.name},
-                    {"coefficients", solution.x.size()},
-                    {"rank", solution.rank},
-                    {"condition", solution.condition()}});
-  }
-  return json;
 }
 
 Json noise_json(const FitResult& result) {
@@ -123,8 +102,8 @@ void print_json(const FitReport& report) {
   const Model& model = report.result.model;
   Json json{{"data", report.data}, {"rows", report.rows}, {"weights", report.weights}};
   json.update(basis_json(model));
-  json["elements"] = elements_json(report.result);
-  json["blocks"] = blocks_json(report.result);
+  json["elements"] = json_of(elements(report.result));
+  json["blocks"] = json_of(blocks(report.result));
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);
   json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);

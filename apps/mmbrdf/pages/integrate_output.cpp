@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "pages/describe.hpp"
 #include "pages/integrate.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
@@ -40,66 +40,59 @@ std::string theta_column(Integral quantity) {
   return quantity == Integral::dhr ? "theta_i_deg" : quantity == Integral::hdr ? "theta_r_deg" : "";
 }
 
-std::vector<std::string> value_columns(Integral quantity) {
-  if (quantity != Integral::mueller) return {to_string(quantity)};
-  std::vector<std::string> names;
-  for (std::size_t element = 0; element < 16; ++element) names.push_back("f" + element_name(element));
-  return names;
-}
-
-std::string csv(const Integrated& result) {
-  std::string text = result.several_wavelengths ? "wavelength_nm," : "";
-  const std::string theta = theta_column(result.quantity);
-  text += theta.empty() ? "" : theta + ",";
-  std::string names, u_names;
-  for (const std::string& name : value_columns(result.quantity)) {
-    names += (names.empty() ? "" : ",") + name;
-    u_names += ",u_" + name;
-  }
-  const bool geometry = needs_geometry(result.quantity);
-  text += names + u_names + (geometry ? ",quadrature_error,validity\n" : "\n");
-  for (const IntegratedRow& row : result.rows) {
-    text += result.several_wavelengths ? shortest(*row.wavelength_nm) + "," : "";
-    text += row.theta_deg ? shortest(*row.theta_deg) + "," : "";
-    for (std::size_t i = 0; i < row.values.size(); ++i) text += (i > 0 ? "," : "") + exact(row.values[i]);
-    for (std::size_t i = 0; i < row.values.size(); ++i)
-      text += "," + (row.uncertainties.empty() ? "" : exact(row.uncertainties[i]));
-    text += geometry ? "," + format("%.1e", row.quadrature_error) + "," + to_string(row.outside) + "\n" : "\n";
-  }
-  return text;
-}
-
-// ---- JSON
-
-nlohmann::ordered_json square(const std::vector<double>& elements) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+Json square(const std::vector<double>& elements) {
+  Json json = Json::array();
   for (std::size_t row = 0; row < 4 && !elements.empty(); ++row)
     json.push_back(std::vector<double>(&elements[4 * row], &elements[4 * row] + 4));
   return elements.empty() ? nullptr : json;
 }
 
-nlohmann::ordered_json row_json(const Integrated& result, const IntegratedRow& row) {
+/// A matrix is one cell in JSON, and sixteen in CSV.
+std::vector<Column> columns(const Integrated& result) {
   const std::string name = to_string(result.quantity), theta = theta_column(result.quantity);
-  nlohmann::ordered_json json;
-  json["wavelength_nm"] = row.wavelength_nm ? nlohmann::ordered_json(*row.wavelength_nm) : nullptr;
-  if (row.theta_deg) json[theta] = *row.theta_deg;
-  if (result.quantity == Integral::mueller) {
-    json[name] = square(row.values);
-    json["u_" + name] = square(row.uncertainties);
-  } else {
-    json[name] = row.values.front();
-    json["u_" + name] = row.uncertainties.empty() ? nullptr : nlohmann::ordered_json(row.uncertainties.front());
+  const bool geometry = needs_geometry(result.quantity), matrix = result.quantity == Integral::mueller;
+  const int width = std::max(11, static_cast<int>(name.size()) + 1);
+  std::vector<Column> columns{{"wavelength_nm", "%13.10g", "wavelength_nm",
+                               result.several_wavelengths ? everywhere : in_text | in_json, "unknown", shortest}};
+  if (!theta.empty()) columns.push_back({.name = theta, .format = "%12.10g", .digits = shortest});
+  columns.push_back({name, format("%%%d.6f", width), name, matrix ? in_json : everywhere});
+  columns.push_back(
+      {"u_" + name, format("%%%d.2g", width + 2), "u_" + name, matrix ? in_json : everywhere, "not known"});
+  for (const std::string element : {"f", "u_f"})
+    for (std::size_t e = 0; e < (matrix ? 16 : 0); ++e) columns.push_back({element + element_name(e), "", "", in_csv});
+  if (geometry) {
+    columns.push_back({.name = "quadrature_error", .where = in_csv | in_json, .digits = [](double error) {
+                         return format("%.1e", error);
+                       }});
+    columns.push_back({.name = "geometries", .where = in_json});
   }
-  if (needs_geometry(result.quantity)) {
-    json["quadrature_error"] = row.quadrature_error;
-    json["geometries"] = row.geometries;
-  }
-  json["validity"] = to_string(row.outside);
-  return json;
+  columns.push_back({"validity", " %s", "validity", geometry ? everywhere : in_text | in_json});
+  return columns;
 }
 
-nlohmann::ordered_json json_of(const Integrated& result) {
-  nlohmann::ordered_json json;
+Table table(const Integrated& result) {
+  Table table{columns(result)};
+  const bool matrix = result.quantity == Integral::mueller;
+  for (const IntegratedRow& row : result.rows) {
+    const bool known = !row.uncertainties.empty();
+    Table::Row cells{row.wavelength_nm ? Json(*row.wavelength_nm) : Json()};
+    if (row.theta_deg) cells.push_back(*row.theta_deg);
+    cells.push_back(matrix ? square(row.values) : Json(row.values.front()));
+    cells.push_back(matrix ? square(row.uncertainties) : known ? Json(row.uncertainties.front()) : Json());
+    if (matrix) {
+      cells.insert(cells.end(), row.values.begin(), row.values.end());
+      cells.insert(cells.end(), row.uncertainties.begin(), row.uncertainties.end());
+      if (!known) cells.resize(cells.size() + row.values.size());
+    }
+    if (needs_geometry(result.quantity)) cells.insert(cells.end(), {row.quadrature_error, row.geometries});
+    cells.push_back(to_string(row.outside));
+    table.rows.push_back(cells);
+  }
+  return table;
+}
+
+Json json_of(const Integrated& result) {
+  Json json;
   json["model"] = result.model;
   json["quantity"] = to_string(result.quantity);
   json["meaning"] = named(result.quantity).meaning;
@@ -111,30 +104,12 @@ nlohmann::ordered_json json_of(const Integrated& result) {
     json["polarization"] = result.polarization;
   }
   if (result.extrapolated) json["extrapolated_share_of_hemisphere"] = *result.extrapolated;
-  for (const IntegratedRow& row : result.rows) json["rows"].push_back(row_json(result, row));
+  json["rows"] = json_of(table(result));
   return json;
 }
 
-// ---- text
-
-std::string uncertainty_text(const IntegratedRow& row, std::size_t i) {
-  if (row.uncertainties.empty()) return "not known";
-  const double u = row.uncertainties[i];
+std::string uncertainty_text(double u) {
   return format("%.2g", u < 1e-15 ? 0 : u);  // of elements that are 0 by symmetry, rounding is left
-}
-
-std::string table(const Integrated& result) {
-  const std::string name = to_string(result.quantity), theta = theta_column(result.quantity);
-  const int width = std::max(12, static_cast<int>(name.size()) + 2);
-  std::string text = "wavelength_nm" + (theta.empty() ? "" : format("%13s", theta.c_str())) +
-                     format("%*s%*s  validity\n", width, name.c_str(), width + 2, ("u_" + name).c_str());
-  for (const IntegratedRow& row : result.rows) {
-    text += format("%13s", row.wavelength_nm ? brief(*row.wavelength_nm).c_str() : "unknown");
-    text += row.theta_deg ? format("%13s", brief(*row.theta_deg).c_str()) : "";
-    text += format("%*.6f%*s  ", width, row.values.front(), width + 2, uncertainty_text(row, 0).c_str()) +
-            to_string(row.outside) + "\n";
-  }
-  return text;
 }
 
 std::string matrices(const Integrated& result) {
@@ -148,7 +123,7 @@ std::string matrices(const Integrated& result) {
     }
     text += "standard uncertainties";
     for (std::size_t e = 0; e < 16 && !row.uncertainties.empty(); ++e)
-      text += (e % 4 == 0 ? "\n" : "") + format("%14s", uncertainty_text(row, e).c_str());
+      text += (e % 4 == 0 ? "\n" : "") + format("%14s", uncertainty_text(row.uncertainties[e]).c_str());
     text += row.uncertainties.empty() ? " not known\n" : "\n";
   }
   return text;
@@ -163,7 +138,7 @@ std::string text_of(const Integrated& result) {
     text += "\nsource      " + result.source + "\nreceiver    " + result.receiver + "\n";
   else
     text += (result.quantity == Integral::bhr ? "" : ", polarization " + result.polarization) + "\n";
-  text += result.quantity == Integral::mueller ? matrices(result) : table(result);
+  text += result.quantity == Integral::mueller ? matrices(result) : program::text(table(result));
   if (geometry) {
     double error = 0;
     long geometries = 0;
@@ -202,7 +177,9 @@ bool needs_geometry(Integral quantity) {
 }
 
 std::string written(const Integrated& result, Format format) {
-  return format == Format::text ? text_of(result) : format == Format::csv ? csv(result) : printed(json_of(result));
+  return format == Format::text  ? text_of(result)
+         : format == Format::csv ? csv(table(result))
+                                 : printed(json_of(result));
 }
 
 }  // namespace mmbrdf::program

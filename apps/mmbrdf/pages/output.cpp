@@ -48,9 +48,9 @@ std::string shortest(double value) {
 
 std::string brief(double value) { return format("%.10g", value); }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (std::size_t i = 0; i < words.size(); ++i) text += (i > 0 ? between : "") + words[i];
   return text;
 }
 

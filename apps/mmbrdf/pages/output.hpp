@@ -25,7 +25,7 @@ void note(const std::string& message);
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
 /// "a, b, c"
-std::string joined(const std::vector<std::string>& words);
+std::string joined(const std::vector<std::string>& words, const std::string& between = ", ");
 
 /// 17 significant digits: reading them gives the same number.
 std::string exact(double value);

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pages/select_report.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "mmbrdf/model/description.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
 
 using Kind = Partition::Kind;
-using Json = nlohmann::ordered_json;
 
 /// Both parts with their names.
 std::array<std::pair<const char*, const PartSelection*>, 2> parts(const Selection& selection) {
@@ -50,73 +49,28 @@ std::string recommended_options(const SelectReport& report) {
          (report.wavelengths.size() > 1 ? " --powers " + std::to_string(selection.powers) : "");
 }
 
-void print_table(const SelectReport& report, const PartSelection& part) {
-  std::cout << "order powers coefficients   rank  condition        rms        AIC        BIC";
-  for (const Partition& partition : report.partitions)
-    std::cout << format(" %13s", ("CV " + to_string(partition.kind)).c_str());
-  std::cout << '\n';
-  for (const Candidate& one : part.candidates) {
-    std::cout << format("%5d %6d %12d %6d %10.4g %10.4g %10.1f %10.1f", one.order, one.powers, one.coefficients,
-                        one.rank, one.condition, one.rms, one.aic, one.bic);
-    for (const HeldOut& held_out : one.held_out)
-      std::cout << (held_out.undetermined.empty() ? format(" %13.4g", held_out.rms) : format(" %13s", "-"));
-    const std::string how = status(part, one);
-    std::cout << (how.empty() ? "" : "  " + how) << '\n';
-  }
-}
+constexpr std::array kinds{Kind::rows, Kind::random, Kind::angle, Kind::wavelength};
 
-void print_text(const SelectReport& report) {
-  std::cout << report.data << ": " << counted(report.rows, "row") << " at " << nanometre_list(report.wavelengths)
-            << "\nbasis " << to_string(report.options.family) << ", " << to_string(report.options.mapping)
-            << " mapping, weights " << report.weights << "\nleft out in turn: " << left_out(report.partitions) << '\n';
-  const bool divided = report.wavelengths.size() > 1 || report.options.reflectance;
-  for (const auto& [name, part] : parts(report.selection)) {
-    const bool is_f11 = part == &report.selection.f11;
-    std::cout << (!is_f11 ? "\nThe 15 others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
-    print_table(report, *part);
-    for (const Candidate& one : part->candidates) {
-      if (!one.refusal.empty()) {
-        std::cout << "order " << one.order << (one.powers > 0 ? ", powers " + std::to_string(one.powers) : "")
-                  << " refused: " << one.refusal << '\n';
-      }
-    }
+std::vector<Column> columns(const SelectReport& report) {
+  std::vector<Column> columns{{"part", "%s", "", in_csv}, {"order", "%5s"},         {"powers", "%6s"},
+                              {"coefficients", "%12s"},   {"rank", "%6s"},          {"condition", "%10.4g"},
+                              {"rms", "%10.4g"},          {"aic", "%10.1f", "AIC"}, {"bic", "%10.1f", "BIC"}};
+  for (const Kind kind : kinds) {
+    const bool there = std::ranges::count(report.partitions, kind, &Partition::kind) > 0;
+    columns.push_back(
+        {"cv_" + to_string(kind), "%13.4g", "CV " + to_string(kind), there ? in_text | in_csv : unsigned{in_csv}});
   }
-  std::cout << '\n'
-            << (report.selection.orders ? "recommended: " + recommended_options(report) : "no recommendation")
-            << "\n  f11     " << report.selection.f11.reason << "\n  others  " << report.selection.other.reason << '\n';
-}
-
-/// Without commas: a field of a CSV file.
-std::string field(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if (text[i] == ',') text[i] = i + 1 < text.size() && text[i + 1] == ' ' ? ';' : ' ';
-  return text;
+  columns.push_back({"status", " %s", "", in_text | in_csv});
+  columns.push_back({"reason", "%s", "", in_csv});
+  columns.push_back({"cross_validation", "", "", in_json});
+  columns.push_back({"refused", "", "", in_json});
+  return columns;
 }
 
 const HeldOut* of_kind(const SelectReport& report, const Candidate& candidate, Kind kind) {
   for (std::size_t p = 0; p < report.partitions.size(); ++p)
     if (report.partitions[p].kind == kind) return &candidate.held_out[p];
   return nullptr;
-}
-
-constexpr std::array kinds{Kind::rows, Kind::random, Kind::angle, Kind::wavelength};
-
-void print_csv(const SelectReport& report) {
-  std::cout << "part,order,powers,coefficients,rank,condition,rms,aic,bic";
-  for (const Kind kind : kinds) std::cout << ",cv_" << to_string(kind);
-  std::cout << ",status,reason\n";
-  for (const auto& [name, part] : parts(report.selection)) {
-    for (const Candidate& one : part->candidates) {
-      std::cout << name << ',' << one.order << ',' << one.powers << ',' << one.coefficients << ',' << one.rank << ','
-                << exact(one.condition) << ',' << exact(one.rms) << ',' << exact(one.aic) << ',' << exact(one.bic);
-      for (const Kind kind : kinds) {
-        const HeldOut* held_out = of_kind(report, one, kind);
-        std::cout << ',' << (held_out && held_out->undetermined.empty() ? exact(held_out->rms) : "");
-      }
-      std::cout << ',' << status(*part, one) << ',' << field(is_recommended(*part, one) ? part->reason : one.refusal)
-                << '\n';
-    }
-  }
 }
 
 Json cross_validation_json(const SelectReport& report, const Candidate& candidate) {
@@ -134,21 +88,48 @@ Json cross_validation_json(const SelectReport& report, const Candidate& candidat
   return json;
 }
 
-Json part_json(const SelectReport& report, const PartSelection& part) {
-  Json json = Json::array();
+/// The candidates for f11, or for the other elements.
+Table table(const SelectReport& report, const PartSelection& part) {
+  Table table{columns(report)};
+  const std::string name = &part == &report.selection.f11 ? "f11" : "other";
   for (const Candidate& one : part.candidates) {
-    json.push_back({{"order", one.order},
-                    {"powers", one.powers},
-                    {"coefficients", one.coefficients},
-                    {"rank", one.rank},
-                    {"condition", one.condition},
-                    {"rms", one.rms},
-                    {"aic", one.aic},
-                    {"bic", one.bic},
-                    {"cross_validation", cross_validation_json(report, one)},
-                    {"refused", one.refusal.empty() ? Json() : Json(one.refusal)}});
+    Table::Row row{name, one.order, one.powers, one.coefficients, one.rank, one.condition, one.rms, one.aic, one.bic};
+    for (const Kind kind : kinds) {
+      const HeldOut* held_out = of_kind(report, one, kind);
+      row.push_back(held_out && held_out->undetermined.empty() ? Json(held_out->rms) : Json());
+    }
+    row.insert(row.end(), {status(part, one), is_recommended(part, one) ? part.reason : one.refusal,
+                           cross_validation_json(report, one), one.refusal.empty() ? Json() : Json(one.refusal)});
+    table.rows.push_back(row);
   }
-  return json;
+  return table;
+}
+
+void print_text(const SelectReport& report) {
+  std::cout << report.data << ": " << counted(report.rows, "row") << " at " << nanometre_list(report.wavelengths)
+            << "\nbasis " << to_string(report.options.family) << ", " << to_string(report.options.mapping)
+            << " mapping, weights " << report.weights << "\nleft out in turn: " << left_out(report.partitions) << '\n';
+  const bool divided = report.wavelengths.size() > 1 || report.options.reflectance;
+  for (const auto& [name, part] : parts(report.selection)) {
+    const bool is_f11 = part == &report.selection.f11;
+    std::cout << (!is_f11 ? "\nThe 15 others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
+    std::cout << text(table(report, *part));
+    for (const Candidate& one : part->candidates) {
+      if (!one.refusal.empty()) {
+        std::cout << "order " << one.order << (one.powers > 0 ? ", powers " + std::to_string(one.powers) : "")
+                  << " refused: " << one.refusal << '\n';
+      }
+    }
+  }
+  std::cout << '\n'
+            << (report.selection.orders ? "recommended: " + recommended_options(report) : "no recommendation")
+            << "\n  f11     " << report.selection.f11.reason << "\n  others  " << report.selection.other.reason << '\n';
+}
+
+void print_csv(const SelectReport& report) {
+  Table all = table(report, report.selection.f11);
+  for (Table::Row& row : table(report, report.selection.other).rows) all.rows.push_back(std::move(row));
+  std::cout << csv(all);
 }
 
 void print_json(const SelectReport& report) {
@@ -159,7 +140,7 @@ void print_json(const SelectReport& report) {
   json["mapping"] = to_string(report.options.mapping);
   json["left_out"] = left_out(report.partitions);
   const Selection& selection = report.selection;
-  for (const auto& [name, part] : parts(selection)) json[name] = part_json(report, *part);
+  for (const auto& [name, part] : parts(selection)) json[name] = json_of(table(report, *part));
   json["recommended_orders"] = selection.orders ? Json{selection.orders->f11, selection.orders->other} : Json();
   json["recommended_powers"] = selection.orders ? Json(selection.powers) : Json();
   json["reason_f11"] = selection.f11.reason;
