@@ -65,8 +65,8 @@ void require_readable(const std::filesystem::path& path);
 /// The same for a file that is to be written: there must be a folder for it, and none in its place.
 void require_place(const std::filesystem::path& path);
 
-/// Warns, as Python warnings do, that `count` of `size` questions to a model lie outside its fitted range. None: not.
-void warn_outside(const ModelObject& model, unsigned reasons, std::size_t count, std::size_t size);
+/// Warns, as Python warnings do, of questions to a model outside its fitted range.
+void warn_outside(const ModelObject& model, const RangeCount& range);
 
 /// The named tuple mmbrdf.<type> of these values.
 template <class... Values>

@@ -253,12 +253,10 @@ void require_place(const std::filesystem::path& path) {
     refuse(PyExc_FileNotFoundError, ENOENT);
 }
 
-void warn_outside(const ModelObject& model, unsigned reasons, std::size_t count, std::size_t size) {
-  if (count == 0) return;
-  const std::string text = model.model().name + ": " + std::to_string(count) + " of " +
-                           counted(static_cast<long>(size), "question") + " outside the fitted range (" +
-                           to_string(static_cast<Outside>(reasons)) + "), which is " +
-                           fitted_range(model.model().validity);
+void warn_outside(const ModelObject& model, const RangeCount& range) {
+  if (range.outside == 0) return;
+  const std::string text = model.model().name + ": " + range.line("question") + " (" + to_string(range.reasons) +
+                           "): fitted are " + fitted_range(model.model().validity);
   const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
   if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -24,29 +24,31 @@ class Range {
         theta_i_max_(validity().theta_i_max.value_or(radians(90))),
         theta_r_max_(validity().theta_r_max.value_or(radians(90))) {}
 
-  void count(double wavelength, const Geometry& geometry) {
-    const Outside where = outside(validity(), wavelength, geometry);
-    if (!leaves_known_range(where)) return;
-    reasons_ |= where & ~static_cast<unsigned>(unknown_range);
-    ++count_;
-  }
+  void count(double wavelength, const Geometry& geometry) { count(wavelength, std::span(&geometry, 1)); }
 
   void count(double wavelength, std::span<const Geometry> geometries) {
     bool beyond = leaves_known_range(outside(validity(), wavelength, {}));
     for (const Geometry& g : geometries) beyond |= g.incident.theta > theta_i_max_ || g.reflected.theta > theta_r_max_;
     if (!beyond) return;  // as nearly always
-    for (const Geometry& g : geometries) count(wavelength, g);
+    RangeCount here;
+    for (const Geometry& g : geometries) here.add(outside(validity(), wavelength, g));
+    const std::lock_guard lock(mutex_);
+    range_.add(here);
   }
 
-  void warn(std::size_t size) const { warn_outside(model_, reasons_, count_, size); }
+  /// Of `size` questions, counted or not.
+  void warn(std::size_t size) {
+    range_.asked = static_cast<long>(size);
+    warn_outside(model_, range_);
+  }
 
  private:
   const Validity& validity() const { return model_.model().validity; }
 
   const ModelObject& model_;
   double theta_i_max_, theta_r_max_;
-  std::atomic<unsigned> reasons_ = 0;
-  std::atomic<std::size_t> count_ = 0;
+  std::mutex mutex_;
+  RangeCount range_;
 };
 
 /// Geometries of one wavelength, next to each other in the order of the question.

@@ -44,6 +44,24 @@ std::string unknown_range_line(const std::string& model, const Validity& validit
   return model + " does not say to which " + what + " it was fitted; mmbrdf convert can record them";
 }
 
+std::string outside_line(Outside reasons, const Validity& validity) {
+  return "outside the fitted range (" + to_string(reasons) + "): fitted are " + fitted_range(validity);
+}
+
+void RangeCount::add(Outside where) { add({1, leaves_known_range(where) ? 1 : 0, where}); }
+
+void RangeCount::add(const RangeCount& more) {
+  asked += more.asked;
+  outside += more.outside;
+  reasons = static_cast<Outside>(reasons | more.reasons);
+}
+
+std::string RangeCount::line(const std::string& what) const {
+  if (outside == 0) return "";
+  return std::to_string(outside) + " of " + counted(asked, what) + (outside == 1 ? " lies" : " lie") +
+         " outside the fitted range";
+}
+
 std::string reflectance_line(const ReflectanceTable& table) {
   std::string text;
   for (std::size_t i = 0; i < table.values.size(); ++i)

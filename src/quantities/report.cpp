@@ -182,13 +182,9 @@ Field data_field(const Model& model, const ReportedSamples& data) {
                {"wavelengths", nanometre_list(wavelengths(data.samples))},
                {"residuals and noise", "of the model as it is"},
                {"symmetries, leverage and outliers", "of fits of its basis to these samples, without weights"}}};
-  const auto count = std::ranges::count_if(data.samples, [&](const Sample& s) {
-    return leaves_known_range(outside(model.validity, s.wavelength, s.geometry));
-  });
-  if (count > 0)
-    field.warnings.push_back(std::to_string(count) + " of " + count_of(data.samples.size(), "sample") +
-                             " lie outside the range that the model was fitted to: their residuals are of "
-                             "extrapolations");
+  RangeCount range;
+  for (const Sample& s : data.samples) range.add(outside(model.validity, s.wavelength, s.geometry));
+  if (range.outside > 0) field.warnings.push_back(range.line("sample") + ": residuals there are of extrapolations");
   return field;
 }
 

@@ -43,6 +43,20 @@ TEST(Description, SaysOfTheRangeWhatIsNot) {
   EXPECT_EQ(missing({{0.5}, radians(75), radians(75)}), "");
 }
 
+TEST(Description, CountsWhatLeavesTheRange) {
+  RangeCount one, all;
+  EXPECT_EQ(all.line("row"), "");
+  for (const Outside where : {inside, unknown_range, outside_theta_i}) one.add(where);
+  all.add(one);
+  EXPECT_EQ(all.line("row"), "1 of 3 rows lies outside the fitted range");
+  all.add(static_cast<Outside>(outside_theta_i | outside_wavelength));
+  EXPECT_EQ(all.line("row"), "2 of 4 rows lie outside the fitted range");
+  EXPECT_EQ(
+      outside_line(all.reasons, {{0.5}, radians(75), {}}),
+      "outside the fitted range (theta_i+wavelength+unknown): fitted are theta_i <= 75, theta_r not known degrees "
+      "at 500 nm");
+}
+
 // 300.6 / 1000 is not the double nearest to 0.3006, and neither is 0.3006 × 1000 that to 300.6.
 TEST(Description, HasTheNanometresThatWereMeant) {
   EXPECT_EQ(nanometres(0.3006), 300.6);

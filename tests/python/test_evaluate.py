@@ -188,7 +188,7 @@ def test_several_threads_of_python_may_evaluate_at_once(ptfe):
 
 def test_extrapolation_is_said_and_found(ptfe):
     with pytest.warns(
-        mmbrdf.ExtrapolationWarning, match=r"ptfe: 2 of 3 questions outside .*\(theta_i\), which is theta_i <= 75"
+        mmbrdf.ExtrapolationWarning, match=r"ptfe: 2 of 3 questions lie outside .*\(theta_i\): fitted are theta_i <= 75"
     ):
         ptfe.evaluate(532, [30, 80, 85], 0, 30, 180)
     with pytest.warns(mmbrdf.ExtrapolationWarning, match="wavelength"):

@@ -237,7 +237,7 @@ TEST(Report, WarnsOfSamplesBeyondTheRangeAndOfFewOfThem) {
   const Model model = material("ptfe-532");
   std::vector<Sample> samples = simulate(model, green, std::vector{in_degrees(80, 0, 10, 0), in_degrees(30, 0, 20, 9)});
   const Json json = report(model, samples);
-  EXPECT_TRUE(warns(json, "1 of 2 samples lie outside the range that the model was fitted to"));
+  EXPECT_TRUE(warns(json, "1 of 2 samples lies outside the fitted range"));
   EXPECT_TRUE(warns(json, "the law of the noise at 532 nm is not known: "));
   EXPECT_EQ(json["noise"], Json::array());
   EXPECT_TRUE(warns(json, "sample 1 decides block 11 almost alone where it is: its leverage is 1.00"));

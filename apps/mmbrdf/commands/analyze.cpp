@@ -102,19 +102,19 @@ void analyze_one(const Options& options) {
   (options.format == Format::json ? print_json : print_text)(report);
 }
 
-/// Returns how many rows lie outside the fitted range.
-long write_scan(std::ostream& out, const Model& model, const Options& options, const AddedColumns& columns) {
-  long outside = 0;
+/// Counts the rows.
+RangeCount write_scan(std::ostream& out, const Model& model, const Options& options, const AddedColumns& columns) {
+  RangeCount range;
   RowWriter writer(out, place_columns + columns.names + "\n");
   for (long row = 0; out && row < row_count(options.scans); ++row) {
     const Question question = at_row(options.scans, options, row);
     const double wavelength = wavelength_from(question.wavelength_nm, model);
     writer.text() += fields(place_of(model, question, wavelength));
-    outside += leaves_known_range(columns.append(writer.text(), wavelength, geometry_of(question))) ? 1 : 0;
+    range.add(columns.append(writer.text(), wavelength, geometry_of(question)));
     writer.end_row();
   }
   writer.flush();
-  return outside;
+  return range;
 }
 
 void analyze_scan(const Options& options) {
@@ -124,12 +124,12 @@ void analyze_scan(const Options& options) {
   wavelength_from(at_row(options.scans, options, 0).wavelength_nm, model);
   const Answers answers = answers_of(model, options);
   const AddedColumns columns = analyzed_columns(answers, options.strict);
-  long outside = 0;
+  RangeCount range;
   if (is_standard_output(options.output))
-    outside = write_scan(std::cout, model, options, columns);
+    range = write_scan(std::cout, model, options, columns);
   else
-    write_file(options.output, [&](std::ostream& out) { outside = write_scan(out, model, options, columns); });
-  report_rows(outside, row_count(options.scans), unknown_range_line(base_name(options.model), model.validity));
+    write_file(options.output, [&](std::ostream& out) { range = write_scan(out, model, options, columns); });
+  report_rows(range, unknown_range_line(base_name(options.model), model.validity));
 }
 
 void analyze_file(const Options& options) {

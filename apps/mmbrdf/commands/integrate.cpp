@@ -17,6 +17,7 @@
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
+#include "options/question.hpp"
 #include "options/sides.hpp"
 
 namespace mmbrdf::program {
@@ -183,16 +184,10 @@ std::vector<double> wavelengths_of(const Model& model, const Options& options) {
 
 /// Warns of rows outside the fitted range, or refuses them.
 void check_range(const Integrated& result, const Validity& validity, bool strict) {
-  unsigned all = inside;
-  for (const IntegratedRow& row : result.rows) all |= row.outside;
-  const auto outside = static_cast<Outside>(all);
-  if (leaves_known_range(outside)) {
-    const std::string message =
-        "outside the fitted range (" + to_string(outside) + "): fitted are " + fitted_range(validity);
-    if (strict) throw std::runtime_error(message);
-    warn(message);
-  }
-  if (outside & unknown_range) warn(unknown_range_line(result.model, validity));
+  RangeCount range;
+  for (const IntegratedRow& row : result.rows) range.add(row.outside);
+  if (strict && range.outside > 0) throw std::runtime_error(outside_line(range.reasons, validity));
+  warn_if_outside(result.model, range.reasons, validity);
 }
 
 Integrated integrated(const Model& model, Integral quantity, const Options& options) {

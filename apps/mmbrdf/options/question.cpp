@@ -109,8 +109,7 @@ std::string convention_note(Frame frame) {
 }
 
 void warn_if_outside(const std::string& model, Outside outside, const Validity& validity) {
-  if (leaves_known_range(outside))
-    warn("outside the fitted range (" + to_string(outside) + "): fitted are " + fitted_range(validity));
+  if (leaves_known_range(outside)) warn(outside_line(outside, validity));
   if (outside & unknown_range) warn(unknown_range_line(model, validity));
 }
 

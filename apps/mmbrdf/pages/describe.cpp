@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pages/describe.hpp"
 
-#include <algorithm>
 #include <iostream>
 
 #include "mmbrdf/model/description.hpp"
@@ -45,14 +44,9 @@ void note_unless_printed(const Model& model, const std::string& name) {
 }
 
 void warn_if_outside(const Model& model, std::span<const Sample> samples, const std::string& name) {
-  const auto leaves = [&](const Sample& s) {
-    return leaves_known_range(outside(model.validity, s.wavelength, s.geometry));
-  };
-  const auto count = std::count_if(samples.begin(), samples.end(), leaves);
-  if (count > 0) {
-    warn(std::to_string(count) + " of " + counted(static_cast<long>(samples.size()), "sample") +
-         (count == 1 ? " lies" : " lie") + " outside the fitted range: fitted are " + fitted_range(model.validity));
-  }
+  RangeCount range;
+  for (const Sample& s : samples) range.add(outside(model.validity, s.wavelength, s.geometry));
+  if (range.outside > 0) warn(range.line("sample") + ": fitted are " + fitted_range(model.validity));
   const std::string unknown = unknown_range_line(name, model.validity);
   if (!unknown.empty()) note(unknown);
 }

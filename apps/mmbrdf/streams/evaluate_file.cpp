@@ -13,7 +13,6 @@
 
 #include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
-#include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "options/files.hpp"
 #include "pages/output.hpp"
@@ -38,7 +37,6 @@ class Progress {
   void end() const {
     if (terminal_) std::cerr << "\r\033[K" << std::flush;
   }
-  long rows() const { return rows_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -74,7 +72,7 @@ std::string header(const GeometrySource& source, const std::string& added) {
 struct EvaluatedPiece {
   Piece piece;
   std::string out;
-  long rows = 0, outside = 0;
+  RangeCount range;
 };
 
 class FileEvaluator {
@@ -98,8 +96,8 @@ class FileEvaluator {
                                   .worker = [this] { return worker(); },
                                   .write =
                                       [&](EvaluatedPiece& p) {
-                                        outside_ += p.outside;
-                                        progress_.add(p.rows);
+                                        range_.add(p.range);
+                                        progress_.add(p.range.asked);
                                         put(out, p.out.insert(0, std::exchange(header_, "")));
                                         return static_cast<bool>(out);  // else write_file tells why
                                       },
@@ -108,13 +106,13 @@ class FileEvaluator {
     put(out, header_);  // of no rows
     if (evaluated_.binary && out.flush()) {
       go_to_beginning(out);
-      put(out, npy_header({static_cast<std::size_t>(progress_.rows()), 4, 4}));
+      put(out, npy_header({static_cast<std::size_t>(range_.asked), 4, 4}));
     }
   }
 
   void report() const {
     progress_.end();
-    report_rows(outside_, progress_.rows(), unknown_, evaluated_.binary ? "" : ": see column validity");
+    report_rows(range_, unknown_, evaluated_.binary ? "" : ": see column validity");
   }
 
  private:
@@ -128,8 +126,7 @@ class FileEvaluator {
   std::function<void(EvaluatedPiece&)> worker() const {
     return [this, write = evaluated_.writer()](EvaluatedPiece& p) {
       const Rows rows = source_.rows(p.piece);
-      p.rows = static_cast<long>(rows.size());
-      p.outside = write(source_, rows, p.out);
+      p.range = write(source_, rows, p.out);
       if (rows.error) throw *rows.error;
     };
   }
@@ -146,7 +143,7 @@ class FileEvaluator {
   std::string header_;
   Progress progress_;
   std::string unknown_;  // what the model does not say about its range
-  long outside_ = 0;
+  RangeCount range_;
 };
 
 void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
@@ -168,20 +165,20 @@ class RowsEvaluator {
         normalized_(normalized),
         binary_(binary) {}
 
-  long write(const GeometrySource& source, const Rows& rows, std::string& out) {
-    long outside = 0;
+  RangeCount write(const GeometrySource& source, const Rows& rows, std::string& out) {
+    RangeCount range;
     out.reserve(rows.size() * (binary_ ? 16 * sizeof(double) : 420));
     for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
       end = first + 1;
       while (end < rows.size() && rows.wavelengths[end] == rows.wavelengths[first]) ++end;
-      outside += write(source, rows, first, end, out);
+      write(source, rows, first, end, out, range);
     }
-    return outside;
+    return range;
   }
 
  private:
-  long write(const GeometrySource& source, const Rows& rows, std::size_t first, std::size_t end, std::string& out) {
-    long outside = 0;
+  void write(const GeometrySource& source, const Rows& rows, std::size_t first, std::size_t end, std::string& out,
+             RangeCount& range) {
     std::size_t row = first;
     try {
       const PreparedModel& prepared = models_(rows.wavelengths[first]);
@@ -191,7 +188,7 @@ class RowsEvaluator {
         Mueller& f = matrices_[row - first];
         f = normalized_ ? normalized_beside_f11(f) : f;
         const Outside here = prepared.outside(rows.geometries[row]);
-        outside += leaves_known_range(here) ? 1 : 0;
+        range.add(here);
         if (!binary_) {
           out += rows.text(row);
           append_elements(out, f);
@@ -204,7 +201,6 @@ class RowsEvaluator {
       throw source.error(rows.numbers[row], error.what());
     }
     if (binary_) append_npy(out);
-    return outside;
   }
 
   void append_npy(std::string& out) const {
@@ -238,11 +234,8 @@ void RowWriter::flush() {
   if (&out_ == &std::cout) flush_output();
 }
 
-void report_rows(long outside, long rows, const std::string& unknown_range, const std::string& where) {
-  if (outside > 0) {
-    warn(std::to_string(outside) + " of " + counted(rows, "row") + (outside == 1 ? " lies" : " lie") +
-         " outside the fitted range" + where);
-  }
+void report_rows(const RangeCount& range, const std::string& unknown_range, const std::string& where) {
+  if (range.outside > 0) warn(range.line("row") + where);
   if (!unknown_range.empty()) warn(unknown_range);
 }
 
@@ -257,17 +250,17 @@ Evaluated evaluated_rows(const Model& model, Frame frame, bool normalized, bool 
 
 Evaluated one_by_one(const AddedColumns& columns) {
   const auto write = [columns](const GeometrySource& source, const Rows& rows, std::string& out) {
-    long outside = 0;
+    RangeCount range;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       out += rows.text(row);
       try {
-        outside += leaves_known_range(columns.append(out, rows.wavelengths[row], rows.geometries[row])) ? 1 : 0;
+        range.add(columns.append(out, rows.wavelengths[row], rows.geometries[row]));
       } catch (const std::invalid_argument& error) {
         throw source.error(rows.numbers[row], error.what());
       }
       out += '\n';
     }
-    return outside;
+    return range;
   };
   return {.names = columns.names, .binary = false, .writer = [write] { return write; }};
 }

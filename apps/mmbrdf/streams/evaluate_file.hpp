@@ -7,7 +7,7 @@
 #include <string>
 
 #include "mmbrdf/geometry/geometry.hpp"
-#include "mmbrdf/model/model.hpp"
+#include "mmbrdf/model/description.hpp"
 #include "streams/geometry_rows.hpp"
 
 namespace mmbrdf::program {
@@ -24,9 +24,9 @@ struct AddedColumns {
 struct Evaluated {
   std::string names;    ///< ",f11,f12,…" behind the columns of the input
   bool binary = false;  ///< the 16 elements of each row alone, as a .npy file has them
-  /// Makes what appends some rows to `out`, each behind its text unless binary, and returns how many of them lie
-  /// outside the fitted range. One for each thread. Throws std::runtime_error from the source.
-  std::function<std::function<long(const GeometrySource&, const Rows&, std::string& out)>()> writer;
+  /// Makes what appends some rows to `out`, each behind its text unless binary, and counts them.
+  /// One for each thread. Throws std::runtime_error from the source.
+  std::function<std::function<RangeCount(const GeometrySource&, const Rows&, std::string& out)>()> writer;
   int threads = 1;
 };
 
@@ -62,7 +62,7 @@ class RowWriter {
 };
 
 /// Says that so many rows lie outside the fitted range, and what the model does not say about it. `where` says which.
-void report_rows(long outside, long rows, const std::string& unknown_range,
+void report_rows(const RangeCount& range, const std::string& unknown_range,
                  const std::string& where = ": see column validity");
 
 }  // namespace mmbrdf::program

@@ -22,6 +22,21 @@ std::string fitted_range(const Validity& validity);
 /// What the model called `model` does not say about its range. Empty if it says all.
 std::string unknown_range_line(const std::string& model, const Validity& validity);
 
+/// "outside the fitted range (theta_i+wavelength): fitted are theta_i <= 75, theta_r <= 81.87 degrees at 351, 532 nm"
+std::string outside_line(Outside reasons, const Validity& validity);
+
+/// Questions to a model, and those that leave the range to which it was fitted.
+struct RangeCount {
+  long asked = 0, outside = 0;
+  Outside reasons = inside;  ///< of all together; also unknown_range
+
+  void add(Outside where);  ///< one question
+  void add(const RangeCount& more);
+
+  /// "2 of 3 rows lie outside the fitted range" if `what` is "row". Empty if none does.
+  std::string line(const std::string& what) const;
+};
+
 /// "351:0.97515,532:0.98416": the table but for its covariances, values with all their digits. Empty if there is none.
 std::string reflectance_line(const ReflectanceTable& table);
 
