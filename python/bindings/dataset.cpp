@@ -226,6 +226,13 @@ void bind_samples(py::module_& m) {
         "A Dataset from CSV in the published layout or the project's own. Raises OSError for a file that cannot be "
         "read,\nwith line and column for one that holds something else.");
   m.def(
+      "_holds_samples",
+      [](const std::filesystem::path& path) {
+        require_readable(path);
+        return holds_samples(path);
+      },
+      py::arg("path"), "Whether a file begins as one of samples does, and none of a model.");
+  m.def(
       "simulate",
       [](const ModelObject& model, const Given& nm, const py::sequence& geometry, double speckle, unsigned long seed) {
         return simulated(model, numbers("wavelength_nm", nm), geometry, speckle, seed);

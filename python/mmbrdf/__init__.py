@@ -23,6 +23,7 @@ from ._mmbrdf import *  # noqa: F403: the names of the library
 from ._mmbrdf import Dataset as Dataset
 from ._mmbrdf import Model as Model
 from ._mmbrdf import __version__ as __version__
+from ._mmbrdf import _holds_samples
 from ._mmbrdf import load_model as load_model
 from ._mmbrdf import read_samples as read_samples
 from ._results import *  # noqa: F403: what choosing, judging and comparing fits gives
@@ -119,10 +120,7 @@ def load(path: str | _os.PathLike[str]) -> Model | Dataset:
     Files of samples are CSV with a header line; coefficients have none; model files are JSON. Raises OSError for a file
     that cannot be read, and with line or field for one that holds something else.
     """
-    with open(path, encoding="utf-8-sig", errors="replace") as file:
-        content = (line.strip() for line in file)
-        first = next((line for line in content if line and not line.startswith("#")), "")
-    return read_samples(path) if first[:1].isalpha() else load_model(path)
+    return read_samples(path) if _holds_samples(path) else load_model(path)
 
 
 def _write_report(

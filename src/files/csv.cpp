@@ -2,6 +2,7 @@
 #include "mmbrdf/files/csv.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -58,6 +59,11 @@ std::ifstream open_input(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
   return in;
+}
+
+bool has_ending(std::string_view path, std::string_view ending) {
+  const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  return path.size() >= ending.size() && std::ranges::equal(path.substr(path.size() - ending.size()), ending, same);
 }
 
 CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::move(name)), line_(longest_line + 1) {

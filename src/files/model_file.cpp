@@ -2,7 +2,6 @@
 #include "mmbrdf/files/model_file.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -242,13 +241,37 @@ std::string contents(const std::string& path) {
   return text;
 }
 
-bool is_csv(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending == ".csv";
+// ---- formats --------------------------------------------------------------------------------------------------------
+
+Model coefficients_from(std::string_view text, const std::string& name) {
+  std::istringstream lines{std::string(text)};
+  return read_coefficients(lines, name);
 }
 
+std::vector<std::string> beside_coefficients(const Model& model) {
+  const Validity& validity = model.validity;
+  std::vector<std::string> known;
+  const auto add = [&known](bool there, const char* what) {
+    if (there) known.emplace_back(what);
+  };
+  add(!validity.wavelengths.empty(), "the fitted wavelengths");
+  add(validity.theta_i_max || validity.theta_r_max, "the fitted angles");
+  add(traits(model.family).at_zero_azimuth && !turns(model), "how azimuths enter");
+  add(has_covariance(model), "the covariance");
+  add(model.provenance.contains("attribution"), "the attribution");
+  add(!model.provenance.empty(), "the provenance");
+  add(!model.reflectance.values.empty(), "the reflectance that f11 is multiplied by");
+  return known;
+}
+
+constexpr ModelFormat formats[] = {{".csv", '\0', coefficients_from, to_coefficients_csv, beside_coefficients},
+                                   {"", '{', model_from_json, to_json, nullptr}};
+
 }  // namespace
+
+const ModelFormat& model_format(const std::string& path) {
+  return *std::ranges::find_if(formats, [&](const ModelFormat& f) { return has_ending(path, f.ending); });
+}
 
 Model model_from_json(std::string_view text, const std::string& name) {
   const json root = parsed_json(text, name);
@@ -268,17 +291,15 @@ Model load_model(const std::string& path) {
   const std::string text = contents(path);
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string::npos) throw std::runtime_error(path + ": empty file, without a model");
-  if (text[first] == '{') {
-    Model model = model_from_json(text, path);
-    if (model.name.empty()) model.name = std::filesystem::path(path).stem().string();
-    return model;
-  }
-  std::istringstream lines(text);
-  return read_coefficients(lines, path);
+  const ModelFormat* format = std::ranges::find(formats, text[first], &ModelFormat::first);
+  if (format == std::end(formats)) format = std::ranges::find(formats, '\0', &ModelFormat::first);
+  Model model = format->read(text, path);
+  if (model.name.empty()) model.name = std::filesystem::path(path).stem().string();
+  return model;
 }
 
 void save_model(const std::string& path, const Model& model) {
-  const std::string text = is_csv(path) ? to_coefficients_csv(model) : to_json(model);
+  const std::string text = model_format(path).write(model);
   write_file(path, [&](std::ostream& out) { out << text; });
 }
 

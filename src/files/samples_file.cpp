@@ -2,6 +2,7 @@
 #include "mmbrdf/files/samples_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -115,6 +116,16 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name) {
   std::vector<Sample> samples;
   for (Sample sample; reader.next(sample);) samples.push_back(sample);
   return samples;
+}
+
+bool holds_samples(const std::string& path) {
+  std::ifstream in = open_input(path);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t first = line.find_first_not_of(" \t\r\xef\xbb\xbf");
+    if (first != std::string::npos && line[first] != '#')
+      return std::isalpha(static_cast<unsigned char>(line[first])) != 0;
+  }
+  return false;
 }
 
 std::vector<Sample> read_samples(const std::string& path) {

@@ -158,6 +158,10 @@ void require_valid(const Model& model) {
   require_valid(model.validity);
 }
 
+bool has_covariance(const Model& model) {
+  return std::ranges::any_of(model.blocks, [](const FittedBlock& b) { return !b.covariance.empty(); });
+}
+
 bool turns(const Model& model) { return turns(model.family, model.rotation); }
 
 Model as_printed(Model model) {

@@ -153,6 +153,23 @@ TEST(Json, SavedIsLoaded) {
   expect_same(load_model(folder / "m.json"), model);
 }
 
+TEST(ModelFormat, IsThatOfTheEndingInEitherCase) {
+  EXPECT_EQ(model_format("a.csv").ending, ".csv");
+  EXPECT_EQ(model_format("A.CSV").ending, ".csv");
+  for (const char* path : {"a.json", "a", "csv", "a.csv.gz"}) EXPECT_EQ(model_format(path).ending, "") << path;
+}
+
+TEST(ModelFormat, LeavesNothingOfWhatItSaysThatItLoses) {
+  const Folder folder;
+  const Model model = any_model(Family::germer2017);
+  const ModelFormat& format = model_format("m.csv");
+  EXPECT_EQ(format.lost(model).size(), 5u);
+  save_model(folder / "m.csv", model);
+  EXPECT_TRUE(format.lost(as_printed(load_model(folder / "m.csv"))) == std::vector<std::string>{"how azimuths enter"});
+  EXPECT_TRUE(format.lost(load_model(folder / "m.csv")).empty());
+  EXPECT_EQ(model_format("m.json").lost, nullptr);
+}
+
 TEST(Json, HasLinesOfAtMost120Characters) {
   std::istringstream lines(to_json(any_model(Family::germer2017)));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120U) << line;

@@ -84,6 +84,18 @@ TEST(Samples, MayHaveANegativeBrdfSinceNoiseHasBothSigns) {
   EXPECT_EQ(samples_in(own("532,1,2,3,4,-0.01"))[0].f11, -0.01);
 }
 
+TEST(Samples, AreToldFromModelsByTheFirstLetter) {
+  const Folder folder;
+  const auto holds = [&](const std::string& text) {
+    std::ofstream(folder / "f") << text;
+    return holds_samples(folder / "f");
+  };
+  EXPECT_TRUE(holds("wavelength_nm,theta_i_deg"));
+  EXPECT_TRUE(holds("\xef\xbb\xbf# measured\r\n#\n\n lambda, thetai"));
+  for (const char* other : {"", "# only", "1, 1, 0, 0, 0, 0, 0, 2.5\n", " {\"format\": 1}"}) EXPECT_FALSE(holds(other));
+  EXPECT_THROW(holds_samples(folder / "none"), std::runtime_error);
+}
+
 TEST(Samples, WrittenAndReadAreTheSame) {
   const Folder folder;
   std::mt19937_64 engine(1);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "command.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/projection.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
@@ -126,9 +127,8 @@ void convert(const Options& options, const CommandLine& line) {
   result.name = options.name.empty() ? result.name : options.name;
   result.provenance["conversion"] = line.text({options.input, options.output}) + " (" + software() + ")";
   save(result, options.output);
-  if (is_csv(options.output))
-    warn_of_what_is_left_out(model, options.output, !options.name.empty());
-  else if (has_covariance(model) && !has_covariance(result))
+  warn_of_what_is_left_out(model, options.output, !options.name.empty());
+  if (!model_format(options.output).lost && has_covariance(model) && !has_covariance(result))
     warn("the covariance of the coefficients is not carried over");
 }
 

@@ -58,7 +58,7 @@ void save_or_warn(const Model& model, const Options& options) {
     return;
   }
   save(model, options.output);
-  if (is_csv(options.output)) warn_of_what_is_left_out(model, options.output, !options.name.empty());
+  warn_of_what_is_left_out(model, options.output, !options.name.empty());
 }
 
 void note_free_combinations(const FitResult& result) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -65,13 +64,6 @@ std::string model_name(const std::string& text) {
 
 std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-bool is_csv(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".csv";
-}
-
 Model open_model(const std::string& name) {
   if (!is_built_in(name) && !std::filesystem::exists(name))
     throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(materials()) + ")");
@@ -81,14 +73,7 @@ Model open_model(const std::string& name) {
 }
 
 bool is_samples(const std::string& name) {
-  if (name == "-" || is_built_in(name) || !std::filesystem::exists(name)) return name == "-";
-  std::ifstream in = open_input(name);
-  std::string line;
-  while (std::getline(in, line) &&
-         (line.find_first_not_of(" \t\r\xef\xbb\xbf") == std::string::npos || line[0] == '#')) {
-  }
-  const std::size_t first = line.find_first_not_of(" \t\xef\xbb\xbf");
-  return first != std::string::npos && std::isalpha(static_cast<unsigned char>(line[first])) != 0;
+  return name == "-" || (!is_built_in(name) && std::filesystem::exists(name) && holds_samples(name));
 }
 
 std::string data_name(const std::string& path) { return path == "-" ? "standard input" : base_name(path); }
@@ -156,26 +141,16 @@ void read_input(const std::string& path, const std::function<void(std::istream&,
   read(file, path);
 }
 
-bool has_covariance(const Model& model) {
-  return std::any_of(model.blocks.begin(), model.blocks.end(),
-                     [](const FittedBlock& b) { return !b.covariance.empty(); });
-}
-
 void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named) {
-  const Validity& validity = model.validity;
-  std::vector<std::string> lost;
-  const auto lose = [&lost](bool there, const std::string& what) {
-    if (there) lost.push_back(what);
-  };
-  lose(named, "the name");
-  lose(!validity.wavelengths.empty(), "the fitted wavelengths");
-  lose(validity.theta_i_max || validity.theta_r_max, "the fitted angles");
-  lose(traits(model.family).at_zero_azimuth && !turns(model), "how azimuths enter (ask it with --as-printed)");
-  lose(has_covariance(model), "the covariance");
-  lose(model.provenance.contains("attribution"), "the attribution");
-  lose(!model.provenance.empty(), "the provenance");
-  lose(!model.reflectance.values.empty(), "the reflectance that f11 is multiplied by (keep it: --reflectance " +
-                                              reflectance_line(model.reflectance) + ")");
+  const auto lost_by = model_format(path).lost;
+  if (lost_by == nullptr) return;
+  std::vector<std::string> lost = lost_by(model);
+  for (std::string& what : lost) {
+    if (what == "how azimuths enter") what += " (ask it with --as-printed)";
+    if (what.starts_with("the reflectance "))
+      what += " (keep it: --reflectance " + reflectance_line(model.reflectance) + ")";
+  }
+  if (named) lost.insert(lost.begin(), "the name");
   if (!lost.empty()) warn(base_name(path) + " has no place for: " + joined(lost));
 }
 

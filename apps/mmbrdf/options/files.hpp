@@ -18,9 +18,6 @@ namespace mmbrdf::program {
 /// The last part of a path.
 std::string base_name(const std::string& path);
 
-/// Whether a model is written there in the published coefficient layout.
-bool is_csv(const std::string& path);
-
 /// A built-in model, or one from a file. Warns of elements without modes.
 Model open_model(const std::string& name);
 
@@ -52,10 +49,7 @@ void require_model_kept(const std::string& model, const std::string& output);
 /// Writes a model; warns if its path is the name of a built-in one. Errors name the path.
 void save(const Model& model, const std::string& path);
 
-bool has_covariance(const Model& model);  ///< of a block, at least
-
-/// Warns, in one line, of all that is known about `model` and has no place in the coefficient layout of `path`.
-/// `named`: the name was given by hand.
+/// Warns, in one line, of all that is known about `model` and has no place in the format of `path`. `named`: the name was given by hand.
 void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named);
 
 // Options that are files. An empty name is wrong usage.

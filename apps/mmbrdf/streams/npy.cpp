@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 #include <string_view>
+
+#include "mmbrdf/files/csv.hpp"
 
 namespace mmbrdf::program {
 
@@ -66,12 +66,7 @@ std::size_t number_from(std::string_view bytes) {
 
 }  // namespace
 
-bool is_npy(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".npy";
-}
+bool is_npy(const std::string& path) { return has_ending(path, ".npy"); }
 
 bool begins_as_npy(std::istream& in) { return in.peek() == std::char_traits<char>::to_int_type(magic.front()); }
 

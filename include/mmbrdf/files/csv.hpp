@@ -19,6 +19,9 @@ namespace mmbrdf {
 /// folder.
 std::ifstream open_input(const std::string& path);
 
+/// Whether the path ends so, in either case: ".csv"
+bool has_ending(std::string_view path, std::string_view ending);
+
 /// Rows of comma-separated fields under a header line, one at a time, in constant memory. LF or CRLF; empty lines and
 /// lines that begin with # are passed over; a UTF-8 byte order mark too. Fields are not quoted; blanks around them do
 /// not count.

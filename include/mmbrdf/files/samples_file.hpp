@@ -33,6 +33,10 @@ class SampleReader {
   long rows_ = 0;
 };
 
+/// Whether a file begins as one of samples does, and none of a model: its first line, but for empty ones and comments,
+/// with a letter. Throws std::runtime_error for a file that cannot be opened.
+bool holds_samples(const std::string& path);
+
 /// Samples in the layout of the published data, or with the project's own column names (docs/formats.md). Throws
 /// std::runtime_error, as the classes above do, for a file without rows or with elements that are not normalised, and
 /// for uncertainties that are negative or not there for all elements. Without their columns they are 0, not known.

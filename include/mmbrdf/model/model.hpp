@@ -90,6 +90,8 @@ struct Model {
 /// Throws std::invalid_argument if blocks, coefficient counts or the reflectance table do not fit together.
 void require_valid(const Model& model);
 
+bool has_covariance(const Model& model);  ///< of a block, at least
+
 /// Whether it is evaluated at phi_i = 0 and turned.
 bool turns(const Model& model);
 
