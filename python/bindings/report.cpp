@@ -10,7 +10,7 @@
 
 #include "dataset.hpp"
 #include "mmbrdf/files/write_file.hpp"
-#include "mmbrdf/fitting/leverage.hpp"
+#include "mmbrdf/text/rounding.hpp"
 
 namespace mmbrdf::python {
 
@@ -30,6 +30,8 @@ void bind_report(py::module_& m) {
       "What is known about a model, and about samples beside it, as the JSON text that `mmbrdf report --format json`\n"
       "prints: title, warnings, model, fit, realizability, reflectances and, with samples, residuals, symmetries,\n"
       "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
+  m.def("_to_place_of", &to_place_of, py::arg("value"), py::arg("uncertainty"),
+        "A number to the place where two digits of its standard uncertainty end; six digits without one.");
   m.def(
       "_write_text",
       [](const std::filesystem::path& path, const std::string& text) {

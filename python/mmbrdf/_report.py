@@ -19,7 +19,7 @@ import numpy as np
 
 from . import Dataset, Model, __version__, load, material, materials, plot, report_json
 from ._arguments import number, require
-from ._mmbrdf import _write_text
+from ._mmbrdf import _to_place_of, _write_text
 
 _STYLE = """
 :root { color-scheme: light; --line: #d5d9de; --soft: #f4f6f8; --warn: #fff4d6; --text: #1d2430; --dim: #5b6573; }
@@ -42,19 +42,28 @@ _NORMAL_DEG = 0.2
 """Below this polar angle the azimuth of the source says nothing: both together are within what a map takes for one."""
 
 
-def _cell(value: Any) -> str:
+def _cell(value: Any, uncertainty: float | None = None) -> str:
     if value is None:
         return "<td>not known</td>"
     if isinstance(value, bool):
         return f"<td>{'yes' if value else 'no'}</td>"
     if isinstance(value, (int, float)):
-        return f'<td class="number">{value:.6g}</td>'
+        return f'<td class="number">{_to_place_of(value, uncertainty)}</td>'
     return f"<td>{html.escape(str(value))}</td>"
 
 
+def _uncertainties(names: list[str]) -> Iterator[str]:
+    """Of each column the name of its uncertainty, "" for none: u, or u_ and more, is that of the column before."""
+    for name, following in zip(names, [*names[1:], ""]):
+        yield next((one for one in (name, following) if one == "u" or one.startswith("u_")), "")
+
+
 def _table(rows: list[dict[str, Any]]) -> str:
+    uncertainties = list(_uncertainties(list(rows[0])))
     head = "".join(f"<th>{html.escape(name)}</th>" for name in rows[0])
-    body = "\n".join("<tr>" + "".join(map(_cell, row.values())) + "</tr>" for row in rows)
+    body = "\n".join(
+        "<tr>" + "".join(_cell(row[name], row.get(u)) for name, u in zip(row, uncertainties)) + "</tr>" for row in rows
+    )
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>'
 
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mmbrdf/text/rounding.hpp"
 #include "text/numbers.hpp"
 
 // With β = (2 ln s, a, b) and z = (1, ln cos θi, −ln cos θr), the variance of a residual r is exp(zᵀβ) and
@@ -150,10 +151,10 @@ double weight(const NoiseLaw& law, const Geometry& geometry) {
 
 std::string to_string(const NoiseEstimate& estimate) {
   const auto& [law, covariance, rows] = estimate;
-  return "sigma^2 = " + fixed(law.scale, 5) + "^2 cos(theta_i)^" + fixed(law.incident_exponent, 3) +
-         " / cos(theta_r)^" + fixed(law.reflected_exponent, 3) + ", u " +
-         fixed(law.scale * std::sqrt(covariance[0]), 5) + ", " + fixed(std::sqrt(covariance[4]), 3) + ", " +
-         fixed(std::sqrt(covariance[8]), 3);
+  const double u = law.scale * std::sqrt(covariance[0]), u_i = std::sqrt(covariance[4]), u_r = std::sqrt(covariance[8]);
+  return "sigma^2 = " + to_place_of(law.scale, u) + "^2 cos(theta_i)^" + to_place_of(law.incident_exponent, u_i) +
+         " / cos(theta_r)^" + to_place_of(law.reflected_exponent, u_r) + ", u " + to_place_of(u, u) + ", " +
+         to_place_of(u_i, u_i) + ", " + to_place_of(u_r, u_r);
 }
 
 NoiseEstimate estimate_noise(std::span<const Sample> samples, std::span<const Mueller> residuals,

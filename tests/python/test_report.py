@@ -68,8 +68,13 @@ def test_the_page_says_what_the_program_says(page):
         if field not in ("title", "warnings"):
             assert field.capitalize().replace("_", " ") in outline.headings
     assert outline.open == []
-    (bhr,) = [row["value"] for row in facts["reflectances"] if row["quantity"] == "bhr"]
-    assert f"{bhr:.6g}" in path.read_text()
+
+
+def test_values_end_where_two_digits_of_their_uncertainty_end(page):
+    number = r'<td class="number">(0\.0*[1-9]\d*)</td>'
+    ((value, u),) = re.findall("<td>bhr</td>" + number + number, page[2].read_text())
+    assert len(u.lstrip("0.")) == 2
+    assert len(value) == len(u)
 
 
 def test_the_facts_are_those_of_the_program(ptfe, program):

@@ -3,6 +3,7 @@
 
 #include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/text/rounding.hpp"
 
 #include <cmath>
 #include <memory>
@@ -56,23 +57,26 @@ std::string heading(const Question& q, const Options& o) {
          (o.reference.empty() ? std::string("the fit to all samples") : base_name(o.reference)) + "\n\n";
 }
 
-std::string percent(const char* what, double value) { return format("%-52s %8.4f %%\n", what, 100 * value); }
+/// To what the predicted uncertainty leaves.
+std::string percent(const char* what, double value, double predicted) {
+  return format("%-52s %8s %%\n", what, to_place_of(100 * value, 100 * predicted).c_str());
+}
 
 std::string text(const Question& q, const Options& o, const std::vector<SubsetSplit>& splits) {
   std::string text = heading(q, o);
+  const double predicted = splits.front().predicted;
   if (splits.size() == 1) {
     const SubsetStatistics& s = splits.front().statistics;
-    text += percent("mean standard deviation of the fits", s.mean_deviation);
-    text += percent("|mean of the fits - 1|, mean", s.mean_distance);
-    text += percent("|mean of the fits - 1|, largest", s.largest_distance);
+    text += percent("mean standard deviation of the fits", s.mean_deviation, predicted);
+    text += percent("|mean of the fits - 1|, mean", s.mean_distance, predicted);
+    text += percent("|mean of the fits - 1|, largest", s.largest_distance, predicted);
     text.insert(text.size() - 1, " at theta_r = " + brief(o.theta_r_deg[s.largest_at]));
   } else {
     text += counted(static_cast<long>(splits.size()), "split") + "\n";
   }
-  const double predicted = splits.front().predicted;
-  text += percent("standard deviation, root mean square", root_mean_variance(splits));
-  text += percent("the same as the covariance of one fit predicts it", predicted);
-  if (predicted > 0) text += format("%-52s %8.4f\n", "observed / predicted", root_mean_variance(splits) / predicted);
+  text += percent("standard deviation, root mean square", root_mean_variance(splits), predicted);
+  text += percent("the same as the covariance of one fit predicts it", predicted, predicted);
+  if (predicted > 0) text += format("%-52s %8.2f\n", "observed / predicted", root_mean_variance(splits) / predicted);
   return text;
 }
 

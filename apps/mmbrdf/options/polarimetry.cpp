@@ -6,6 +6,7 @@
 #include <map>
 
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/text/rounding.hpp"
 #include "options/arguments.hpp"
 #include "pages/output.hpp"
 
@@ -24,13 +25,14 @@ void print_states(const std::string& title, const std::vector<Stokes>& states, s
             << format("%-10s", title.c_str()) << "        S1        S2        S3        S4"
             << (covariance.empty() ? "\n" : "     u(S1)     u(S2)     u(S3)     u(S4)\n");
   for (std::size_t s = 0; s < states.size(); ++s) {
-    std::cout << format("%-10zu", s + 1);
-    for (const double component : states[s]) std::cout << format("%10.6f", component);
-    for (std::size_t k = 0; k < 4 && !covariance.empty(); ++k) {
-      const std::size_t i = first + 4 * s + k;
-      std::cout << format("%10.6f", std::sqrt(std::max(covariance[i * parameters + i], 0.0)));
+    std::string values = format("%-10zu", s + 1), uncertainties;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t i = (first + 4 * s + k) * (parameters + 1);
+      const double u = covariance.empty() ? 0 : std::sqrt(std::max(covariance[i], 0.0));
+      values += u > 0 ? format("%10s", to_place_of(states[s][k], u).c_str()) : format("%10.6f", states[s][k]);
+      uncertainties += covariance.empty() ? "" : format("%10s", to_place_of(u, u).c_str());
     }
-    std::cout << '\n';
+    std::cout << values << uncertainties << '\n';
   }
 }
 
@@ -57,7 +59,7 @@ void print_quality(const Calibration& c) {
                                        c.chi_squared / static_cast<double>(c.degrees_of_freedom), c.degrees_of_freedom)
                               : "not refined");
   if (c.scale_uncertainty > 0)
-    print_line("scale", format("known to %.2e, from the scatter of the empty references", c.scale_uncertainty));
+    print_line("scale", format("known to %.1e, from the scatter of the empty references", c.scale_uncertainty));
   print_line("polarizer", format("offset %.4f degrees, extinction %.2e, phase %.3f degrees",
                                  degrees(c.polarizer_offset), c.extinction, degrees(c.polarizer_phase)));
   if (c.film_thickness > 0) {

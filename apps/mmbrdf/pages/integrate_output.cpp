@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "mmbrdf/text/rounding.hpp"
 #include "pages/describe.hpp"
 #include "pages/integrate.hpp"
 #include "pages/table.hpp"
@@ -108,23 +110,24 @@ Json json_of(const Integrated& result) {
   return json;
 }
 
-std::string uncertainty_text(double u) {
-  return format("%.2g", u < 1e-15 ? 0 : u);  // of elements that are 0 by symmetry, rounding is left
+/// Lines of four, of what `shown` gives for each element.
+std::string in_lines(const std::function<std::string(std::size_t)>& shown) {
+  std::string text;
+  for (std::size_t e = 0; e < 16; ++e) text += format("%14s", shown(e).c_str()) + (e % 4 == 3 ? "\n" : "");
+  return text;
 }
 
 std::string matrices(const Integrated& result) {
   std::string text;
   for (const IntegratedRow& row : result.rows) {
+    const bool known = !row.uncertainties.empty();
+    const auto value = [&](std::size_t e) { return std::abs(row.values[e]) < 5e-9 ? 0 : row.values[e]; };
+    const auto u = [&](std::size_t e) { return row.uncertainties[e] < 1e-15 ? 0 : row.uncertainties[e]; };
     text += "wavelength " + (row.wavelength_nm ? brief(*row.wavelength_nm) + " nm" : "unknown") +
-            ", validity: " + to_string(row.outside) + "\n";
-    for (std::size_t e = 0; e < 16; ++e) {
-      const double value = std::abs(row.values[e]) < 5e-9 ? 0 : row.values[e];  // no -0.00000000
-      text += format("%14.8f", value) + (e % 4 == 3 ? "\n" : "");
-    }
+            ", validity: " + to_string(row.outside) + "\n" +
+            in_lines([&](std::size_t e) { return known ? to_place_of(value(e), u(e)) : format("%.8f", value(e)); });
     text += "standard uncertainties";
-    for (std::size_t e = 0; e < 16 && !row.uncertainties.empty(); ++e)
-      text += (e % 4 == 0 ? "\n" : "") + format("%14s", uncertainty_text(row.uncertainties[e]).c_str());
-    text += row.uncertainties.empty() ? " not known\n" : "\n";
+    text += known ? "\n" + in_lines([&](std::size_t e) { return to_place_of(u(e), u(e)); }) : " not known\n";
   }
   return text;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pages/table.hpp"
 
+#include "mmbrdf/text/rounding.hpp"
+
 namespace mmbrdf::program {
 
 namespace {
@@ -49,9 +51,24 @@ std::string markdown_of(const Column& column, const Json& value) {
 
 std::string name_of(const Column& column) { return column.name; }
 
+/// With two digits of each uncertainty, and the value before it to the same place.
+Table rounded(Table table) {
+  for (std::size_t c = 1; c < table.columns.size(); ++c) {
+    if (table.columns[c].name != "u" && !table.columns[c].name.starts_with("u_")) continue;
+    for (Table::Row& row : table.rows) {
+      if (!cell(row, c).is_number()) continue;
+      const double u = row[c];
+      row[c - 1] = to_place_of(row[c - 1], u);
+      row[c] = to_place_of(u, u);
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
-std::string text(const Table& table) {
+std::string text(const Table& exact) {
+  const Table table = rounded(exact);
   std::string text;
   const auto add = [&](const std::string& line) { text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; };
   add(line(table, in_text, " ", [](const Column& column) { return padded(column, column.heading); }));
@@ -65,7 +82,8 @@ std::string csv(const Table& table) {
   return text;
 }
 
-std::string markdown(const Table& table) {
+std::string markdown(const Table& exact) {
+  const Table table = rounded(exact);
   std::string text;
   const auto add = [&](const std::string& line) { text += "| " + line + " |\n"; };
   add(line(table, in_text, " | ", name_of));

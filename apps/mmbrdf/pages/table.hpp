@@ -31,8 +31,9 @@ struct Table {
   std::vector<Row> rows = {};  ///< a short one ends in nulls
 };
 
-/// The headings, then line by line, with a blank between columns.
-std::string text(const Table& table);
+/// The headings, then line by line, with a blank between columns. A column called u, or u_ and more, is the standard
+/// uncertainty of the one before it, and both are rounded to what that leaves; in Markdown too.
+std::string text(const Table& exact);
 
 /// The names, then line by line. Null is an empty field; commas in words become blanks, or semicolons before a blank.
 std::string csv(const Table& table);
@@ -41,7 +42,7 @@ std::string csv(const Table& table);
 Json json_of(const Table& table);
 
 /// What is in text, under the names.
-std::string markdown(const Table& table);
+std::string markdown(const Table& exact);
 
 /// Of such an array, or of the fields of an object: names and values, in columns without a name.
 Table table_of(const Json& json);

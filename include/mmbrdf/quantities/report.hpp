@@ -32,10 +32,11 @@
 ///   outliers              row by element of a sample, the largest first and at most listed_outliers: sample, element,
 ///                         studentized, wavelength_nm, at
 ///
-/// Samples are numbered from 1. Numbers are those of the functions named, and read back to the same bits. null stands
-/// for what is not known: the rank and condition of a fit, an uncertainty u, the wavelength of a model that does not
-/// depend on it and does not say to which it was fitted; and for a number that is not finite. A place, margin_at or at,
-/// is "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees". Bytes of names that are not UTF-8 become U+FFFD.
+/// A field u, or u_ and more, is the standard uncertainty of the one before it. Samples are numbered from 1. Numbers
+/// are those of the functions named, and read back to the same bits. null stands for what is not known: the rank and
+/// condition of a fit, an uncertainty u, the wavelength of a model that does not depend on it and does not say to which
+/// it was fitted; and for a number that is not finite. A place, margin_at or at, is "theta_i 45, theta_r 60, phi_r -
+/// phi_i 90 degrees". Bytes of names that are not UTF-8 become U+FFFD.
 #pragma once
 
 #include <cstddef>
