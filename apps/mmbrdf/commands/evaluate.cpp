@@ -2,7 +2,6 @@
 // mmbrdf evaluate: one geometry from the command line; a file of geometries is evaluate_file.cpp.
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -28,35 +27,29 @@ struct Options : Question {
 };
 
 /// One evaluated geometry, with what is printed about it.
-struct Answer {
+struct Evaluation {
   const Options& options;
   Place place;
   Mueller mueller;  // element 11 is f11 even if normalized
   Outside outside;
 };
 
-void print_text(const Answer& a) {
+void print_text(const Evaluation& a) {
   std::cout << heading(a.place)
             << (a.options.normalized ? "f11 in sr^-1, the other elements divided by it" : "Mueller BRDF in sr^-1")
             << ", frame " << to_string(a.options.frame) << " (" << convention_note(a.options.frame) << ")"
             << (a.place.rotation == Rotation::as_printed ? ", as printed" : "")
-            << "\nvalidity: " << to_string(a.outside) << '\n';
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      const double value = a.mueller(row, column);
-      std::cout << format("%16.10f", std::abs(value) < 5e-11 ? 0 : value);  // no -0.0000000000
-    }
-    std::cout << '\n';
-  }
+            << "\nvalidity: " << to_string(a.outside) << '\n'
+            << matrix_text(a.mueller);
 }
 
-void print_csv(const Answer& a) {
+void print_csv(const Evaluation& a) {
   std::string text = place_columns + element_columns(a.options.normalized) + ",validity\n" + fields(a.place);
   append_elements(text, a.mueller);
   std::cout << text << ',' << to_string(a.outside) << '\n';
 }
 
-void print_json(const Answer& a) {
+void print_json(const Evaluation& a) {
   nlohmann::ordered_json json = to_json(a.place);
   add_frame(json, a.options.frame, a.place.rotation);
   json["unit"] = a.options.normalized ? "1" : "sr^-1";
@@ -66,8 +59,7 @@ void print_json(const Answer& a) {
   }
   Mueller m = a.mueller;
   m(0, 0) = a.options.normalized ? 1 : m(0, 0);
-  for (std::size_t row = 0; row < 4; ++row)
-    json["mueller"].push_back(std::vector<double>(&m.elements[4 * row], &m.elements[4 * row] + 4));
+  json["mueller"] = matrix_json(m);
   json["validity"] = to_string(a.outside);
   print(json);
 }
@@ -81,10 +73,10 @@ void evaluate_one(const Options& options) {
   const Geometry geometry = geometry_of(options);
   const PreparedModel prepared = prepare(model, wavelength);
   const Mueller f = prepared.evaluate(geometry, options.frame);
-  const Answer answer{.options = options,
-                      .place = place_of(model, options, wavelength),
-                      .mueller = options.normalized ? normalized_beside_f11(f) : f,
-                      .outside = prepared.outside(geometry)};
+  const Evaluation answer{.options = options,
+                          .place = place_of(model, options, wavelength),
+                          .mueller = options.normalized ? normalized_beside_f11(f) : f,
+                          .outside = prepared.outside(geometry)};
   warn_if_outside(answer.place.model, answer.outside, model.validity);
   const Format form = options.format.value_or(Format::text);
   (form == Format::text ? print_text : form == Format::csv ? print_csv : print_json)(answer);

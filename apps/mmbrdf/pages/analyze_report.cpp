@@ -51,9 +51,6 @@ std::string uncertainty_words(const AnalysisReport& r) {
          (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
 }
 
-/// What is left of a cancellation is 0, and not -0.0000000000.
-double without_rounding(double x) { return std::abs(x) < 5e-11 ? 0 : x; }
-
 void print_quantity(const Answered& q, std::string_view name, std::string_view unit, const Answer& a) {
   std::cout << format("%-24.*s", static_cast<int>(name.size()), name.data());
   if (!q.value) {
@@ -65,20 +62,6 @@ void print_quantity(const Answered& q, std::string_view name, std::string_view u
             << (unit.empty() ? "" : " ") << unit;
   if (q.low && q.high) std::cout << "   95 % from " << to_place_of(*q.low, u) << " to " << to_place_of(*q.high, u);
   std::cout << '\n';
-}
-
-/// Elements to the place of their uncertainties, if these are known, with the points below each other.
-void print_matrix(const Mueller& m, const std::optional<Mueller>& u) {
-  for (int row = 0; row < 4; ++row) {
-    std::string line;
-    for (int column = 0; column < 4; ++column) {
-      const double value = without_rounding(m(row, column));
-      const std::string text = u ? to_place_of(value, without_rounding((*u)(row, column))) : format("%.10f", value);
-      const auto point = static_cast<int>(std::min(text.find('.'), text.size()));
-      line += format("%5.*s%-11s", point, text.c_str(), text.c_str() + point);
-    }
-    std::cout << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
-  }
 }
 
 /// u of f11 and of the depolarization from one term of a budget, or from all.
@@ -117,14 +100,6 @@ void print_budget(const Answer& a) {
 
 nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nullptr;
-}
-
-nlohmann::ordered_json rows_of(const std::optional<Mueller>& m) {
-  if (!m) return nullptr;
-  nlohmann::ordered_json rows;
-  for (std::size_t row = 0; row < 4; ++row)
-    rows.push_back(std::vector<double>(&m->elements[4 * row], &m->elements[4 * row] + 4));
-  return rows;
 }
 
 void append(std::string& text, const std::optional<double>& value) {
@@ -177,12 +152,9 @@ void print_text(const AnalysisReport& r) {
   for (const Answered& q : a.quantities) print_quantity(q, q.quantity->name, q.quantity->unit, a);
   std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
             << convention_note(r.question.frame) << ")"
-            << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n';
-  print_matrix(a.elements, a.uncertainties);
-  if (a.uncertainties) {
-    std::cout << "its standard uncertainties\n";
-    print_matrix(*a.uncertainties, a.uncertainties);
-  }
+            << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n'
+            << matrix_text(a.elements, a.uncertainties);
+  if (a.uncertainties) std::cout << "its standard uncertainties\n" << matrix_text(*a.uncertainties, a.uncertainties);
   if (a.budget && a.budget->terms.size() > 1) print_budget(a);
 }
 
@@ -194,8 +166,8 @@ void print_json(const AnalysisReport& r) {
   json["validity"] = to_string(a.outside);
   json["estimable"] = a.estimable ? nlohmann::ordered_json(*a.estimable) : nullptr;
   json["realizable"] = a.realizable;
-  json["mueller"] = rows_of(a.elements);
-  json["u_mueller"] = rows_of(a.uncertainties);
+  json["mueller"] = matrix_json(a.elements);
+  json["u_mueller"] = a.uncertainties ? matrix_json(*a.uncertainties) : nullptr;
   for (const Answered& q : a.quantities) {
     nlohmann::ordered_json entry{{"value", number_or_null(q.value)}, {"uncertainty", number_or_null(q.uncertainty)}};
     if (r.answers.has_interval(*q.quantity)) {

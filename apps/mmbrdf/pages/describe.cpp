@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pages/describe.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/text/rounding.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -70,6 +73,27 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
     json.push_back(entry);
   }
   return json;
+}
+
+double without_rounding(double x) { return std::abs(x) < 5e-11 ? 0 : x; }
+
+std::string matrix_text(const Mueller& m, const std::optional<Mueller>& u) {
+  std::string text;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const double value = without_rounding(m.elements[e]);
+    const std::string element = u ? to_place_of(value, without_rounding(u->elements[e])) : format("%.10f", value);
+    const auto point = static_cast<int>(std::min(element.find('.'), element.size()));
+    text += format("%5.*s%-11s", point, element.c_str(), element.c_str() + point);
+    if (e % 4 == 3) text.erase(text.find_last_not_of(' ') + 1) += '\n';
+  }
+  return text;
+}
+
+nlohmann::ordered_json matrix_json(const Mueller& m) {
+  nlohmann::ordered_json rows;
+  for (std::size_t row = 0; row < 4; ++row)
+    rows.push_back(std::vector<double>(&m.elements[4 * row], &m.elements[4 * row] + 4));
+  return rows;
 }
 
 std::string printed(const nlohmann::ordered_json& json) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,16 @@ void warn_if_outside(const Model& model, std::span<const Sample> samples, const 
 /// Directional-hemispherical reflectance at normal incidence: "0.97515 at 351 nm, 0.98416 at 532 nm"
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);
+
+/// 0 for what is 0 but for rounding, and not -0.0000000000.
+double without_rounding(double x);
+
+/// Four lines: elements to the place of their uncertainties if these are known, else ten decimals; points below each
+/// other.
+std::string matrix_text(const Mueller& m, const std::optional<Mueller>& u = {});
+
+/// An array of four rows.
+nlohmann::ordered_json matrix_json(const Mueller& m);
 
 /// Each field and each row of a table in a line of its own.
 std::string printed(const nlohmann::ordered_json& json);
