@@ -5,9 +5,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -16,6 +14,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/text/rounding.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf::python {
@@ -83,12 +82,6 @@ std::optional<double> in_degrees(const std::optional<double>& angle) {
   return angle ? std::optional(degrees(*angle)) : std::nullopt;
 }
 
-/// The fewest digits that are this number.
-std::string text(double value) {
-  std::array<char, 32> buffer;
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
-
 std::string representation(const ModelObject& object) {
   const Model& model = object.model();
   const Orders order = orders(model);
@@ -97,8 +90,8 @@ std::string representation(const ModelObject& object) {
                       std::to_string(order.f11) + ", " + std::to_string(order.other) + "), " +
                       std::to_string(coefficient_count(model)) + " coefficients";
   const std::vector<double>& at = model.validity.wavelengths;
-  if (!at.empty()) shown += ", " + text(nanometres(at.front()));
-  if (at.size() > 1) shown += " to " + text(nanometres(at.back()));
+  if (!at.empty()) shown += ", " + shortest(nanometres(at.front()));
+  if (at.size() > 1) shown += " to " + shortest(nanometres(at.back()));
   return shown + (at.empty() ? ">" : " nm>");
 }
 
@@ -214,7 +207,7 @@ PreparedModel ModelObject::prepared(double wavelength, bool as_printed) const {
 
 double micrometres(double wavelength_nm) {
   if (!(wavelength_nm > 0) || !std::isfinite(wavelength_nm))
-    throw std::invalid_argument("wavelength_nm = " + text(wavelength_nm) + ", must be positive and finite");
+    throw std::invalid_argument("wavelength_nm = " + shortest(wavelength_nm) + ", must be positive and finite");
   return wavelength_nm / 1000;
 }
 

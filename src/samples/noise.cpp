@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/text/rounding.hpp"
 #include "text/numbers.hpp"
 
 // With β = (2 ln s, a, b) and z = (1, ln cos θi, −ln cos θr), the variance of a residual r is exp(zᵀβ) and

@@ -62,11 +62,6 @@ int parse_index(std::string_view text) {
   return value;
 }
 
-std::string shortest(double value) {
-  std::array<char, 32> text;
-  return {text.begin(), std::to_chars(text.begin(), text.end(), value).ptr};
-}
-
 std::string rounded(double value, int digits) {
   std::array<char, 48> text;
   return {text.begin(), std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr};

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "mmbrdf/text/rounding.hpp"
+
 namespace mmbrdf {
 
 /// Without surrounding blanks and tabs.
@@ -21,9 +23,6 @@ double parse_number(std::string_view text);
 /// The whole text, but for surrounding blanks and a leading +, as an integer in [−1000, 1000]: no index of a mode comes
 /// near.
 int parse_index(std::string_view text);
-
-/// The fewest digits that parse_number() reads back as the same number.
-std::string shortest(double value);
 
 /// At most this many significant digits, for messages.
 std::string rounded(double value, int digits);

@@ -10,6 +10,11 @@
 
 namespace mmbrdf {
 
+std::string shortest(double value) {
+  std::array<char, 32> text;
+  return {text.begin(), std::to_chars(text.begin(), text.end(), value).ptr};
+}
+
 std::string to_place_of(double value, const std::optional<double>& uncertainty) {
   constexpr int most_decimals = 12, all_digits = 15;
   const double u = uncertainty.value_or(0);

@@ -3,7 +3,6 @@
 
 #include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/model/description.hpp"
-#include "mmbrdf/text/rounding.hpp"
 
 #include <cmath>
 #include <memory>

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "mmbrdf/model/description.hpp"
-#include "mmbrdf/text/rounding.hpp"
 #include "options/arguments.hpp"
 #include "pages/output.hpp"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "mmbrdf/text/rounding.hpp"
 #include "pages/describe.hpp"
 #include "pages/integrate.hpp"
 #include "pages/table.hpp"

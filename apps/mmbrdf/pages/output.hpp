@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mmbrdf/polarization/mueller.hpp"
+#include "mmbrdf/text/rounding.hpp"
 #include "pages/exact.hpp"
 
 namespace mmbrdf::program {
@@ -29,9 +30,6 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
 
 /// 17 significant digits: reading them gives the same number.
 std::string exact(double value);
-
-/// The fewest digits that give the same number: 0.984.
-std::string shortest(double value);
 
 /// Up to 10 significant digits, no more than needed: 532, 81.87 …
 std::string brief(double value);

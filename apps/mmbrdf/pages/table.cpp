@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pages/table.hpp"
 
-#include "mmbrdf/text/rounding.hpp"
-
 namespace mmbrdf::program {
 
 namespace {
