@@ -105,7 +105,7 @@ class LeastSquares {
   /// products of those of F and of R; it counts `rows` rows. Throws as solve does.
   Solution solve_over(std::span<const double> factors, long rows, double tolerance, SvdCache* known = nullptr) const;
 
-  static constexpr double default_rank_tolerance = 1e-10;
+  static constexpr double default_rank_tolerance = 1e-10;  ///< fits have their own: FitOptions::rank_tolerance
   static constexpr int max_unknowns = 2048;
 
  private:
