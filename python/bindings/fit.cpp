@@ -93,7 +93,6 @@ std::string representation(const Fitted& fitted) {
 }
 
 using Elements = std::array<ElementFit, 16>;
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 py::tuple pickled(const Fitted& fitted) {
   const FitResult& r = fitted.result;
@@ -156,7 +155,7 @@ constexpr const char* fit_doc =
     "provenance\n\n"
     "Raises ValueError for data that do not determine the model: the message says what is free.";
 
-/// What a FitAccumulator was made of.
+/// A FitAccumulator, and what it was made of. It changes: all of it happens under the interpreter's lock.
 struct Accumulator {
   Basis basis;
   FitAccumulator fit{basis};
@@ -167,8 +166,7 @@ struct Accumulator {
     request.options.powers = powers;
     request.options.minimum_norm = minimum_norm;
     if (reflectance) request.options.reflectance = reflectance_table(*reflectance);
-    return without_gil(
-        [&] { return signed_result(fit.solve(request.options), request, static_cast<std::size_t>(fit.samples())); });
+    return signed_result(fit.solve(request.options), request, static_cast<std::size_t>(fit.samples()));
   }
   py::array_t<double> state() const {
     const std::vector<double> numbers = fit.state();
@@ -176,9 +174,8 @@ struct Accumulator {
   }
 };
 
-Accumulator from_state(const Basis& basis, const Numbers& state) {
-  if (state.ndim() != 1) throw std::invalid_argument("state: " + std::to_string(state.ndim()) + " dimensions, has one");
-  return {basis, FitAccumulator::from_state(basis, {state.data(), static_cast<std::size_t>(state.size())})};
+Accumulator from_state(const Basis& basis, const Given& state) {
+  return {basis, FitAccumulator::from_state(basis, numbers("state", state))};
 }
 
 py::tuple pickled_accumulator(const Accumulator& a) {
@@ -189,7 +186,7 @@ py::tuple pickled_accumulator(const Accumulator& a) {
 Accumulator unpickled_accumulator(const py::tuple& t) {
   return from_state(basis_from(t[0].cast<std::string>(), t[1].cast<std::pair<int, int>>(), t[2].cast<std::string>(),
                                t[3].cast<bool>()),
-                    t[4].cast<Numbers>());
+                    t[4].cast<Given>());
 }
 
 void bind_accumulator(py::module_& m) {
@@ -201,8 +198,7 @@ void bind_accumulator(py::module_& m) {
            py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
            py::arg("mapping") = "lambert", py::arg("as_printed") = false)
       .def(
-          "add", [](Accumulator& a, const Dataset& data) { without_gil([&] { a.fit.add(data.samples); }); },
-          py::arg("data"))
+          "add", [](Accumulator& a, const Dataset& data) { a.fit.add(data.samples); }, py::arg("data"))
       .def(
           "merge", [](Accumulator& a, const Accumulator& other) { a.fit.merge(other.fit); }, py::arg("other"),
           "As if all samples of the other, which has the same basis, had been added here.")
@@ -213,7 +209,7 @@ void bind_accumulator(py::module_& m) {
       .def("state", &Accumulator::state, "Everything there is but for the basis: an array of numbers.")
       .def_static(
           "from_state",
-          [](const Numbers& state, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
+          [](const Given& state, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
              bool as_printed) { return from_state(basis_from(family, orders, mapping, as_printed), state); },
           py::arg("state"), py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
           py::arg("mapping") = "lambert", py::arg("as_printed") = false)

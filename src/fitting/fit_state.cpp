@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All there is in an accumulator as numbers, to be saved or sent.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "text/numbers.hpp"
 
+//   the basis: family, both orders, mapping, rotation
 //   samples, largest θi, largest θr,   then for each wavelength, rising: λ,
 //   then for each element, row-major: the sum of its weights, and the state of its triangle
 
@@ -40,10 +42,17 @@ class Reader {
   std::span<const double> rest_;
 };
 
+std::vector<double> numbers_of(const Basis& basis) {
+  return {static_cast<double>(basis.family), static_cast<double>(basis.orders.f11),
+          static_cast<double>(basis.orders.other), static_cast<double>(basis.mapping),
+          static_cast<double>(basis.rotation)};
+}
+
 }  // namespace
 
 std::vector<double> FitAccumulator::state() const {
-  std::vector<double> result{static_cast<double>(samples_), theta_i_max_, theta_r_max_};
+  std::vector<double> result = numbers_of(basis_);
+  result.insert(result.end(), {static_cast<double>(samples_), theta_i_max_, theta_r_max_});
   for (const auto& [wavelength, at] : wavelengths_) {
     result.push_back(wavelength);
     for (std::size_t e = 0; e < 16; ++e) {
@@ -59,7 +68,13 @@ FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const do
   constexpr double most = 9e15;  // whole numbers up to here are exact
   FitAccumulator result(basis);
   Reader reader(state);
-  result.samples_ = static_cast<long>(reader.next("a number of samples", most));
+  const std::vector<double> ours = numbers_of(basis);
+  if (!std::ranges::equal(reader.next(ours.size()), ours))
+    throw std::invalid_argument("a state of a fit with another basis");
+  const double samples = reader.next("a number of samples", most);
+  if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 3))
+    throw std::invalid_argument("a state of a fit with a number of samples " + shortest(samples));
+  result.samples_ = static_cast<long>(samples);
   result.theta_i_max_ = reader.next("a largest theta_i", std::numbers::pi / 2);
   result.theta_r_max_ = reader.next("a largest theta_r", std::numbers::pi / 2);
   while (!reader.at_end()) {

@@ -54,6 +54,12 @@ void require_matching(std::span<const Sample> samples, const FitResult& result, 
   if (result.elements[0].rows != rows || result.solutions.size() != result.model.blocks.size())
     throw std::invalid_argument(std::to_string(samples.size()) + " samples, the model was fitted to " +
                                 std::to_string(result.elements[0].rows));
+  for (std::size_t b = 0; b < result.solutions.size(); ++b) {
+    const std::size_t size = result.model.blocks[b].coefficients.size();
+    if (result.solutions[b].inverse.size() != size * size)
+      throw std::invalid_argument("block " + result.model.blocks[b].block.name + ": the solution has no inverse of " +
+                                  std::to_string(size) + " coefficients");
+  }
 }
 
 /// Fills in the residuals of the block's elements, and returns the leverage of the sample.

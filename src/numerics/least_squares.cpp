@@ -202,6 +202,8 @@ void LeastSquares::copy_column(std::size_t j, double factor, RowColumns& rows, s
 }
 
 LeastSquares LeastSquares::of(int value) const {
+  if (value < 0 || value >= values_)
+    throw std::invalid_argument("column " + std::to_string(value) + " of " + std::to_string(values_) + " of values");
   LeastSquares result(unknowns_);
   const auto unknowns_end = triangle_.begin() + static_cast<std::ptrdiff_t>((height() - 1) * height());
   std::copy(triangle_.begin(), unknowns_end, result.triangle_.begin());
@@ -218,6 +220,9 @@ bool LeastSquares::has_rows_of(const LeastSquares& other) const {
 }
 
 LeastSquares LeastSquares::beside(std::span<const LeastSquares* const> problems, std::span<const double> divisors) {
+  if (problems.empty() || divisors.size() != problems.size())
+    throw std::invalid_argument(std::to_string(divisors.size()) + " divisors for " + std::to_string(problems.size()) +
+                                " problems");
   LeastSquares result = *problems[0];
   result.values_ = static_cast<int>(problems.size());
   result.triangle_.resize(result.height() * (result.height() - 1));

@@ -94,6 +94,7 @@ void set_distribution(Answered& answered, const std::vector<Mueller>& drawn, con
 
 Answers::Answers(const Model& model, AnswerOptions options) {
   require_semidefinite(model);
+  if (options.draws < 0) throw std::invalid_argument("draws = " + std::to_string(options.draws) + " is negative");
   if (options.light) degree_of_polarization(*options.light);  // refuses
   auto asked = std::make_shared<Asked>(Asked{model, std::move(options), why_uncertainty_is_unknown(model), {}});
   if (asked->options.draws > 0 && asked->unknown_uncertainty.empty())

@@ -43,6 +43,7 @@ double co_polarized(M m) {
 }
 
 double depolarization_ratio(M m) {
+  depolarization(m);  // refuses M11 that is not positive
   const PolarizedBrdf f = co_and_cross_polarized(m);
   return (f.sp + f.ps) / co_polarized(m);
 }
@@ -90,6 +91,7 @@ LinearPart linear_part(M m, S light) {
   double largest = 0;
   for (const double element : m.elements) largest = std::max(largest, std::abs(element));
   const auto part = [&](double x) { return std::abs(x) > rounding * largest * light[0] ? x : 0; };
+  if (!(s[0] > 0)) throw std::invalid_argument("the scattered light has S1 = " + shortest(s[0]));
   const LinearPart result{part(s[1]), part(s[2])};
   if (result.s2 == 0 && result.s3 == 0) throw std::invalid_argument("the scattered light has no linear polarization");
   return result;
@@ -118,7 +120,7 @@ constexpr Quantity table[] = {
     polarized<&P::ps, &G::ps>("f_ps", "BRDF from p- to s-polarized light"),
     polarized<&P::pp, &G::pp>("f_pp", "BRDF from p- to p-polarized light"),
     of_matrix<depolarization_ratio, depolarization_ratio_gradient>(
-        "depolarization_ratio", "linear depolarization ratio, (f_sp + f_ps) / (f_ss + f_pp)"),
+        "depolarization_ratio", "linear depolarization ratio, (f_sp + f_ps) / (f_ss + f_pp), frame sp"),
     of_matrix<diattenuation, diattenuation_gradient>("diattenuation", "length of (M12, M13, M14) / M11"),
     of_matrix<polarizance, polarizance_gradient>("polarizance", "length of (M21, M31, M41) / M11"),
     of_matrix<realizability_margin, realizability_margin_gradient>(

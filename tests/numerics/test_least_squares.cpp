@@ -619,6 +619,10 @@ TEST(LeastSquares, RefusesProblemsThatDoNotFitEachOther) {
   other.add(Numbers{1, 0, 0, 2}, Numbers{1, 2});
   const std::array<const LeastSquares*, 2> problems{&two, &other};
   EXPECT_THROW(LeastSquares::beside(problems, Numbers{1, 1}), std::invalid_argument);
+  EXPECT_THROW(LeastSquares::beside(problems, Numbers{1}), std::invalid_argument);
+  EXPECT_THROW(LeastSquares::beside({}, {}), std::invalid_argument);
+  EXPECT_THROW(pair.of(2), std::invalid_argument);
+  EXPECT_THROW(pair.of(-1), std::invalid_argument);
   EXPECT_THROW(pair.merge(two), std::invalid_argument);
   EXPECT_THROW(pair.state(), std::invalid_argument);
   EXPECT_THROW(pair.solve(), std::invalid_argument);

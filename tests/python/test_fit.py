@@ -233,5 +233,9 @@ def test_a_fit_is_added_up_in_parts_that_were_sent_or_saved(samples, tmp_path):
     np.testing.assert_allclose(result.rms, expected.rms, rtol=1e-10)
     with pytest.raises(ValueError, match="state of a fit"):
         mmbrdf.FitAccumulator.from_state(first.state()[:-1], "isotropic", (5, 3))
+    with pytest.raises(ValueError, match="another basis"):
+        mmbrdf.FitAccumulator.from_state(first.state(), "isotropic", (5, 3), mapping="projected")
+    with pytest.raises(TypeError, match="state"):
+        mmbrdf.FitAccumulator.from_state(first.state() + 1j, "isotropic", (5, 3))
     with pytest.raises(ValueError, match="different bases"):
         first.merge(mmbrdf.FitAccumulator())

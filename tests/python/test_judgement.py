@@ -128,7 +128,7 @@ def test_subsets_that_cannot_be_had_are_refused(ring, ptfe):
     ):
         with pytest.raises(ValueError, match=message):
             mmbrdf.subsets(ring, **wrong)
-    with pytest.warns(mmbrdf.ExtrapolationWarning, match="the samples: 1 of 2 questions outside the fitted range"):
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match="the samples: 1 of 2 questions lies outside the fitted range"):
         mmbrdf.subsets(ring, theta_r_deg=[60, 80])
 
 
@@ -220,3 +220,11 @@ def test_what_cannot_be_compared_is_refused(ring, ptfe):
     for nothing in (None, 3, "ptfe"):
         with pytest.raises(TypeError):
             mmbrdf.compare(ptfe, nothing)
+
+
+@pytest.mark.parametrize("weights", ["none", "speckle", "estimated"])
+def test_leverages_add_up_to_the_rank_whatever_the_weights(weights, ptfe):
+    data = mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(400, seed=3), speckle=0.02, seed=4)
+    result = mmbrdf.fit(data, orders=(4, 2), weights=weights)
+    for block in mmbrdf.sample_diagnostics(result, data).leverage:
+        assert block.values.sum() == pytest.approx(block.rank, abs=1e-8)

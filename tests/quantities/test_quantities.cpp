@@ -47,6 +47,7 @@ TEST(Quantities, HaveTheDepolarizationRatioOfTheTextbook) {
   EXPECT_EQ(ratio.value(diagonal(1, 0, 0, 0), {}), 1);
   EXPECT_EQ(ratio.value(identity(), {}), 0);
   EXPECT_EQ(message_of([&] { ratio.value(diagonal(1, -1, -1, 1), {}); }), "f_ss + f_pp = 0, must be positive");
+  EXPECT_THROW(ratio.value(diagonal(-1, 2, 0, 0), {}), std::invalid_argument);
 }
 
 // The half of unpolarized light that a polarizer along s lets through is s-polarized: (1, 1, 0, 0) / 2.
@@ -65,6 +66,7 @@ TEST(Quantities, OfTheScatteredLightAreItsStokesVector) {
 
 TEST(Quantities, HaveTheAngleOfLinearPolarizationFromSTowardsP) {
   const Quantity& angle = quantity("orientation_deg");
+  EXPECT_THROW(angle.value(diagonal(-1, -1, -1, -1), {1, 0, 1, 0}), std::invalid_argument);
   EXPECT_EQ(angle.value(identity(), {1, 1, 0, 0}), 0);
   EXPECT_EQ(angle.value(identity(), {2, 0, 1, 1}), 45);
   EXPECT_EQ(angle.value(identity(), {1, 0, -1, 0}), -45);
