@@ -14,6 +14,7 @@ LINES = [
     ["polarization"],
     ["geometry"],
     ["basis"],
+    ["mixed"],
     ["model"],
     ["samples", "uncertainty"],
     ["radiometry"],
