@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/basis/modes.hpp"
 
+#include "basis/harmonics.hpp"
 #include "text/names.hpp"
 
 #include <algorithm>
@@ -66,25 +67,36 @@ void add_product(Terms& t, int row, int column, const Factor& i, const Factor& r
   if (w != 0) t.add(row, column, i.index, r.index, w);
 }
 
-/// weight × Re (or Im) of i(incident) r(reflected).
-void add_real(Terms& t, int row, int column, const V& i, const V& r, double weight) {
-  add_product(t, row, column, real_part(i), real_part(r), weight);
-  add_product(t, row, column, imaginary_part(i), imaginary_part(r), -weight);
+/// iⁿ a(incident) b(reflected), n = `quarters` of a turn.
+struct Product {
+  V a, b;
+  int quarters = 0;
+};
+
+/// weight × Re (or Im) of a product.
+void add_real(Terms& t, int row, int column, const Product& p, double weight) {
+  const auto& [a, b, quarters] = p;
+  const double sign = quarters % 4 == 1 || quarters % 4 == 2 ? -weight : weight;  // Re z, −Im z, −Re z, Im z
+  if (quarters % 2 == 0) {
+    add_product(t, row, column, real_part(a), real_part(b), sign);
+    add_product(t, row, column, imaginary_part(a), imaginary_part(b), -sign);
+  } else {
+    add_product(t, row, column, imaginary_part(a), real_part(b), sign);
+    add_product(t, row, column, real_part(a), imaginary_part(b), sign);
+  }
 }
-void add_imaginary(Terms& t, int row, int column, const V& i, const V& r, double weight) {
-  add_product(t, row, column, imaginary_part(i), real_part(r), weight);
-  add_product(t, row, column, real_part(i), imaginary_part(r), weight);
+void add_imaginary(Terms& t, int row, int column, const Product& p, double weight) {
+  add_real(t, row, column, {p.a, p.b, p.quarters + 3}, weight);
 }
 
 /// u and v share the four elements 22, 33, 32 and 23; v enters 33 and 23 with the other sign.
-void add_u_or_v(Terms& t, const V& a, const V& b, bool is_u) {
+void add_u_or_v(Terms& t, const Product& z, const Product& exchanged, bool is_u) {
   const int sign = is_u ? 1 : -1;
   const auto add_both = [&](auto add, int row, int column, int weight) {
-    add(t, row, column, a, b, weight);  // Z(i,r), then Z(r,i) for u and its conjugate for v
-    if (is_u)
-      add(t, row, column, b, a, weight);
-    else
-      add(t, row, column, b.conjugate(), a.conjugate(), weight);
+    add(t, row, column, z, weight);  // Z(i,r), then Z(r,i) for u and its conjugate for v
+    const auto& [a, b, quarters] = exchanged;
+    add(t, row, column, is_u ? exchanged : Product{a.conjugate(), b.conjugate(), quarters == 0 ? 0 : 4 - quarters},
+        weight);
   };
   add_both(add_real, 1, 1, 1);
   add_both(add_real, 2, 2, sign);
@@ -92,43 +104,56 @@ void add_u_or_v(Terms& t, const V& a, const V& b, bool is_u) {
   add_both(add_imaginary, 1, 2, -sign);
 }
 
-/// Theory 2.3, the table of real elements. Z(i,r) is a(i) b(r), and Z(r,i) is b(i) a(r).
-std::vector<Term> isotropic_terms(const Mode& mode) {
+}  // namespace
+
+/// Theory 2.3, the table of real elements.
+std::vector<Term> complex_terms(const Mode& mode, bool imaginary) {
   const V a{mode.n, mode.k}, b{mode.m, mode.l};
+  const Product z{a, b, imaginary ? 1 : 0}, exchanged{b, a, imaginary ? 1 : 0};
   Terms t;
   switch (mode.function) {
     case Function::m11:
     case Function::m44: {
       const int e = mode.function == Function::m11 ? 0 : 3;
-      add_real(t, e, e, a, b, 1);
-      add_real(t, e, e, b, a, 1);
+      add_real(t, e, e, z, 1);
+      add_real(t, e, e, exchanged, 1);
       break;
     }
-    case Function::m14:
-      add_imaginary(t, 0, 3, a, b, 1);
-      add_imaginary(t, 3, 0, b, a, 1);
+    case Function::m14:  // iZ: what the isotropic family has is its real part with the other sign
+      add_imaginary(t, 0, 3, z, 1);
+      add_imaginary(t, 3, 0, exchanged, 1);
       break;
     case Function::g:
-      add_real(t, 0, 1, a, b, 1);
-      add_imaginary(t, 0, 2, a, b, -1);
-      add_real(t, 1, 0, b, a, 1);
-      add_imaginary(t, 2, 0, b, a, 1);
+      add_real(t, 0, 1, z, 1);
+      add_imaginary(t, 0, 2, z, -1);
+      add_real(t, 1, 0, exchanged, 1);
+      add_imaginary(t, 2, 0, exchanged, 1);
       break;
     case Function::h:  // h = iZ: Re h = −Im Z, Im h = Re Z
-      add_imaginary(t, 3, 1, a, b, -1);
-      add_real(t, 3, 2, a, b, -1);
-      add_imaginary(t, 1, 3, b, a, -1);
-      add_real(t, 2, 3, b, a, 1);
+      add_imaginary(t, 3, 1, z, -1);
+      add_real(t, 3, 2, z, -1);
+      add_imaginary(t, 1, 3, exchanged, -1);
+      add_real(t, 2, 3, exchanged, 1);
       break;
     case Function::u:
     case Function::v:
-      add_u_or_v(t, a, b, mode.function == Function::u);
+      add_u_or_v(t, z, exchanged, mode.function == Function::u);
       break;
     default:
-      throw std::logic_error(to_string(mode) + " is no mode of the isotropic family");
+      throw std::logic_error(to_string(mode) + " is no mode of complex functions");
   }
   return t.take();
 }
+
+std::vector<Term> antisymmetric_terms(const Mode& mode) {
+  const V a{mode.n, mode.k}, b{mode.m, mode.l};
+  Terms t;
+  add_real(t, 0, 0, {a, b}, 1);
+  add_real(t, 0, 0, {b, a}, -1);
+  return t.take();
+}
+
+namespace {
 
 Element element_of(Function function) {
   const std::string name = to_string(function);
@@ -299,7 +324,7 @@ void require_order(int order) {
 
 std::vector<Term> terms(const Mode& mode, Family family) {
   require_valid(mode, family);
-  return family == Family::isotropic ? isotropic_terms(mode) : published_terms(mode, family);
+  return family == Family::isotropic ? complex_terms(mode) : published_terms(mode, family);
 }
 
 double squared_norm(const Mode& mode, Family family, int row, int column) {

@@ -34,4 +34,23 @@ Rows::Rows(std::span<const std::vector<mmbrdf::Term>> columns) : columns_(column
       terms_[t.element()].push_back({q, size(t.incident), size(t.reflected), t.weight});
 }
 
+FunctionTables::FunctionTables(int order, DiscMapping mapping, std::size_t most)
+    : order_(order),
+      mapping_(mapping),
+      functions_(size(zernike_count(order))),
+      most_(most),
+      incident_(functions_ * most),
+      reflected_(functions_ * most),
+      one_(functions_) {}
+
+void FunctionTables::set(std::size_t pair, const Geometry& geometry) {
+  set(incident_, pair, geometry.incident);
+  set(reflected_, pair, geometry.reflected);
+}
+
+void FunctionTables::set(std::vector<double>& table, std::size_t pair, const Direction& direction) {
+  zernike_table(order_, disc_point(direction, mapping_), one_.data());
+  for (std::size_t f = 0; f < functions_; ++f) table[f * most_ + pair] = one_[f];
+}
+
 }  // namespace mmbrdf

@@ -60,4 +60,21 @@ class Rows {
   std::array<std::vector<Term>, 16> terms_;
 };
 
+/// K at some pairs of directions; the values of each function stand side by side.
+class FunctionTables {
+ public:
+  FunctionTables(int order, DiscMapping mapping, std::size_t most);
+  void set(std::size_t pair, const Geometry& geometry);
+  Rows::Tables of(std::size_t count) const { return {incident_.data(), reflected_.data(), most_, count}; }
+  std::size_t most() const { return most_; }
+
+ private:
+  void set(std::vector<double>& table, std::size_t pair, const Direction& direction);
+
+  int order_;
+  DiscMapping mapping_;
+  std::size_t functions_, most_;
+  std::vector<double> incident_, reflected_, one_;
+};
+
 }  // namespace mmbrdf

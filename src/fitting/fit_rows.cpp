@@ -50,35 +50,6 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
     }
 }
 
-/// K at the directions of some samples; the values of each function stand side by side.
-class Tables {
- public:
-  Tables(int order, DiscMapping mapping)
-      : order_(order),
-        mapping_(mapping),
-        functions_(static_cast<std::size_t>(zernike_count(order))),
-        incident_(functions_ * rows_at_once),
-        reflected_(functions_ * rows_at_once),
-        one_(functions_) {}
-
-  void set(std::size_t row, const Geometry& geometry) {
-    set(incident_, row, geometry.incident);
-    set(reflected_, row, geometry.reflected);
-  }
-  Rows::Tables of(std::size_t count) const { return {incident_.data(), reflected_.data(), rows_at_once, count}; }
-
- private:
-  void set(std::vector<double>& table, std::size_t row, const Direction& direction) {
-    zernike_table(order_, disc_point(direction, mapping_), one_.data());
-    for (std::size_t f = 0; f < functions_; ++f) table[f * rows_at_once + row] = one_[f];
-  }
-
-  int order_;
-  DiscMapping mapping_;
-  std::size_t functions_;
-  std::vector<double> incident_, reflected_, one_;
-};
-
 }  // namespace
 
 /// Elements whose rows are the same at the same geometry.
@@ -196,7 +167,7 @@ std::vector<FitAccumulator::Folding::Share> FitAccumulator::Folding::shares(std:
 struct FitAccumulator::Folding::Some {
   const Folding& all;
   std::size_t first, count;
-  Tables tables;
+  FunctionTables tables;
   std::vector<Mueller> values;  // rows_at_once for each group
 
   void set(bool turns) {
@@ -239,8 +210,10 @@ struct FitAccumulator::Folding::Some {
 
 void FitAccumulator::Folding::fold(const FitAccumulator& into) const {
   std::vector<Share> together = shares(*into.designs_);
-  Some some{*this, 0, 0, Tables(std::max(into.basis_.orders.f11, into.basis_.orders.other), into.basis_.mapping),
-            std::vector<Mueller>(groups.size() * rows_at_once)};
+  Some some{
+      *this, 0, 0,
+      FunctionTables(std::max(into.basis_.orders.f11, into.basis_.orders.other), into.basis_.mapping, rows_at_once),
+      std::vector<Mueller>(groups.size() * rows_at_once)};
   for (; some.first < rows(); some.first += rows_at_once) {
     some.count = std::min(rows_at_once, rows() - some.first);
     some.set(into.turns());
