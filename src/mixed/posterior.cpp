@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/mixed/posterior.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+
+#include "mixed/readings.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Index index(std::size_t i) { return static_cast<Index>(i); }
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument("posterior: " + what);
+}
+
+bool all_finite(const auto& numbers) {
+  return std::ranges::all_of(numbers, [](auto x) { return std::isfinite(x); });
+}
+
+void require_valid(const BlockPosterior& p, const Block& block, const MixedColumns& columns, std::size_t errors,
+                   bool rounded) {
+  const std::string of = "of block " + block.name;
+  const std::size_t modes = block.modes.size(), free = static_cast<std::size_t>(columns.size()) - modes;
+  require(p.hyperparameters.size() == prior_of(columns).names.size(), "number of hyperparameters " + of);
+  require(p.mean.size() == modes && p.free_mean.size() == free, "number of means " + of);
+  require(p.shared.size() == errors * modes, "number of effects of shared errors " + of);
+  require(p.deviations.size() == (rounded ? modes : 0) && p.factor.size() == (rounded ? modes * (modes + 1) / 2 : 0),
+          "number of rounded correlations " + of);
+  require(p.noise_variance > 0 && std::isfinite(p.noise_variance), "noise variance " + of);
+  require(all_finite(p.hyperparameters) && all_finite(p.mean) && all_finite(p.free_mean) && all_finite(p.shared) &&
+              all_finite(p.deviations),
+          "numbers " + of + " must be finite");
+}
+
+/// C = S R Rᵀ S: S the standard deviations, the rows of R of norm 1 but for rounding.
+MatrixXd from_rounded(const BlockPosterior& p) {
+  const Index n = index(p.mean.size());
+  MatrixXd r = MatrixXd::Zero(n, n);
+  std::size_t next = 0;
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j <= i; ++j) r(i, j) = p.factor[next++] / full_scale;
+    r.row(i) *= p.deviations[static_cast<std::size_t>(i)] / std::max(r.row(i).norm(), 1e-300);
+  }
+  return r * r.transpose();
+}
+
+}  // namespace
+
+MatrixXd covariance_of_all(const PosteriorData& data, const PosteriorAt& at, const BlockPosterior& block,
+                           const MixedColumns& columns) {
+  require(block.factor.empty(), "in its rounded form it holds the isotropic modes alone");
+  const VectorXd variances = prior_of(columns).variances(
+      Eigen::Map<const VectorXd>(block.hyperparameters.data(), index(block.hyperparameters.size())));
+  const Gram gram = gram_of(columns, data.readings[at.readings], at.law, at.f11);
+  const Parts parts = parts_of(gram.g, columns.calibration_count());
+  const auto roots = variances.cwiseSqrt().asDiagonal();
+  return roots * inverse_of(gram.g, parts, variances, block.noise_variance).matrix * roots;
+}
+
+std::vector<SharedError> shared_errors(const DeclaredErrors& declared) {
+  return {{"declared scale", declared.scale},
+          {"declared source arm", declared.source},
+          {"declared receiver arm", declared.receiver}};
+}
+
+std::vector<std::string> hyperparameter_names(const Block& block) {
+  return prior_of(MixedColumns(block, DiscMapping::lambert)).names;
+}
+
+struct Posterior::State {
+  struct Covariances {
+    std::once_flag once;
+    std::vector<std::vector<double>> of_blocks;
+  };
+
+  PosteriorData data;
+  std::vector<Block> blocks;
+  std::vector<MixedColumns> columns;
+  mutable std::vector<Covariances> known;  // at each wavelength
+
+  explicit State(PosteriorData from);
+  MatrixXd covariance(const PosteriorAt& at, std::size_t block) const;
+  const std::vector<double>& covariance(std::size_t wavelength, std::size_t block) const;
+};
+
+Posterior::State::State(PosteriorData from)
+    : data(std::move(from)), blocks(mmbrdf::blocks(Family::isotropic, data.orders)), known(data.wavelengths.size()) {
+  require(!data.wavelengths.empty(), "no wavelength");
+  require(data.errors.size() >= declared_errors, "number of shared errors");
+  for (const auto& [name, size] : data.errors) require(size >= 0 && std::isfinite(size), "size of the error " + name);
+  for (const Block& block : blocks) columns.emplace_back(block, data.mapping);
+  double before = 0;
+  for (const PosteriorAt& at : data.wavelengths) {
+    require(at.wavelength > before && std::isfinite(at.wavelength), "wavelengths must be positive and rise");
+    before = at.wavelength;
+    require(at.blocks.size() == blocks.size(), "number of blocks");
+    const bool rounded = !at.blocks[0].factor.empty();
+    require(rounded || at.readings < data.readings.size(), "list of directions");
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      require_valid(at.blocks[b], blocks[b], columns[b], data.errors.size(), rounded);
+  }
+}
+
+MatrixXd Posterior::State::covariance(const PosteriorAt& at, std::size_t block) const {
+  if (!at.blocks[block].factor.empty()) return from_rounded(at.blocks[block]);
+  const Index count = columns[block].isotropic_count();
+  return covariance_of_all(data, at, at.blocks[block], columns[block]).topLeftCorner(count, count);
+}
+
+const std::vector<double>& Posterior::State::covariance(std::size_t wavelength, std::size_t block) const {
+  Covariances& at = known[wavelength];
+  std::call_once(at.once, [&] {
+    std::vector<std::vector<double>> all;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const MatrixXd matrix = covariance(data.wavelengths[wavelength], b);
+      all.emplace_back(matrix.data(), matrix.data() + matrix.size());
+    }
+    at.of_blocks = std::move(all);
+  });
+  return at.of_blocks[block];
+}
+
+Posterior::Posterior(PosteriorData data) : state_(std::make_shared<const State>(std::move(data))) {}
+
+const PosteriorData& Posterior::data() const { return state_->data; }
+const std::vector<Block>& Posterior::blocks() const { return state_->blocks; }
+std::span<const double> Posterior::covariance(std::size_t wavelength, std::size_t block) const {
+  return state_->covariance(wavelength, block);
+}
+
+}  // namespace mmbrdf
