@@ -52,7 +52,7 @@ Mueller evaluate_by_the_book(const Model& model, const std::vector<std::vector<s
                              double wavelength, const Geometry& g) {
   Mueller result;
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
-    const auto& [block, coefficients, covariance, rank, condition, null_space] = model.blocks[b];
+    const auto& [block, coefficients, covariance, rank, condition, null_space, rows] = model.blocks[b];
     for (std::size_t q = 0; q < block.modes.size(); ++q) {
       double a = 0;
       for (int p = 0; p <= model.powers; ++p)

@@ -144,6 +144,9 @@ void bind_properties(ModelClass& c) {
           },
           "Highest radial orders, of f11 and of the other elements")
       .def_property_readonly("coefficient_count", [](const ModelObject& o) { return coefficient_count(o.model()); })
+      .def_property_readonly(
+          "degrees_of_freedom", [](const ModelObject& o) { return degrees_of_freedom(o.model()); },
+          "Of the fit: rows less rank; inf: not known")
       .def_property_readonly("blocks", blocks_of, "List of Block")
       .def_property_readonly("wavelengths_nm", wavelengths_nm, "Those it was fitted to; empty: not known")
       .def_property_readonly(

@@ -4,7 +4,9 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <mutex>
 #include <string>
 
@@ -28,7 +30,7 @@ enum class Side { incident, reflected };
 /// f(wavelength in micrometres, direction, Stokes vector or null) over arrays.
 template <class F>
 py::object over_directions(const ModelObject& model, Side side, const Wavelength& nm, const Given& theta,
-                           const Given& phi, const std::optional<Given>& stokes, F f) {
+                           const Given& phi, const std::optional<Given>& stokes, F f, bool warns = true) {
   const bool incident = side == Side::incident;
   std::vector<Operand> operands{model.wavelength_operand(nm),
                                 {incident ? "theta_i_deg" : "theta_r_deg", theta},
@@ -43,7 +45,7 @@ py::object over_directions(const ModelObject& model, Side side, const Wavelength
     const Stokes light = stokes ? broadcast.at<4>(3, i) : Stokes{};
     return f(wavelength, direction, stokes ? &light : nullptr);
   });
-  range.warn(broadcast.size());
+  if (warns) range.warn(broadcast.size());
   return result;
 }
 
@@ -56,13 +58,51 @@ py::object over_wavelengths(const ModelObject& model, const Wavelength& nm, F f)
 
 constexpr const char* uncertainty_doc = "Its standard uncertainty, of the fit and, where it has one, its instrument.";
 
+constexpr const char* terms_doc =
+    "Its standard uncertainty, of the fit, where it has one of its instrument, and of the terms of type B, as those "
+    "of\n"
+    "Model.evaluate_uncertainty(): each is one error for all directions. by_term=True: {'fit': u, 'scale': u, ...}, "
+    "for\n"
+    "budget().";
+
+/// A model at the wavelengths that are asked for, for several threads.
+class UncertainModels {
+ public:
+  UncertainModels(const ModelObject& o, const Terms& terms)
+      : terms_(terms_from(terms)),
+        prepared_([&o, this](double wavelength) { return uncertain(o.model(), wavelength, terms_); }) {}
+  UncertainModels(const UncertainModels&) = delete;
+
+  const UncertainModel& operator()(double wavelength) {
+    const std::lock_guard lock(mutex_);
+    return prepared_(wavelength);
+  }
+
+  /// compute(function that makes a number of a budget, whether to warn): of all causes together, or of each by name.
+  template <class Compute>
+  py::object uncertainties(bool by_term, Compute compute) const {
+    if (!by_term)
+      return compute([](const std::vector<Contribution>& budget) { return standard_uncertainty(budget); }, true);
+    py::dict result;
+    for (std::size_t c = 0; c <= terms_.size(); ++c)
+      result[py::str(c == 0 ? "fit" : terms_[c - 1].name)] =
+          compute([c](const std::vector<Contribution>& budget) { return budget[c].uncertainty; }, c == 0);
+    return result;
+  }
+
+ private:
+  std::vector<TypeBTerm> terms_;
+  AtWavelengths<std::function<UncertainModel(double)>> prepared_;
+  std::mutex mutex_;
+};
+
 /// A reflectance between the hemisphere and a direction.
 struct Reflectance {
   std::string name;
   Side side;
   double (*unpolarized)(const Model&, double, const Direction&);
   double (*value)(const Model&, double, const Direction&, const Stokes&);
-  double (*uncertainty)(const Model&, const PreparedUncertainty&, const Direction&, const Stokes&);
+  std::vector<Contribution> (*budget)(const UncertainModel&, const Direction&, const Stokes&);
   const char* doc;
 
   py::object values(const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
@@ -75,42 +115,47 @@ struct Reflectance {
   }
 
   py::object uncertainties(const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
-                           const std::optional<Given>& stokes) const {
-    std::mutex mutex;
-    AtWavelengths prepared([&](double wavelength) { return prepare_uncertainty(o.model(), wavelength); });
-    const auto at = [&](double wavelength) -> const PreparedUncertainty& {
-      const std::lock_guard lock(mutex);
-      return prepared(wavelength);
-    };
-    return over_directions(o, side, nm, theta, phi, stokes,
-                           [&](double wavelength, const Direction& direction, const Stokes* light) {
-                             return uncertainty(o.model(), at(wavelength), direction, light ? *light : Stokes{1});
-                           });
+                           const std::optional<Given>& stokes, const Terms& terms, bool by_term) const {
+    UncertainModels at(o, terms);
+    return at.uncertainties(by_term, [&](auto number, bool warns) {
+      return over_directions(
+          o, side, nm, theta, phi, stokes,
+          [&](double wavelength, const Direction& direction, const Stokes* light) {
+            return number(budget(at(wavelength), direction, light ? *light : Stokes{1}));
+          },
+          warns);
+    });
   }
 };
 
 const std::array reflectances{
     Reflectance{"directional_hemispherical", Side::incident, directional_hemispherical_reflectance,
-                directional_hemispherical_reflectance, directional_hemispherical_uncertainty,
+                directional_hemispherical_reflectance, directional_hemispherical_budget,
                 "Reflected per incident flux, over the whole hemisphere, for unpolarized light or incident light "
                 "`stokes`\n(..., 4) in the sp frame. All arguments broadcast."},
     Reflectance{"hemispherical_directional", Side::reflected, hemispherical_directional_reflectance,
-                hemispherical_directional_reflectance, hemispherical_directional_uncertainty,
+                hemispherical_directional_reflectance, hemispherical_directional_budget,
                 "Radiance into a direction under uniform unpolarized illumination, per that of the perfect diffuser; "
                 "seen through\nan analyzer that passes the light `analyzer` (..., 4), in the sp frame."}};
 
 void bind_directional(py::module_& m, const Reflectance& one) {
   const bool incident = one.side == Side::incident;
-  const auto define = [&](const char* what, auto method, const char* doc) {
-    m.def((one.name + what).c_str(),
-          [&one, method](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
-                         const std::optional<Given>& stokes) { return (one.*method)(o, nm, theta, phi, stokes); },
-          py::arg("model"), py::arg("wavelength_nm") = py::none(),
+  const auto define = [&](const char* what, auto function, const char* doc, const auto&... own) {
+    m.def((one.name + what).c_str(), function, py::arg("model"), py::arg("wavelength_nm") = py::none(),
           py::arg(incident ? "theta_i_deg" : "theta_r_deg") = 0.0, py::arg(incident ? "phi_i_deg" : "phi_r_deg") = 0.0,
-          py::arg(incident ? "stokes" : "analyzer") = py::none(), doc);
+          py::arg(incident ? "stokes" : "analyzer") = py::none(), own..., doc);
   };
-  define("_reflectance", &Reflectance::values, one.doc);
-  define("_uncertainty", &Reflectance::uncertainties, uncertainty_doc);
+  define(
+      "_reflectance",
+      [&one](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+             const std::optional<Given>& stokes) { return one.values(o, nm, theta, phi, stokes); },
+      one.doc);
+  define(
+      "_uncertainty",
+      [&one](const ModelObject& o, const Wavelength& nm, const Given& theta, const Given& phi,
+             const std::optional<Given>& stokes, const Terms& terms,
+             bool by_term) { return one.uncertainties(o, nm, theta, phi, stokes, terms, by_term); },
+      terms_doc, py::kw_only(), py::arg("terms") = py::none(), py::arg("by_term") = false);
 }
 
 void bind_bihemispherical(py::module_& m) {
@@ -123,11 +168,14 @@ void bind_bihemispherical(py::module_& m) {
       "Reflected per incident flux under uniform unpolarized illumination (white-sky albedo).");
   m.def(
       "bihemispherical_uncertainty",
-      [](const ModelObject& o, const Wavelength& nm) {
-        return over_wavelengths(
-            o, nm, [&](double w) { return bihemispherical_uncertainty(o.model(), prepare_uncertainty(o.model(), w)); });
+      [](const ModelObject& o, const Wavelength& nm, const Terms& terms, bool by_term) {
+        UncertainModels at(o, terms);
+        return at.uncertainties(by_term, [&](auto number, bool) {
+          return over_wavelengths(o, nm, [&](double w) { return number(bihemispherical_budget(at(w))); });
+        });
       },
-      py::arg("model"), py::arg("wavelength_nm") = py::none(), uncertainty_doc);
+      py::arg("model"), py::arg("wavelength_nm") = py::none(), py::kw_only(), py::arg("terms") = py::none(),
+      py::arg("by_term") = false, terms_doc);
   m.def(
       "reflectance_factor",
       [](const Given& f11) {
@@ -149,6 +197,42 @@ py::tuple averaged(const ModelObject& o, std::optional<double> nm, const Apertur
   range.count(wavelength, {{source.largest_theta(), 0}, {receiver.largest_theta(), 0}});
   range.warn(1);
   return py::make_tuple(array_of(result.mueller), result.error, result.converged);
+}
+
+py::array_t<double> average_uncertainty(const ModelObject& o, std::optional<double> nm, const ApertureObject& source,
+                                        const ApertureObject& receiver, const Terms& terms) {
+  const double wavelength = o.wavelength(nm);
+  return array_of(without_gil([&] {
+    const UncertainModel model = uncertain(o.model(), wavelength, terms_from(terms));
+    const int few = average(model.model, source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
+    return standard_uncertainty(average_budget(model, source, receiver, few).total);
+  }));
+}
+
+/// {name: u} to the budget of a number, or of many at once.
+py::object budget_of(const py::dict& parts, const std::map<std::string, double>& freedoms) {
+  std::vector<std::string> names;
+  std::vector<Operand> operands;
+  names.reserve(parts.size());  // operands point to them
+  for (const auto& [name, u] : parts) {
+    names.push_back(name.cast<std::string>());
+    operands.push_back({names.back().c_str(), u.cast<Given>()});
+  }
+  for (const auto& [name, freedom] : freedoms)
+    if (std::ranges::find(names, name) == names.end())
+      throw std::invalid_argument("degrees_of_freedom: there is no part " + name);
+  const Broadcast broadcast(std::move(operands));
+  const py::object all = map(broadcast, [&](std::size_t i) {
+    std::vector<Contribution> causes;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      causes.push_back({names[c], broadcast.number(c, i)});
+      if (const auto known = freedoms.find(names[c]); known != freedoms.end()) causes.back().freedom = known->second;
+    }
+    const ExpandedUncertainty u = expanded(std::move(causes));
+    return std::array{u.uncertainty, u.freedom, u.coverage_factor, u.expanded};
+  });
+  const auto column = [&](int c) -> py::object { return all[py::make_tuple(py::ellipsis(), c)]; };
+  return record("Budget", parts, column(0), column(1), column(2), column(3));
 }
 
 using CurveOf = PolarizedCurve (*)(const Model&, double, std::span<const Geometry>);
@@ -191,6 +275,13 @@ void bind_radiometry(py::module_& m) {
       py::arg("tolerance") = 1e-10,
       "Mean of the matrix over a source and a receiver, weighted with projected solid angle: (matrix (4, 4) in sr^-1,\n"
       "xy frame; estimate of the quadrature's error in sr^-1; whether the tolerance was reached).");
+  m.def("average_uncertainty", average_uncertainty, py::arg("model"), py::arg("wavelength_nm"), py::arg("source"),
+        py::arg("receiver"), py::kw_only(), py::arg("terms") = py::none(),
+        "Standard uncertainties of the matrix that average() gives, of the fit and of the terms: (4, 4) in sr^-1.");
+  m.def("budget", budget_of, py::arg("parts"), py::arg("degrees_of_freedom") = std::map<std::string, double>(),
+        "What can be signed: Budget of {name: standard uncertainty}, numbers or arrays, as by_term=True and\n"
+        "Analyzed.parts give them. degrees_of_freedom of those parts where they are finite: {'fit': "
+        "model.degrees_of_freedom}.");
 }
 
 }  // namespace mmbrdf::python

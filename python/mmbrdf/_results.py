@@ -211,6 +211,23 @@ class ModelDiagnostics(_NamedTuple):
     dhr_theta_i_deg: float
 
 
+class Budget(_NamedTuple):
+    """What can be signed, of a number or of many: value +- U.
+
+    parts               standard uncertainty by cause
+    u                   of all together
+    degrees_of_freedom  effective, by Welch and Satterthwaite; inf where those of all parts are
+    k                   of 95 % coverage: of Student's distribution, 2 where the degrees of freedom are infinite
+    U                   k u
+    """
+
+    parts: dict[str, float | _Array]
+    u: float | _Array
+    degrees_of_freedom: float | _Array
+    k: float | _Array
+    U: float | _Array
+
+
 class Difference(_NamedTuple):
     """Of one quantity over all samples: largest is without sign, and stands where it is."""
 

@@ -70,7 +70,8 @@ Block read_block(const Field& field, Family family) {
 }
 
 FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
-  field.require_no_other_than({"elements", "modes", "coefficients", "covariance", "rank", "condition", "null_space"});
+  field.require_no_other_than(
+      {"elements", "modes", "coefficients", "covariance", "rows", "rank", "condition", "null_space"});
   FittedBlock fitted;
   fitted.block = read_block(field, family);
   fitted.coefficients = field["coefficients"].numbers();
@@ -86,6 +87,8 @@ FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
   const std::size_t free = (size - static_cast<std::size_t>(fitted.rank)) * size;
   if (field.has("null_space"))
     require_count(field["null_space"], fitted.null_space.size(), free, "one combination for each that is free");
+  if (field.has("rows")) fitted.rows = static_cast<long>(field["rows"].number());
+  if (fitted.rows < 0) field["rows"].refuse(field["rows"].shown() + " is negative");
   if (fitted.condition < 0) field["condition"].refuse(field["condition"].shown() + " is negative");
   return fitted;
 }
@@ -194,6 +197,7 @@ ordered_json block_json(const FittedBlock& fitted) {
     result["modes"].push_back({to_string(function), n, m, k, l});
   result["coefficients"] = fitted.coefficients;
   if (!fitted.covariance.empty()) result["covariance"] = lower_triangle(fitted.covariance, fitted.coefficients.size());
+  if (fitted.rows > 0) result["rows"] = fitted.rows;
   if (fitted.rank > 0) result["rank"] = fitted.rank;
   if (fitted.condition > 0) result["condition"] = fitted.condition;
   if (!fitted.null_space.empty()) result["null_space"] = fitted.null_space;

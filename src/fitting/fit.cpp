@@ -243,7 +243,8 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
     if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
     for (const Element& element : blocks_[b].elements)
       result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
-    FittedBlock fitted{blocks_[b], solution.x, {}, solution.rank, solution.condition(), solution.null_space};
+    FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
+                       solution.condition(), solution.null_space, solution.rows};
     if (solution.degrees_of_freedom() > 0) {
       fitted.covariance = solution.inverse;
       for (double& c : fitted.covariance) c *= solution.variance();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -160,6 +161,13 @@ void require_valid(const Model& model) {
 
 bool has_covariance(const Model& model) {
   return std::ranges::any_of(model.blocks, [](const FittedBlock& b) { return !b.covariance.empty(); });
+}
+
+double degrees_of_freedom(const Model& model) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const FittedBlock& b : model.blocks)
+    if (b.rows > 0) least = std::min(least, std::max(1.0, static_cast<double>(b.rows - b.rank)));
+  return least;
 }
 
 bool turns(const Model& model) { return turns(model.family, model.rotation); }

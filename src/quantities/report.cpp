@@ -149,8 +149,8 @@ Field realizability(const Reported& reported) {
 /// Quantities at one wavelength, each with its uncertainty where there is a covariance.
 void add_reflectances(Json& rows, const Reported& reported, double wavelength) {
   const Model& model = reported.model;
-  std::optional<PreparedUncertainty> u;
-  if (knows_uncertainty(model)) u = prepare_uncertainty(model, wavelength);
+  std::optional<UncertainModel> u;
+  if (knows_uncertainty(model)) u = uncertain(model, wavelength);
   const auto add = [&](const std::string& quantity, double value, auto uncertainty) {
     rows.push_back({{"wavelength_nm", wavelength_json(reported, wavelength)},
                     {"quantity", quantity},
@@ -160,14 +160,15 @@ void add_reflectances(Json& rows, const Reported& reported, double wavelength) {
   for (const int theta : {0, 8, 45, 60, 75}) {
     const Direction incident{radians(theta), 0};
     add("dhr, theta_i " + std::to_string(theta), directional_hemispherical_reflectance(model, wavelength, incident),
-        [&] { return directional_hemispherical_uncertainty(model, *u, incident); });
+        [&] { return standard_uncertainty(directional_hemispherical_budget(*u, incident)); });
   }
-  add("bhr", bihemispherical_reflectance(model, wavelength), [&] { return bihemispherical_uncertainty(model, *u); });
+  add("bhr", bihemispherical_reflectance(model, wavelength),
+      [&] { return standard_uncertainty(bihemispherical_budget(*u)); });
   const PreparedModel prepared = prepare(model, wavelength);
   for (const auto& [name, geometry] : {std::pair("0:45", Geometry{{0, 0}, {radians(45), radians(180)}}),
                                        std::pair("45:0", Geometry{{radians(45), 0}, {0, 0}})})
     add(std::string("reflectance factor ") + name, reflectance_factor(prepared.f11(geometry)),
-        [&, &place = geometry] { return reflectance_factor(standard_uncertainty(u->evaluate(place))(0, 0)); });
+        [&, &place = geometry] { return reflectance_factor(standard_uncertainty(u->fit.evaluate(place))(0, 0)); });
 }
 
 Json reflectances(const Reported& reported) {

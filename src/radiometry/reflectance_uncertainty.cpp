@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
@@ -11,51 +10,52 @@
 namespace mmbrdf {
 namespace {
 
-/// Of π aᵀ M s / (a1 s1), M with this covariance: an integral over the hemisphere is π times the mean.
-double reflectance_uncertainty(const MuellerCovariance& covariance, const Stokes& analyzer, const Stokes& light) {
-  degree_of_polarization(analyzer);
-  degree_of_polarization(light);
-  const auto slope = [&](std::size_t e) { return analyzer[e / 4] / analyzer[0] * (light[e % 4] / light[0]); };
-  double variance = 0;
-  for (std::size_t e = 0; e < 16; ++e)
-    for (std::size_t other = 0; other < 16; ++other) variance += slope(e) * covariance(e, other) * slope(other);
-  return std::numbers::pi * std::sqrt(std::max(variance, 0.0));
+Budget budget_of_mean(const UncertainModel& at, const Aperture& source, const Aperture& receiver, int nodes,
+                      Frame frame) {
+  return budget(at.model, at.fit, at.terms, mean_rule(source, receiver, nodes), frame);
 }
 
-MuellerCovariance covariance_of_mean(const PreparedUncertainty& prepared, const Aperture& source,
-                                     const Aperture& receiver, int nodes, Frame frame) {
-  const MuellerGradient gradient = prepared.gradient(mean_rule(source, receiver, nodes), frame);
-  return prepared.covariance(gradient, gradient);
+/// Of π aᵀ M s / (a1 s1), M the mean: an integral over the hemisphere is π times that.
+std::vector<Contribution> of_hemisphere(const Budget& mean, const Stokes& analyzer, const Stokes& light) {
+  degree_of_polarization(analyzer);
+  degree_of_polarization(light);
+  Mueller slope;
+  for (std::size_t e = 0; e < 16; ++e)
+    slope.elements[e] = std::numbers::pi * (analyzer[e / 4] / analyzer[0]) * (light[e % 4] / light[0]);
+  return contributions(mean, slope);
 }
 
 }  // namespace
 
+UncertainModel uncertain(const Model& model, double wavelength, std::vector<TypeBTerm> terms) {
+  return {prepare(model, wavelength), prepare_uncertainty(model, wavelength), std::move(terms),
+          hemisphere_nodes(model)};
+}
+
 // In the sp frame the axes of the beam that stays are fixed; those of the other do not matter to the first row, or
 // column.
 
-double directional_hemispherical_uncertainty(const Model& model, const PreparedUncertainty& prepared,
-                                             const Direction& incident, const Stokes& light_sp) {
-  const MuellerCovariance covariance = covariance_of_mean(prepared, Aperture::direction(incident),
-                                                          Aperture::hemisphere(), hemisphere_nodes(model), Frame::sp);
-  return reflectance_uncertainty(covariance, {1, 0, 0, 0}, light_sp);
+std::vector<Contribution> directional_hemispherical_budget(const UncertainModel& model, const Direction& incident,
+                                                           const Stokes& light_sp) {
+  return of_hemisphere(
+      budget_of_mean(model, Aperture::direction(incident), Aperture::hemisphere(), model.hemisphere_nodes, Frame::sp),
+      {1, 0, 0, 0}, light_sp);
 }
 
-double hemispherical_directional_uncertainty(const Model& model, const PreparedUncertainty& prepared,
-                                             const Direction& reflected, const Stokes& analyzer_sp) {
-  const MuellerCovariance covariance = covariance_of_mean(
-      prepared, Aperture::hemisphere(), Aperture::direction(reflected), hemisphere_nodes(model), Frame::sp);
-  return reflectance_uncertainty(covariance, analyzer_sp, {1, 0, 0, 0});
+std::vector<Contribution> hemispherical_directional_budget(const UncertainModel& model, const Direction& reflected,
+                                                           const Stokes& analyzer_sp) {
+  return of_hemisphere(
+      budget_of_mean(model, Aperture::hemisphere(), Aperture::direction(reflected), model.hemisphere_nodes, Frame::sp),
+      analyzer_sp, {1, 0, 0, 0});
 }
 
-double bihemispherical_uncertainty(const Model& model, const PreparedUncertainty& prepared) {
+std::vector<Contribution> bihemispherical_budget(const UncertainModel& model) {
   const Aperture all = Aperture::hemisphere();
-  const MuellerCovariance covariance = covariance_of_mean(prepared, all, all, hemisphere_nodes(model), Frame::xy);
-  return reflectance_uncertainty(covariance, {1, 0, 0, 0}, {1, 0, 0, 0});
+  return of_hemisphere(budget_of_mean(model, all, all, model.hemisphere_nodes, Frame::xy), {1, 0, 0, 0}, {1, 0, 0, 0});
 }
 
-MuellerCovariance average_covariance(const PreparedUncertainty& prepared, const Aperture& source,
-                                     const Aperture& receiver, int nodes) {
-  return covariance_of_mean(prepared, source, receiver, nodes, Frame::xy);
+Budget average_budget(const UncertainModel& model, const Aperture& source, const Aperture& receiver, int nodes) {
+  return budget_of_mean(model, source, receiver, nodes, Frame::xy);
 }
 
 }  // namespace mmbrdf

@@ -72,6 +72,21 @@ void add(MuellerCovariance& sum, const Mueller& effect) {
     for (std::size_t other = 0; other < 16; ++other) sum(e, other) += effect.elements[e] * effect.elements[other];
 }
 
+/// `where` is a geometry, or several with weights.
+template <class Where>
+Budget budget_of(const MuellerCovariance& fit, double freedom, const PreparedModel& model,
+                 std::span<const TypeBTerm> terms, const Where& where, Frame frame) {
+  Budget result;
+  result.terms.push_back({"fit", fit, freedom});
+  for (const TypeBTerm& term : terms) {
+    result.terms.push_back({term.name, {}, term.freedom});
+    for (const Mueller& effect : effects(term, model, where, frame)) add(result.terms.back().covariance, effect);
+  }
+  for (const BudgetTerm& term : result.terms)
+    for (std::size_t i = 0; i < 256; ++i) result.total.values[i] += term.covariance.values[i];
+  return result;
+}
+
 }  // namespace
 
 std::string to_string(ErrorOf what) {
@@ -111,17 +126,26 @@ std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, 
   throw std::invalid_argument("there is no such ErrorOf");
 }
 
+std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model,
+                             std::span<const WeightedGeometry> geometries, Frame frame) {
+  std::vector<Mueller> sum;
+  for (const auto& [geometry, weight] : geometries) {
+    const std::vector<Mueller> here = effects(term, model, geometry, frame);
+    sum.resize(here.size());
+    for (std::size_t i = 0; i < here.size(); ++i) sum[i] = sum[i] + weight * here[i];
+  }
+  return sum;
+}
+
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               const Geometry& geometry, Frame frame) {
-  Budget result;
-  result.terms.push_back({"fit", fit.evaluate(geometry, frame)});
-  for (const TypeBTerm& term : terms) {
-    result.terms.push_back({term.name, {}});
-    for (const Mueller& effect : effects(term, model, geometry, frame)) add(result.terms.back().covariance, effect);
-  }
-  for (const BudgetTerm& term : result.terms)
-    for (std::size_t i = 0; i < 256; ++i) result.total.values[i] += term.covariance.values[i];
-  return result;
+  return budget_of(fit.evaluate(geometry, frame), fit.freedom(), model, terms, geometry, frame);
+}
+
+Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
+              std::span<const WeightedGeometry> geometries, Frame frame) {
+  const MuellerGradient gradient = fit.gradient(geometries, frame);
+  return budget_of(fit.covariance(gradient, gradient), fit.freedom(), model, terms, geometries, frame);
 }
 
 std::vector<Mueller> drawn(std::span<const PreparedModel> draws, const PreparedModel& model,

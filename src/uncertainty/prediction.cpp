@@ -106,6 +106,7 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
 struct PreparedUncertainty::Blocks {
   std::vector<BlockAt> list;
   Index parameters = 0;
+  double freedom = 0;
   int order = 0;
   DiscMapping mapping = DiscMapping::lambert;
   bool turns = false;
@@ -177,6 +178,7 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
   blocks->order = std::max(highest.f11, highest.other);
   blocks->mapping = model.mapping;
   blocks->turns = mmbrdf::turns(model);
+  blocks->freedom = degrees_of_freedom(model);
   for (const FittedBlock& fitted : model.blocks) {
     blocks->list.push_back(block_at(fitted, model, wavelength));
     blocks->list.back().first = blocks->parameters;
@@ -207,6 +209,8 @@ MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame 
 }
 
 std::size_t PreparedUncertainty::parameters() const { return static_cast<std::size_t>(blocks_->parameters); }
+
+double PreparedUncertainty::freedom() const { return blocks_->freedom; }
 
 MuellerGradient PreparedUncertainty::gradient(const Geometry& geometry, Frame frame) const {
   const WeightedGeometry one{geometry, 1};

@@ -124,6 +124,36 @@ def test_reflectances_and_their_uncertainties(ptfe):
     assert mmbrdf.reflectance_factor(1 / np.pi) == pytest.approx(1)
 
 
+def test_a_term_is_one_error_for_all_directions(ptfe):
+    scale = {"scale": 0.003}
+    for name, value in (("directional_hemispherical", (532, 60)), ("hemispherical_directional", (532, 60)), ("bihemispherical", (532,))):  # fmt: skip
+        reflectance, u = getattr(mmbrdf, name + "_reflectance"), getattr(mmbrdf, name + "_uncertainty")
+        parts = u(ptfe, *value, terms=scale, by_term=True)
+        assert list(parts) == ["fit", "scale"] and parts["fit"] == u(ptfe, *value)
+        assert parts["scale"] == pytest.approx(0.003 * reflectance(ptfe, *value), rel=1e-9)
+        assert u(ptfe, *value, terms=scale) == pytest.approx(np.hypot(parts["fit"], parts["scale"]), rel=1e-12)
+    source, receiver = mmbrdf.Aperture.cone(8, 0, 1), mmbrdf.Aperture.ring(40, 50)
+    mean = mmbrdf.average(ptfe, 532, source, receiver)[0]
+    alone = mmbrdf.average_uncertainty(ptfe, 532, source, receiver)
+    both = mmbrdf.average_uncertainty(ptfe, 532, source, receiver, terms=scale)
+    assert alone.shape == (4, 4)
+    assert both[0, 0] == pytest.approx(np.hypot(alone[0, 0], 0.003 * mean[0, 0]), rel=1e-6)
+    with pytest.raises(ValueError, match="terms: phi"):
+        mmbrdf.bihemispherical_uncertainty(ptfe, 532, terms={"phi": 1})
+
+
+def test_a_budget_can_be_signed(ptfe):
+    signed = mmbrdf.budget({"fit": [3.0, 0.0], "scale": 4.0}, {"fit": 10})
+    np.testing.assert_allclose(signed.u, [5, 4])
+    np.testing.assert_allclose(signed.degrees_of_freedom, [5**4 / (3**4 / 10), np.inf])
+    np.testing.assert_allclose(signed.U, signed.k * signed.u)
+    assert signed.k[1] == 2 and 1.96 < signed.k[0] < 2.0
+    assert mmbrdf.budget({"fit": 1.0}, {"fit": 1}).k == pytest.approx(12.706, abs=1e-3)
+    assert ptfe.degrees_of_freedom > 1
+    with pytest.raises(ValueError, match="there is no part scale"):
+        mmbrdf.budget({"fit": 1.0}, {"scale": 3})
+
+
 def test_means_over_apertures(ptfe):
     source, receiver = mmbrdf.Aperture.direction(8, 0), mmbrdf.Aperture.hemisphere()
     with pytest.warns(mmbrdf.ExtrapolationWarning, match="theta_r"):

@@ -121,20 +121,20 @@ TEST(Report, HasTheNumbersOfTheModelToTheLastBit) {
   EXPECT_EQ(horizon["smallest_margin"].get<double>(), d.margin.value);
   EXPECT_EQ(horizon["smallest_f11"].get<double>(), d.f11.value);
   EXPECT_EQ(horizon["largest_dhr"].get<double>(), d.dhr);
-  const PreparedUncertainty u = prepare_uncertainty(model, green[0]);
+  const UncertainModel u = uncertain(model, green[0]);
   const Direction at_60{radians(60), 0};
   const Json& dhr = json["reflectances"][3];
   EXPECT_EQ(dhr["quantity"], "dhr, theta_i 60");
   EXPECT_EQ(dhr["value"].get<double>(), directional_hemispherical_reflectance(model, green[0], at_60));
-  EXPECT_EQ(dhr["u"].get<double>(), directional_hemispherical_uncertainty(model, u, at_60));
+  EXPECT_EQ(dhr["u"].get<double>(), standard_uncertainty(directional_hemispherical_budget(u, at_60)));
   const Json& bhr = json["reflectances"][5];
   EXPECT_EQ(bhr["value"].get<double>(), bihemispherical_reflectance(model, green[0]));
-  EXPECT_EQ(bhr["u"].get<double>(), bihemispherical_uncertainty(model, u));
+  EXPECT_EQ(bhr["u"].get<double>(), standard_uncertainty(bihemispherical_budget(u)));
   const Json& factor = json["reflectances"][7];
   const Geometry to_the_normal{{radians(45), 0}, {0, 0}};
   EXPECT_EQ(factor["quantity"], "reflectance factor 45:0");
   EXPECT_EQ(factor["value"].get<double>(), reflectance_factor(prepare(model, green[0]).f11(to_the_normal)));
-  EXPECT_EQ(factor["u"].get<double>(), reflectance_factor(standard_uncertainty(u.evaluate(to_the_normal))(0, 0)));
+  EXPECT_EQ(factor["u"].get<double>(), reflectance_factor(standard_uncertainty(u.fit.evaluate(to_the_normal))(0, 0)));
 }
 
 TEST(Report, HasTheNumbersOfTheSamplesToTheLastBit) {

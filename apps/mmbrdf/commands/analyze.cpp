@@ -10,6 +10,7 @@
 #include "mmbrdf/polarization/analysis.hpp"
 #include "options/files.hpp"
 #include "options/scan.hpp"
+#include "options/terms.hpp"
 #include "pages/analyze_report.hpp"
 #include "pages/output.hpp"
 #include "streams/npy.hpp"
@@ -19,33 +20,13 @@ namespace mmbrdf::program {
 namespace {
 
 struct Options : Question {
-  std::vector<std::string> scan_texts, term_texts;
+  std::vector<std::string> scan_texts;
+  Terms terms;
   std::vector<Scan> scans;
   AnswerOptions asked;
   bool strict = false;
   std::optional<Format> format;
 };
-
-/// VALUE with the unit that belongs to the error: a part of 1 or %, or degrees. As a part of 1, or in radians.
-double uncertainty_from(const std::string& text, ErrorOf what) {
-  const bool angle = what == ErrorOf::theta_i || what == ErrorOf::theta_r || what == ErrorOf::azimuth;
-  const std::string unit = angle ? "deg" : "%";
-  const bool with_unit = text.ends_with(unit);
-  const double value = number(with_unit ? text.substr(0, text.size() - unit.size()) : text);
-  if (value < 0) throw std::invalid_argument("\"" + text + "\": expected 0 or more");
-  return angle ? radians(value) : with_unit ? value / 100 : value;
-}
-
-TypeBTerm term_from(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos)
-    throw std::invalid_argument("\"" + text + "\": expected [NAME:]KIND=VALUE, as in scale=0.3% or plaque:scale=0.003");
-  const std::string name = text.substr(0, equals);
-  const std::size_t colon = name.rfind(':');
-  const ErrorOf what = error_from(colon == std::string::npos ? name : name.substr(colon + 1));
-  return {colon == std::string::npos ? name : name.substr(0, colon), what,
-          uncertainty_from(text.substr(equals + 1), what)};
-}
 
 Stokes stokes_from(const std::string& text) {
   const std::vector<double> values = numbers(text);
@@ -96,7 +77,7 @@ void analyze_one(const Options& options) {
     std::cout << place_columns << columns.names << '\n' << row << '\n';
     return;
   }
-  const AnalysisReport report{options, place, answers, answers.at(wavelength).at(geometry)};
+  const AnalysisReport report{options, place, answers, answers.at(wavelength).at(geometry), options.terms.budget};
   if (options.strict) require_inside(report.answer.outside, model.validity);
   warn_if_outside(place.model, report.answer.outside, model.validity);
   (options.format == Format::json ? print_json : print_text)(report);
@@ -142,9 +123,11 @@ void analyze(Options& options) {
   if (is_npy(options.output)) throw WrongUsage("--output", "only evaluate writes .npy");
   const bool rows = !options.geometries.empty() || !options.scan_texts.empty();
   for (const std::string& text : options.scan_texts) options.scans.push_back(parsed("--scan", text, scan_from));
-  for (const std::string& text : options.term_texts) options.asked.terms.push_back(parsed("--term", text, term_from));
+  options.asked.terms = terms_from(options.terms);
   if (rows && options.format && *options.format != Format::csv)
     throw WrongUsage("--format", "only csv goes with --geometries and --scan");
+  if (options.terms.budget && (rows || options.format == Format::csv))
+    throw WrongUsage("--budget", "goes with one geometry, as text or json");
   if (options.asked.light) require_possible(*options.asked.light);
   if (!rows && !options.output.empty()) throw WrongUsage("--output", "needs --geometries or --scan");
   if (!options.geometries.empty()) return analyze_file(options);
@@ -166,11 +149,11 @@ constexpr const char* footer =
     "A scan of theta_r without --reflected runs in the plane of incidence: forward (phi_r = phi_i + 180) for\n"
     "theta_r > 0, back towards the source for theta_r < 0.\n"
     "\n"
-    "Uncertainties are those of the fit, in first order, and of the terms: KIND is scale (relative), theta_i, theta_r "
-    "or\n"
-    "azimuth (degrees), calibration (of each element divided by f11). Errors of terms are independent of each other,\n"
-    "and the same at all geometries. With --monte-carlo those of ratios and eigenvalues are from N draws of the\n"
-    "coefficients and of the terms, with a 95 % interval, NAME_low to NAME_high.\n"
+    "Uncertainties are those of the fit, in first order, and of the terms. With --monte-carlo those of ratios and\n"
+    "eigenvalues are from N draws of the coefficients and of the terms, with a 95 % interval, NAME_low to NAME_high.\n"
+    "\n";
+
+constexpr const char* examples =
     "\n"
     "Examples:\n"
     "  mmbrdf analyze ptfe -w 532 -i 45,0 -r 30,180 --term plaque:scale=0.3% --term theta_r=0.02deg\n"
@@ -193,9 +176,7 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
   add_texts(app, "--scan", o->scan_texts, "VAR=FROM:TO:STEP",
             "Run through a range: theta_i, phi_i, theta_r, phi_r\nor wavelength; again: through all pairs")
       .excludes(declared.geometries);
-  add_texts(app, "--term", o->term_texts, "[NAME:]KIND=U",
-            "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
-            "calibration=0.001; repeatable");
+  add_terms(app, o->terms);
   add_option(app, "--stokes", o->asked.light, stokes_from, "S1,S2,S3,S4",
              "Incident light, in the frame: adds what becomes of it");
   const Option draws = add_option(app, "--monte-carlo", o->asked.draws, draws_from, "N",
@@ -205,7 +186,7 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
   add_as_printed(app, *o);
   add_option(app, "--format", o->format, format_from, "FORMAT",
              "text, csv or json for one geometry [text]; csv for files and scans");
-  set_footer(app, columns + quantity_lines() + footer);
+  set_footer(app, columns + quantity_lines() + footer + terms_help + examples);
   return [o] { analyze(*o); };
 }
 

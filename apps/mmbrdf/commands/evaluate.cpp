@@ -11,6 +11,8 @@
 #include "mmbrdf/model/prepared.hpp"
 #include "options/files.hpp"
 #include "options/question.hpp"
+#include "options/terms.hpp"
+#include "pages/budget.hpp"
 #include "pages/describe.hpp"
 #include "pages/output.hpp"
 #include "streams/evaluate_file.hpp"
@@ -23,6 +25,7 @@ namespace {
 struct Options : Question {
   std::optional<Format> format;
   bool normalized = false;
+  Terms terms;
   int threads = 0;  // 0: as many as there are
 };
 
@@ -32,7 +35,29 @@ struct Evaluation {
   Place place;
   Mueller mueller;  // element 11 is f11 even if normalized
   Outside outside;
+  std::vector<BudgetLine> budgets;
 };
+
+/// Of each element that has an uncertainty, as it is shown.
+std::vector<BudgetLine> budgets_of(const Options& options, const Model& model, const PreparedModel& prepared,
+                                   const Geometry& geometry) {
+  if (!options.terms.budget) return {};
+  if (!knows_uncertainty(model)) throw std::runtime_error(base_name(options.model) + ": no covariance, no --budget");
+  const Budget all = budget(prepared, prepare_uncertainty(model, prepared.wavelength()), terms_from(options.terms),
+                            geometry, options.frame);
+  const Mueller f = prepared.evaluate(geometry, options.frame);
+  std::vector<BudgetLine> lines;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const bool divided = options.normalized && e > 0;
+    Mueller slope;
+    slope.elements[e] = divided ? 1 / f(0, 0) : 1;
+    if (divided) slope(0, 0) = -f.elements[e] / (f(0, 0) * f(0, 0));
+    BudgetLine line{(divided ? "m" : "f") + element_name(e), divided ? f.elements[e] / f(0, 0) : f.elements[e],
+                    expanded(contributions(all, slope))};
+    if (without_rounding(line.uncertainty.uncertainty) > 0) lines.push_back(std::move(line));
+  }
+  return lines;
+}
 
 void print_text(const Evaluation& a) {
   std::cout << heading(a.place)
@@ -40,7 +65,7 @@ void print_text(const Evaluation& a) {
             << ", frame " << to_string(a.options.frame) << " (" << convention_note(a.options.frame) << ")"
             << (a.place.rotation == Rotation::as_printed ? ", as printed" : "")
             << "\nvalidity: " << to_string(a.outside) << '\n'
-            << matrix_text(a.mueller);
+            << matrix_text(a.mueller) << (a.budgets.empty() ? "" : "\n") << budget_text(a.budgets);
 }
 
 void print_csv(const Evaluation& a) {
@@ -61,6 +86,7 @@ void print_json(const Evaluation& a) {
   m(0, 0) = a.options.normalized ? 1 : m(0, 0);
   json["mueller"] = matrix_json(m);
   json["validity"] = to_string(a.outside);
+  for (const auto& [name, value, u] : a.budgets) json["budgets"][name] = budget_json(u);
   print(json);
 }
 
@@ -76,13 +102,17 @@ void evaluate_one(const Options& options) {
   const Evaluation answer{.options = options,
                           .place = place_of(model, options, wavelength),
                           .mueller = options.normalized ? normalized_beside_f11(f) : f,
-                          .outside = prepared.outside(geometry)};
+                          .outside = prepared.outside(geometry),
+                          .budgets = budgets_of(options, model, prepared, geometry)};
   warn_if_outside(answer.place.model, answer.outside, model.validity);
   const Format form = options.format.value_or(Format::text);
   (form == Format::text ? print_text : form == Format::csv ? print_csv : print_json)(answer);
 }
 
 void evaluate(const Options& options) {
+  if (!options.terms.texts.empty() && !options.terms.budget) throw WrongUsage("--term", "needs --budget");
+  if (options.terms.budget && (!options.geometries.empty() || options.format == Format::csv))
+    throw WrongUsage("--budget", "goes with one geometry, as text or json");
   if (options.geometries.empty()) {
     require_directions(options, "--geometries");
     return evaluate_one(options);
@@ -96,16 +126,24 @@ void evaluate(const Options& options) {
   evaluate_file(model, rows_of(options), evaluated);
 }
 
-constexpr const char* footer =
-    "The frame names the axes of the Stokes components: xy (those at the surface normal, carried along the meridian),\n"
-    "sp (s and p of each beam), scattering_plane (perpendicular and parallel to the plane of both beams). S2 is\n"
-    "y - x, s - p or perpendicular - parallel, S4 is left - right. A negative polar angle means the opposite azimuth:\n"
-    "-45,0 is 45,180. The validity is ok, what lies outside the fitted range, or unknown.\n"
-    "\n"
-    "FILE.csv has a header line with wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg or the names of the\n"
-    "published data; other columns are kept, those named as one of the output as input_NAME, lines that begin with\n"
-    "# are not. An array of these five numbers for each row, .npy of numpy, is read too. Any number of rows takes the\n"
-    "same memory. OUT.npy is an array (rows, 4, 4) without the validity, several times faster than text.\n"
+const std::string footer =
+    std::string(
+        "The frame names the axes of the Stokes components: xy (those at the surface normal, carried along the "
+        "meridian),\n"
+        "sp (s and p of each beam), scattering_plane (perpendicular and parallel to the plane of both beams). S2 is\n"
+        "y - x, s - p or perpendicular - parallel, S4 is left - right. A negative polar angle means the opposite "
+        "azimuth:\n"
+        "-45,0 is 45,180. The validity is ok, what lies outside the fitted range, or unknown.\n"
+        "\n"
+        "FILE.csv has a header line with wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg or the names of "
+        "the\n"
+        "published data; other columns are kept, those named as one of the output as input_NAME, lines that begin "
+        "with\n"
+        "# are not. An array of these five numbers for each row, .npy of numpy, is read too. Any number of rows takes "
+        "the\n"
+        "same memory. OUT.npy is an array (rows, 4, 4) without the validity, several times faster than text.\n"
+        "\n") +
+    terms_help +
     "\n"
     "Examples:\n"
     "  mmbrdf evaluate ptfe --wavelength 532 --incident 45,0 --reflected 30,180 --frame sp\n"
@@ -119,6 +157,7 @@ Run evaluate_command(CLI::App& app, const CommandLine&) {
   const QuestionOptions declared = add_question(app, *o, "Evaluate");
   declared.output.needs(declared.geometries);
   add_flag(app, "--normalized", o->normalized, "f11 in sr^-1, and all others divided by it (m12 ... m44)");
+  add_terms(app, o->terms);
   add_as_printed(app, *o);
   add_option(app, "--threads", o->threads, thread_count, "N", "For the rows of a file [0: as many as there are cores]")
       .needs(declared.geometries);

@@ -14,11 +14,11 @@
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
-#include "mmbrdf/uncertainty/prediction.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "options/question.hpp"
 #include "options/sides.hpp"
+#include "options/terms.hpp"
 
 namespace mmbrdf::program {
 
@@ -52,6 +52,7 @@ struct Options {
   std::optional<Polarization> polarization;
   std::optional<Sides> geometry;
   std::optional<double> tolerance;
+  Terms terms;
   Format format = Format::text;
   bool strict = false;
 };
@@ -60,11 +61,16 @@ struct Options {
 struct AtWavelength {
   const Model& model;
   double wavelength;
-  std::optional<PreparedUncertainty> uncertainty;  // none: not known
+  std::optional<UncertainModel> uncertain;  // none: not known
 };
 
-std::optional<PreparedUncertainty> uncertainty_of(const Model& model, double wavelength) {
-  return knows_uncertainty(model) ? std::optional(prepare_uncertainty(model, wavelength)) : std::nullopt;
+std::optional<UncertainModel> uncertain_of(const Model& model, double wavelength, const Terms& terms) {
+  return knows_uncertainty(model) ? std::optional(uncertain(model, wavelength, terms_from(terms))) : std::nullopt;
+}
+
+void add_uncertainty(IntegratedRow& row, ExpandedUncertainty u) {
+  row.uncertainties.push_back(u.uncertainty);
+  row.budgets.push_back(std::move(u));
 }
 
 /// Of dhr and hdr.
@@ -80,10 +86,9 @@ IntegratedRow hemispherical_row(const AtWavelength& at, Integral quantity, doubl
     row.values = {dhr ? directional_hemispherical_reflectance(at.model, at.wavelength, beam, p.light)
                       : hemispherical_directional_reflectance(at.model, at.wavelength, beam, p.light)};
   }
-  if (at.uncertainty) {
-    row.uncertainties = {dhr ? directional_hemispherical_uncertainty(at.model, *at.uncertainty, beam, p.light)
-                             : hemispherical_directional_uncertainty(at.model, *at.uncertainty, beam, p.light)};
-  }
+  if (at.uncertain)
+    add_uncertainty(row, expanded(dhr ? directional_hemispherical_budget(*at.uncertain, beam, p.light)
+                                      : hemispherical_directional_budget(*at.uncertain, beam, p.light)));
   return row;
 }
 
@@ -91,7 +96,7 @@ IntegratedRow bihemispherical_row(const AtWavelength& at) {
   IntegratedRow row;
   row.outside = outside(at.model.validity, at.wavelength, {});
   row.values = {bihemispherical_reflectance(at.model, at.wavelength)};
-  if (at.uncertainty) row.uncertainties = {bihemispherical_uncertainty(at.model, *at.uncertainty)};
+  if (at.uncertain) add_uncertainty(row, expanded(bihemispherical_budget(*at.uncertain)));
   return row;
 }
 
@@ -132,10 +137,14 @@ IntegratedRow average_row(const AtWavelength& at, Integral quantity, const Sides
   row.geometries = mean.geometries;
   const std::size_t elements = quantity == Integral::mueller ? 16 : 1;
   for (std::size_t e = 0; e < elements; ++e) row.values.push_back(factor * mean.mueller.elements[e]);
-  if (at.uncertainty) {
+  if (at.uncertain) {
     const int few = average(model, source, receiver, {.tolerance = 1e-3}).nodes;  // digits that u needs
-    const Mueller u = standard_uncertainty(average_covariance(*at.uncertainty, source, receiver, few));
-    for (std::size_t e = 0; e < elements; ++e) row.uncertainties.push_back(factor * u.elements[e]);
+    const Budget budget = average_budget(*at.uncertain, source, receiver, few);
+    for (std::size_t e = 0; e < elements; ++e) {
+      Mueller slope;
+      slope.elements[e] = factor;
+      add_uncertainty(row, expanded(contributions(budget, slope)));
+    }
   }
   return row;
 }
@@ -195,6 +204,7 @@ Integrated integrated(const Model& model, Integral quantity, const Options& opti
   result.model = base_name(options.model);
   result.quantity = quantity;
   result.has_instrument = model.provenance.contains("instrument");
+  for (const TypeBTerm& term : terms_from(options.terms)) result.terms.push_back(term.name);
   result.polarization = options.polarization.value_or(Polarization{}).text;
   if (options.geometry) {
     result.source = description(options.geometry->source, source_phi_deg);
@@ -206,7 +216,9 @@ Integrated integrated(const Model& model, Integral quantity, const Options& opti
   const std::vector<double> wavelengths = wavelengths_of(model, options);
   result.several_wavelengths = wavelengths.size() > 1;
   for (const double wavelength : wavelengths) {
-    for (IntegratedRow& row : rows_of({model, wavelength, uncertainty_of(model, wavelength)}, quantity, options)) {
+    for (IntegratedRow& row :
+         rows_of({model, wavelength, uncertain_of(model, wavelength, options.terms)}, quantity, options)) {
+      if (!options.terms.budget) row.budgets.clear();
       if (options.wavelengths_nm || knows_wavelength(model)) row.wavelength_nm = nanometres(wavelength);
       result.rows.push_back(std::move(row));
     }
@@ -227,12 +239,13 @@ bool determined(const Model& model, Integral quantity, const Options& options) {
       pairs.emplace_back(Aperture::direction({radians(std::abs(theta_deg)), 0}), Aperture::hemisphere());
   }
   const double wavelength = wavelengths_of(model, options).front();  // the rank of a fit is one for all
-  const std::optional<PreparedUncertainty> prepared = uncertainty_of(model, wavelength);
+  if (!knows_uncertainty(model)) return true;
+  const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength);
   constexpr int few = 2;  // a rule whose nodes lie all over the apertures
-  return !prepared || std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+  return std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
     const std::vector<WeightedGeometry> nodes = mean_rule(pair.first, pair.second, few);
     return std::all_of(nodes.begin(), nodes.end(),
-                       [&](const WeightedGeometry& node) { return prepared->estimable(node.geometry); });
+                       [&](const WeightedGeometry& node) { return prepared.estimable(node.geometry); });
   });
 }
 
@@ -247,6 +260,7 @@ void check_determined(const Model& model, Integral quantity, const Options& opti
 
 void integrate(const Options& options) {
   const Integral quantity = checked_quantity(options);
+  if (options.terms.budget && options.format == Format::csv) throw WrongUsage("--budget", "goes with text or json");
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   const Integrated result = integrated(model, quantity, options);
@@ -265,14 +279,18 @@ const std::string footer =
         "\n") +
     sides_help +
     "\n"
-    "u_ columns are standard uncertainties of the fit alone, empty where the model has no covariance. A hemisphere\n"
+    "u_ columns are standard uncertainties of the fit and of the terms, empty where the model has no covariance. The\n"
+    "effect of a term on an integral is the integral of its effect: one error for all directions. A hemisphere\n"
     "always reaches beyond the fitted angles: it is not flagged for that, the share beyond is told. The CSV of dhr, "
     "hdr\n"
     "and bhr has no column validity: use --strict.\n"
+    "\n" +
+    terms_help +
     "\n"
     "Examples:\n"
     "  mmbrdf integrate ptfe --quantity dhr --wavelength 532 --theta 0,8,45,60,75 --format csv\n"
     "  mmbrdf integrate ptfe --wavelength 532 --geometry 0:45\n"
+    "  mmbrdf integrate ptfe -q dhr -w 532 --theta 8 --term scale=0.3% --budget\n"
     "  mmbrdf integrate ptfe --wavelength 532 --geometry 'cone(8,0,1):d-cone(8,180,4)' --quantity reflectance";
 
 }  // namespace
@@ -291,6 +309,7 @@ Run integrate_command(CLI::App& app, const CommandLine&) {
              "Of dhr the incident light, of hdr what an analyzer passes:\nunpolarized, s, p or S1,S2,S3,S4, frame sp "
              "[unpolarized]");
   add_option(app, "--tolerance", o->tolerance, number, "T", "Of the quadrature, relative [1e-10]");
+  add_terms(app, o->terms);
   add_flag(app, "--strict", o->strict, "Refuse what lies outside the fitted range");
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
   add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");

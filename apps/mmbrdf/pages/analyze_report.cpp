@@ -10,6 +10,7 @@
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/text/rounding.hpp"
+#include "pages/budget.hpp"
 #include "pages/describe.hpp"
 #include "pages/output.hpp"
 
@@ -65,7 +66,7 @@ void print_quantity(const Answered& q, std::string_view name, std::string_view u
 }
 
 /// u of f11 and of the depolarization from one term of a budget, or from all.
-struct Contribution {
+struct Share {
   std::string_view term;
   double f11 = 0;
   std::optional<double> depolarization = {};
@@ -77,8 +78,8 @@ std::string with_share(double u, double total) {
   return format("%10s %6.1f %%", to_place_of(u, u).c_str(), 100 * part * part);
 }
 
-std::vector<Contribution> contributions(const Answer& a) {
-  std::vector<Contribution> result;
+std::vector<Share> shares(const Answer& a) {
+  std::vector<Share> result;
   for (const BudgetTerm& term : a.budget->terms)
     result.push_back({term.name, standard_uncertainty(term.covariance)(0, 0)});
   result.push_back({"total", standard_uncertainty(a.budget->total)(0, 0)});
@@ -88,14 +89,29 @@ std::vector<Contribution> contributions(const Answer& a) {
 }
 
 void print_budget(const Answer& a) {
-  const std::vector<Contribution> rows = contributions(a);
-  const Contribution& total = rows.back();
+  const std::vector<Share> rows = shares(a);
+  const Share& total = rows.back();
   std::cout << "\nterm                     u(f11)    share   u(depol.)    share\n";
-  for (const Contribution& c : rows) {
+  for (const Share& c : rows) {
     std::cout << format("%-20.20s ", std::string(c.term).c_str()) << with_share(c.f11, total.f11);
     if (c.depolarization) std::cout << "  " << with_share(*c.depolarization, *total.depolarization);
     std::cout << '\n';
   }
+}
+
+/// Of f11 and of each quantity that has a meaning, in first order.
+std::vector<BudgetLine> budget_lines(const Answer& a) {
+  Mueller f11;
+  f11(0, 0) = 1;
+  std::vector<BudgetLine> lines{{"f11", a.elements(0, 0), expanded(contributions(*a.budget, f11))}};
+  for (const Answered& q : a.quantities) {
+    if (!q.value) continue;
+    std::vector<Contribution> parts;
+    for (std::size_t i = 0; i < a.budget->terms.size(); ++i)
+      parts.push_back({a.budget->terms[i].name, q.parts[i], a.budget->terms[i].freedom});
+    lines.push_back({std::string(q.quantity->name), *q.value, expanded(std::move(parts))});
+  }
+  return lines;
 }
 
 nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
@@ -155,7 +171,10 @@ void print_text(const AnalysisReport& r) {
             << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n'
             << matrix_text(a.elements, a.uncertainties);
   if (a.uncertainties) std::cout << "its standard uncertainties\n" << matrix_text(*a.uncertainties, a.uncertainties);
-  if (a.budget && a.budget->terms.size() > 1) print_budget(a);
+  if (a.budget && r.budget)
+    std::cout << '\n' << budget_text(budget_lines(a));
+  else if (a.budget && a.budget->terms.size() > 1)
+    print_budget(a);
 }
 
 void print_json(const AnalysisReport& r) {
@@ -179,11 +198,13 @@ void print_json(const AnalysisReport& r) {
   json["budget"] = nullptr;
   if (a.budget) {
     json["budget"] = nlohmann::ordered_json::array();
-    for (const Contribution& c : contributions(a)) {
+    for (const Share& c : shares(a)) {
       json["budget"].push_back(
           {{"term", c.term}, {"u_f11", c.f11}, {"u_depolarization", number_or_null(c.depolarization)}});
     }
   }
+  if (a.budget && r.budget)
+    for (const auto& [name, value, u] : budget_lines(a)) json["budgets"][name] = budget_json(u);
   print(json);
 }
 

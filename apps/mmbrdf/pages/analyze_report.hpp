@@ -12,6 +12,7 @@ struct AnalysisReport {
   Place place;
   const Answers& answers;
   Answer answer;
+  bool budget = false;  ///< expanded, of each value
 };
 
 void print_text(const AnalysisReport& report);

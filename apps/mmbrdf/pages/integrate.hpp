@@ -8,6 +8,7 @@
 
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/polarization/mueller.hpp"
+#include "pages/budget.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -23,11 +24,12 @@ bool needs_geometry(Integral quantity);
 
 /// One number, or all sixteen of a matrix. Matrices are in the frame xy.
 struct IntegratedRow {
-  std::optional<double> wavelength_nm;  // none: unknown
-  std::optional<double> theta_deg;      // of dhr and hdr
-  std::vector<double> values;           // 1 or 16
-  std::vector<double> uncertainties;    // as many, or none: not known
-  double quadrature_error = 0;          // in units of the values
+  std::optional<double> wavelength_nm;       // none: unknown
+  std::optional<double> theta_deg;           // of dhr and hdr
+  std::vector<double> values;                // 1 or 16
+  std::vector<double> uncertainties;         // as many, or none: not known
+  std::vector<ExpandedUncertainty> budgets;  // with --budget, of each
+  double quadrature_error = 0;               // in units of the values
   long geometries = 1;
   Outside outside = inside;
 };
@@ -40,7 +42,8 @@ struct Integrated {
   std::optional<double> extrapolated;  // share of the hemisphere's projected solid angle beyond the fitted angles
   std::vector<IntegratedRow> rows;
   bool several_wavelengths = false;
-  bool has_instrument = false;  // its errors are in the uncertainties
+  bool has_instrument = false;     // its errors are in the uncertainties
+  std::vector<std::string> terms;  // and those of these
 };
 
 /// As CSV the columns are [wavelength_nm,][theta_i_deg,|theta_r_deg,]QUANTITY,u_QUANTITY, with --geometry followed by

@@ -92,6 +92,25 @@ Table table(const Integrated& result) {
   return table;
 }
 
+/// "532 nm, 8 deg", of what there are several.
+std::string label(const Integrated& result, const IntegratedRow& row) {
+  std::string text;
+  if (result.several_wavelengths) text += brief(*row.wavelength_nm) + " nm";
+  if (row.theta_deg) text += (text.empty() ? "" : ", ") + brief(*row.theta_deg) + " deg";
+  return text;
+}
+
+std::vector<BudgetLine> budget_lines(const Integrated& result, const IntegratedRow& row) {
+  std::vector<BudgetLine> lines;
+  for (std::size_t e = 0; e < row.budgets.size(); ++e) {
+    if (!(without_rounding(row.budgets[e].uncertainty) > 0)) continue;
+    const std::string name = result.quantity == Integral::mueller ? "f" + element_name(e) : to_string(result.quantity);
+    const std::string where = label(result, row);
+    lines.push_back({name + (where.empty() ? "" : " " + where), row.values[e], row.budgets[e]});
+  }
+  return lines;
+}
+
 Json json_of(const Integrated& result) {
   Json json;
   json["model"] = result.model;
@@ -106,6 +125,11 @@ Json json_of(const Integrated& result) {
   }
   if (result.extrapolated) json["extrapolated_share_of_hemisphere"] = *result.extrapolated;
   json["rows"] = json_of(table(result));
+  for (std::size_t r = 0; r < result.rows.size(); ++r) {
+    Json& row = json["rows"][r];
+    for (const auto& [name, value, u] : budget_lines(result, result.rows[r]))
+      (result.quantity == Integral::mueller ? row["budgets"][name] : row["budget"]) = budget_json(u);
+  }
   return json;
 }
 
@@ -131,6 +155,13 @@ std::string matrices(const Integrated& result) {
   return text;
 }
 
+std::string uncertainty_line(const Integrated& result) {
+  std::string of_what = result.has_instrument ? "the fit and its instrument" : "the fit";
+  if (!result.terms.empty()) return "u: standard uncertainty of " + of_what + " and of " + joined(result.terms) + "\n";
+  if (!result.has_instrument) of_what += " alone";
+  return "u: standard uncertainty of " + of_what + "; scale, angles and sample are not in it\n";
+}
+
 std::string text_of(const Integrated& result) {
   const bool geometry = needs_geometry(result.quantity);
   std::string text = result.model + ": " + named(result.quantity).meaning;
@@ -152,13 +183,15 @@ std::string text_of(const Integrated& result) {
             format(", error below %.1e\n", error);
   }
   if (std::any_of(result.rows.begin(), result.rows.end(), [](const auto& row) { return !row.uncertainties.empty(); }))
-    text += std::string("u: standard uncertainty of the fit ") +
-            (result.has_instrument ? "and its instrument" : "alone") + "; scale, angles and sample are not in it\n";
+    text += uncertainty_line(result);
   if (result.extrapolated) {
     text += format("extrapolated: %.1f %% of the hemisphere's projected solid angle lies beyond the fitted angles\n",
                    100 * *result.extrapolated);
   }
-  return text;
+  std::vector<BudgetLine> lines;
+  for (const IntegratedRow& row : result.rows)
+    for (BudgetLine& line : budget_lines(result, row)) lines.push_back(std::move(line));
+  return text + (lines.empty() ? "" : "\n") + budget_text(lines);
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ struct FittedBlock {
   double condition = 0;              ///< of the fit; 0: unknown
   std::vector<double> null_space{};  ///< orthonormal combinations of the coefficients that the data left free, (count −
                                      ///< rank) × count row-major; empty if there are none, or they are not known
+  long rows = 0;                     ///< of the fit; 0: unknown
 };
 
 /// Highest power of the wavelength that a model may have.
@@ -91,6 +92,9 @@ struct Model {
 void require_valid(const Model& model);
 
 bool has_covariance(const Model& model);  ///< of a block, at least
+
+/// Of the fit: rows less rank, of the block where that is least, and 1 at least. Infinite where it is not known.
+double degrees_of_freedom(const Model& model);
 
 /// Whether it is evaluated at phi_i = 0 and turned.
 bool turns(const Model& model);

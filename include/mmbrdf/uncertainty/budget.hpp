@@ -5,6 +5,7 @@
 /// geometries, with the standard uncertainty that the user gives; calibration is fifteen such errors.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,7 @@ struct TypeBTerm {
   std::string name;  ///< for the table: "reference plaque"
   ErrorOf what = ErrorOf::scale;
   double uncertainty = 0;  ///< standard (k = 1), in [0, largest_term]: beyond, first order means nothing
+  double freedom = std::numeric_limits<double>::infinity();  ///< degrees of freedom of the uncertainty, 1 or more
 };
 inline constexpr double largest_term = 10;
 
@@ -44,9 +46,15 @@ std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model, 
                              Frame frame = Frame::xy);
 inline constexpr double grazing_limit = 1e-9;
 
+/// Of Σ weight × F, such as the mean over an aperture: the sum of the effects, since each error is one and the same at
+/// all geometries.
+std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model,
+                             std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy);
+
 struct BudgetTerm {
   std::string name;
-  MuellerCovariance covariance;  ///< of the elements of F, in sr⁻²
+  MuellerCovariance covariance;                              ///< of the elements of F, in sr⁻²
+  double freedom = std::numeric_limits<double>::infinity();  ///< degrees of freedom
 };
 
 struct Budget {
@@ -57,6 +65,10 @@ struct Budget {
 /// Throws std::invalid_argument as effects() does.
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               const Geometry& geometry, Frame frame = Frame::xy);
+
+/// Of Σ weight × F.
+Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
+              std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy);
 
 /// One matrix for each drawn model (draws.hpp), with errors of the terms drawn along, each normal. `model` is the
 /// one that was drawn from. The same seed gives the same errors at all geometries, as it is the same instrument.

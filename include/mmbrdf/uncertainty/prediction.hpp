@@ -48,6 +48,9 @@ class PreparedUncertainty {
 
   std::size_t parameters() const;
 
+  /// Degrees of freedom of the fit, and so of these uncertainties: degrees_of_freedom(model).
+  double freedom() const;
+
   /// Whether the data of the fit determine every element at a geometry. Where they do not, its uncertainties are those
   /// of the part that is determined: too small. The rows of the elements over the coefficients may lie in the
   /// combinations that the data leave free with at most 1e-8 of their length (theory 4.7). Of a deficient fit whose

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pages/budget.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pages/describe.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+Json freedom_json(double freedom) { return std::isinf(freedom) ? Json() : Json(freedom); }
+
+std::string freedom_text(double freedom) {
+  return std::isinf(freedom) ? "infinite" : format("%.0f", std::floor(freedom));
+}
+
+/// To its own two digits.
+std::string rounded(double u) {
+  const double shown = without_rounding(u);
+  return to_place_of(shown, shown);
+}
+
+}  // namespace
+
+std::string budget_text(const std::vector<BudgetLine>& lines) {
+  if (lines.empty()) return "";
+  const std::vector<Contribution>& causes = lines.front().uncertainty.contributions;
+  std::size_t width = 10;
+  for (const BudgetLine& line : lines) width = std::max(width, line.name.size());
+  Table table{{{"budget", "%-" + std::to_string(width) + "s"}, {"value", "%12s"}}};
+  for (const Contribution& cause : causes)
+    table.columns.push_back({cause.name, "%" + std::to_string(std::max<std::size_t>(10, cause.name.size())) + "s"});
+  for (const char* name : {"together", "dof", "k", "U"}) table.columns.push_back({name, "%10s"});
+  for (const auto& [name, value, u] : lines) {
+    Table::Row& row = table.rows.emplace_back(Table::Row{name, to_place_of(without_rounding(value), u.expanded)});
+    for (const Contribution& cause : u.contributions) row.push_back(rounded(cause.uncertainty));
+    for (const std::string& cell :
+         {rounded(u.uncertainty), freedom_text(u.freedom), format("%.2f", u.coverage_factor), rounded(u.expanded)})
+      row.push_back(cell);
+  }
+  std::string freedoms;
+  for (const Contribution& cause : causes)
+    freedoms += (freedoms.empty() ? "" : ", ") + cause.name + " " + freedom_text(cause.freedom);
+  return text(table) + "degrees of freedom: " + freedoms +
+         "; together by Welch and Satterthwaite\n"
+         "U = k u: 95 % coverage, k of Student's distribution, 2 where the degrees of freedom are infinite\n";
+}
+
+Json budget_json(const ExpandedUncertainty& uncertainty) {
+  Json json;
+  json["terms"] = Json::array();
+  for (const auto& [name, u, freedom] : uncertainty.contributions)
+    json["terms"].push_back({{"term", name}, {"u", u}, {"degrees_of_freedom", freedom_json(freedom)}});
+  json["u"] = uncertainty.uncertainty;
+  json["degrees_of_freedom"] = freedom_json(uncertainty.freedom);
+  json["k"] = uncertainty.coverage_factor;
+  json["U"] = uncertainty.expanded;
+  return json;
+}
+
+}  // namespace mmbrdf::program
