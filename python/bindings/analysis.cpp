@@ -50,6 +50,16 @@ py::object named(const char* name, const py::tuple& values) {
 
 py::object standard_uncertainties(const Given& gradient, const Given& covariance) {
   const Broadcast broadcast({{"gradient", gradient, {4, 4}}, {"covariance", covariance, {16, 16}}});
+  const Broadcast covariances({{"covariance", covariance, {16, 16}}});
+  for (std::size_t i = 0; i < covariances.size(); ++i) {
+    MuellerCovariance of_elements;
+    covariances.gather(0, i, i + 1, of_elements.values.data());
+    try {
+      require_valid(of_elements);
+    } catch (const std::invalid_argument& error) {
+      throw covariances.at_place(error, i);
+    }
+  }
   return map(broadcast, [&](std::size_t i) {
     MuellerCovariance of_elements;
     broadcast.gather(1, i, i + 1, of_elements.values.data());
@@ -135,7 +145,8 @@ void bind_gradients(py::module_& m) {
   m.def(
       "standard_uncertainty", standard_uncertainties, py::arg("gradient"), py::arg("covariance"),
       "sqrt(g V g) of a quantity with this gradient (..., 4, 4), from the covariance (..., 16, 16) of the elements in\n"
-      "the same frame, as Model.covariance() gives it.");
+      "the same frame, as Model.covariance() gives it. Raises ValueError for one that is not finite, symmetric and\n"
+      "positive semidefinite.");
 }
 
 void bind_sums(py::module_& m) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarization/covariance.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "numerics/dense.hpp"
+#include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -23,6 +26,21 @@ MuellerCovariance transformed_once(const MuellerCovariance& covariance, const Mu
 }
 
 }  // namespace
+
+void require_valid(const MuellerCovariance& covariance) {
+  using RowMajor = Eigen::Matrix<double, 16, 16, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> v(covariance.values.data());
+  constexpr double rounding = 1e-9;
+  if (!v.allFinite()) throw std::invalid_argument("the covariance is not finite");
+  const double allowed = rounding * v.cwiseAbs().maxCoeff();
+  for (Eigen::Index e = 0; e < 16; ++e)
+    for (Eigen::Index other = e + 1; other < 16; ++other)
+      if (std::abs(v(e, other) - v(other, e)) > allowed)
+        throw std::invalid_argument("the covariance is not symmetric: " + shortest(v(e, other)) + " and " +
+                                    shortest(v(other, e)) + " at " + std::to_string(e) + ", " + std::to_string(other) +
+                                    ", counted from 0");
+  require_semidefinite(dense::eigenvalues(v), "the elements", rounding);
+}
 
 Mueller standard_uncertainty(const MuellerCovariance& covariance) {
   Mueller result;

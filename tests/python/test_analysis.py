@@ -124,6 +124,25 @@ def test_reflectances_and_their_uncertainties(ptfe):
     assert mmbrdf.reflectance_factor(1 / np.pi) == pytest.approx(1)
 
 
+def test_what_is_no_covariance_is_refused():
+    ones = np.ones((4, 4))
+    assert mmbrdf.standard_uncertainty(ones, np.eye(16)) == pytest.approx(4)
+    assert mmbrdf.standard_uncertainty(ones, np.zeros((16, 16))) == 0
+    indefinite, lopsided = np.eye(16), np.eye(16)
+    indefinite[0, 1] = indefinite[1, 0] = 2
+    lopsided[2, 3] = 0.5
+    for wrong, message in (
+        (-np.eye(16), "not positive semidefinite"),
+        (indefinite, "not positive semidefinite"),
+        (lopsided, "not symmetric: 0.5 and 0 at 2, 3"),
+        (np.full((16, 16), np.nan), "not finite"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            mmbrdf.standard_uncertainty(ones, wrong)
+    with pytest.raises(ValueError, match=r"semidefinite.*at \[1\]"):
+        mmbrdf.standard_uncertainty(ones, np.stack([np.eye(16), -np.eye(16)]))
+
+
 def test_a_term_is_one_error_for_all_directions(ptfe):
     scale = {"scale": 0.003}
     for name, value in (("directional_hemispherical", (532, 60)), ("hemispherical_directional", (532, 60)), ("bihemispherical", (532,))):  # fmt: skip

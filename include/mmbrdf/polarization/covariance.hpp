@@ -16,6 +16,10 @@ struct MuellerCovariance {
   double& operator()(std::size_t element, std::size_t other) { return values[16 * element + other]; }
 };
 
+/// Throws std::invalid_argument, with what is wrong, for a covariance that nothing can have: not finite, not symmetric, or
+/// with an eigenvalue below 0, each to 1e-9 of the largest element. Nothing else asks this: what a model gives is one.
+void require_valid(const MuellerCovariance& covariance);
+
 /// Of each element: the square roots of the covariance's diagonal.
 Mueller standard_uncertainty(const MuellerCovariance& covariance);
 
