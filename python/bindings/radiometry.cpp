@@ -15,6 +15,7 @@
 #include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/radiometry/certificate.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "question.hpp"
 
@@ -209,6 +210,22 @@ py::array_t<double> average_uncertainty(const ModelObject& o, std::optional<doub
   }));
 }
 
+py::object certified_model(const ModelObject& o, const Given& nm, const Given& reflectance, const Given& u,
+                           const Given& theta) {
+  const Broadcast broadcast({{"wavelength_nm", nm}, {"reflectance", reflectance}, {"u", u}, {"theta_i_deg", theta}});
+  std::vector<CertifiedReflectance> certificate;
+  for (std::size_t i = 0; i < broadcast.size(); ++i)
+    certificate.push_back({micrometres(broadcast.number(0, i)), broadcast.number(1, i), broadcast.number(2, i),
+                           radians(broadcast.number(3, i))});
+  CertifiedModel result = without_gil([&] { return certified(o.model(), certificate); });
+  if (result.change > noticeable_change)
+    py::module_::import("warnings")
+        .attr("warn")(formatted("the certificate changes f11 by up to {:.1f} %", 100 * result.change) +
+                      "; the other elements / f11 stay those of the sample that was measured, and a darker one "
+                      "depolarizes less");
+  return py::cast(std::make_shared<ModelObject>(std::move(result.model)));
+}
+
 /// {name: u} to the budget of a number, or of many at once.
 py::object budget_of(const py::dict& parts, const std::map<std::string, double>& freedoms) {
   std::vector<std::string> names;
@@ -278,6 +295,12 @@ void bind_radiometry(py::module_& m) {
   m.def("average_uncertainty", average_uncertainty, py::arg("model"), py::arg("wavelength_nm"), py::arg("source"),
         py::arg("receiver"), py::kw_only(), py::arg("terms") = py::none(),
         "Standard uncertainties of the matrix that average() gives, of the fit and of the terms: (4, 4) in sr^-1.");
+  m.def("certified", certified_model, py::arg("model"), py::arg("wavelength_nm"), py::arg("reflectance"), py::arg("u"),
+        py::arg("theta_i_deg") = 8.0,
+        "The Model rescaled so that its directional-hemispherical reflectance is the certified one, with its standard\n"
+        "uncertainty, at these wavelengths (arrays broadcast); valid between them. Errors of the certificate count as\n"
+        "one for all its wavelengths. Warns where f11 changes by more than 3 %: the other elements / f11 do not\n"
+        "change, though the polarization of a grey sample differs from that of a white one.");
   m.def("budget", budget_of, py::arg("parts"), py::arg("degrees_of_freedom") = std::map<std::string, double>(),
         "What can be signed: Budget of {name: standard uncertainty}, numbers or arrays, as by_term=True and\n"
         "Analyzed.parts give them. degrees_of_freedom of those parts where they are finite: {'fit': "

@@ -474,13 +474,22 @@ def average_uncertainty(
 def bihemispherical_reflectance(
     model: Model, wavelength_nm: ArrayLike | None = None
 ) -> float | NDArray[np.float64]: ...
+@overload
 def bihemispherical_uncertainty(
     model: Model,
     wavelength_nm: ArrayLike | None = None,
     *,
     terms: dict[str, float] | None = None,
-    by_term: bool = False,
-) -> float | NDArray[np.float64] | dict[str, float | NDArray[np.float64]]: ...
+    by_term: Literal[False] = ...,
+) -> float | NDArray[np.float64]: ...
+@overload
+def bihemispherical_uncertainty(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    *,
+    terms: dict[str, float] | None = None,
+    by_term: Literal[True],
+) -> dict[str, float | NDArray[np.float64]]: ...
 def budget(parts: dict[str, ArrayLike], degrees_of_freedom: dict[str, float] = {}) -> mmbrdf.Budget: ...
 def calibrate(
     references: str | os.PathLike[str],
@@ -507,6 +516,21 @@ def co_and_cross_polarized(mueller_sp: ArrayLike) -> mmbrdf.PolarizedBrdf: ...
 def co_and_cross_polarized_gradients() -> mmbrdf.PolarizedBrdf: ...
 def coherency(mueller: ArrayLike) -> NDArray[np.complex128]: ...
 def coherency_eigenvalues(mueller: ArrayLike) -> NDArray[np.float64]: ...
+def certified(
+    model: Model,
+    wavelength_nm: ArrayLike,
+    reflectance: ArrayLike,
+    u: ArrayLike,
+    theta_i_deg: ArrayLike = 8.0,
+) -> Model: ...
+@overload
+def compare(
+    model: Dataset,
+    other: Dataset,
+    wavelength_nm: ArrayLike | None = None,
+    geometry: Sequence[ArrayLike] | None = None,
+) -> mmbrdf.Comparison: ...
+@overload
 def compare(
     model: Model,
     other: Dataset | Model,
@@ -534,6 +558,7 @@ def directional_hemispherical_reflectance(
     phi_i_deg: ArrayLike = 0.0,
     stokes: ArrayLike | None = None,
 ) -> float | NDArray[np.float64]: ...
+@overload
 def directional_hemispherical_uncertainty(
     model: Model,
     wavelength_nm: ArrayLike | None = None,
@@ -542,8 +567,19 @@ def directional_hemispherical_uncertainty(
     stokes: ArrayLike | None = None,
     *,
     terms: dict[str, float] | None = None,
-    by_term: bool = False,
-) -> float | NDArray[np.float64] | dict[str, float | NDArray[np.float64]]: ...
+    by_term: Literal[False] = ...,
+) -> float | NDArray[np.float64]: ...
+@overload
+def directional_hemispherical_uncertainty(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_i_deg: ArrayLike = 0.0,
+    phi_i_deg: ArrayLike = 0.0,
+    stokes: ArrayLike | None = None,
+    *,
+    terms: dict[str, float] | None = None,
+    by_term: Literal[True],
+) -> dict[str, float | NDArray[np.float64]]: ...
 def eigenvalue_min(mueller: ArrayLike) -> float | NDArray[np.float64]: ...
 def eigenvalue_min_gradient(mueller: ArrayLike) -> NDArray[np.float64]: ...
 def entropy(mueller: ArrayLike) -> float | NDArray[np.float64]: ...
@@ -584,6 +620,7 @@ def hemispherical_directional_reflectance(
     phi_r_deg: ArrayLike = 0.0,
     analyzer: ArrayLike | None = None,
 ) -> float | NDArray[np.float64]: ...
+@overload
 def hemispherical_directional_uncertainty(
     model: Model,
     wavelength_nm: ArrayLike | None = None,
@@ -592,8 +629,19 @@ def hemispherical_directional_uncertainty(
     analyzer: ArrayLike | None = None,
     *,
     terms: dict[str, float] | None = None,
-    by_term: bool = False,
-) -> float | NDArray[np.float64] | dict[str, float | NDArray[np.float64]]: ...
+    by_term: Literal[False] = ...,
+) -> float | NDArray[np.float64]: ...
+@overload
+def hemispherical_directional_uncertainty(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_r_deg: ArrayLike = 0.0,
+    phi_r_deg: ArrayLike = 0.0,
+    analyzer: ArrayLike | None = None,
+    *,
+    terms: dict[str, float] | None = None,
+    by_term: Literal[True],
+) -> dict[str, float | NDArray[np.float64]]: ...
 def ideal_polarimeter(retardance_deg: float, azimuths_deg: ArrayLike) -> Polarimeter: ...
 def in_plane(theta_i_deg: float, theta_r_deg: ArrayLike) -> mmbrdf.Geometry: ...
 def in_published_form(model: Model) -> Model: ...

@@ -262,11 +262,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
 }
 
 void FitAccumulator::require_covered(const ReflectanceTable& table) const {
-  if (table.values.empty()) return;
-  for (const auto& [wavelength, at] : wavelengths_)
-    if (wavelength < table.wavelengths.front() - wavelength_resolution ||
-        wavelength > table.wavelengths.back() + wavelength_resolution)
-      throw std::invalid_argument("the reflectance table does not reach " + nanometres(wavelength) + " nm");
+  for (const auto& [wavelength, at] : wavelengths_) require_reaches(table, wavelength);
 }
 
 ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const double> x,

@@ -72,6 +72,13 @@ void require_valid(const ReflectanceTable& table) {
       throw std::invalid_argument("reflectance table: a covariance is not finite");
 }
 
+void require_reaches(const ReflectanceTable& table, double wavelength) {
+  constexpr double resolution = 1e-7;  // of wavelengths in files
+  if (!table.values.empty() &&
+      (wavelength < table.wavelengths.front() - resolution || wavelength > table.wavelengths.back() + resolution))
+    throw std::invalid_argument("the reflectance table does not reach " + shortest(in_nanometres(wavelength)) + " nm");
+}
+
 std::string to_string(Outside outside) {
   std::string result;
   const auto append = [&](Outside reason, const char* name) {

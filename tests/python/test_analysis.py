@@ -124,6 +124,20 @@ def test_reflectances_and_their_uncertainties(ptfe):
     assert mmbrdf.reflectance_factor(1 / np.pi) == pytest.approx(1)
 
 
+def test_a_certified_model_has_the_certified_reflectance_and_its_uncertainty():
+    nm, value, u = [443, 532], [0.99, 0.988], 0.004
+    model = mmbrdf.certified(mmbrdf.material("ptfe"), nm, value, u)
+    np.testing.assert_allclose(mmbrdf.directional_hemispherical_reflectance(model, nm, 8), value, rtol=1e-12)
+    np.testing.assert_allclose(mmbrdf.directional_hemispherical_uncertainty(model, nm, 8), u, rtol=1e-8)
+    np.testing.assert_array_equal(model.wavelengths_nm, nm)
+    copy = pickle.loads(pickle.dumps(model))
+    assert copy == model
+    with pytest.warns(UserWarning, match="changes f11 by up to 49"):
+        mmbrdf.certified(mmbrdf.material("ptfe"), 532, 0.5, 0.01)
+    with pytest.raises(ValueError, match="98.8 .* a part of 1"):
+        mmbrdf.certified(mmbrdf.material("ptfe"), 532, 98.8, 0.4)
+
+
 def test_what_is_no_covariance_is_refused():
     ones = np.ones((4, 4))
     assert mmbrdf.standard_uncertainty(ones, np.eye(16)) == pytest.approx(4)

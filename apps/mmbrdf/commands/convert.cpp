@@ -12,6 +12,7 @@
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "options/arguments.hpp"
+#include "options/certificate.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
 #include "pages/output.hpp"
@@ -21,7 +22,7 @@ namespace mmbrdf::program {
 namespace {
 
 struct Options {
-  std::string input, output, name;
+  std::string input, output, name, certificate;
   std::optional<Family> family;
   std::optional<Orders> orders;
   std::optional<ReflectanceTable> reflectance;
@@ -108,13 +109,25 @@ void record_reflectance(Model& model, const ReflectanceTable& table) {
   const std::string old = reflectance_line(model.reflectance);
   if (!old.empty() && old != reflectance_line(table))
     warn("--reflectance replaces the table there was: --reflectance " + old);
+  for (const double wavelength : model.validity.wavelengths) require_reaches(table, wavelength);
   model.reflectance = table;
+}
+
+void record_certificate(Model& model, const std::string& text) {
+  CertifiedModel result = certified(model, certificate_from(text, model.validity));
+  if (result.change > noticeable_change)
+    warn(
+        "the certificate changes f11 by up to " + format("%.1f", 100 * result.change) + " % (at " +
+        brief(nanometres(result.wavelength)) +
+        " nm); the other elements / f11 stay those of the sample that was measured, and a darker one depolarizes less");
+  model = std::move(result.model);
 }
 
 void record(Model& model, const Options& options) {
   if (options.wavelengths_nm) record_wavelengths(model, *options.wavelengths_nm);
   if (options.angles) record_angles(model, *options.angles);
   if (options.reflectance) record_reflectance(model, *options.reflectance);
+  if (!options.certificate.empty()) record_certificate(model, options.certificate);
 }
 
 void convert(const Options& options, const CommandLine& line) {
@@ -139,10 +152,17 @@ constexpr const char* footer =
     "Coefficient files say neither to which wavelengths and angles they were fitted nor by which reflectance f11 was\n"
     "divided: tell it.\n"
     "\n"
+    "--certificate rescales f11 so that its directional-hemispherical reflectance at THETA is the certified one, with\n"
+    "its standard uncertainty; R is a part of 1. FILE.csv has the columns wavelength_nm, reflectance, u_reflectance "
+    "and,\n"
+    "unless it is 8, theta_i_deg. Errors of a certificate count as one for all its wavelengths; the model is valid\n"
+    "between these. Polarization is not changed, though that of a grey sample differs from that of a white one.\n"
+    "\n"
     "Examples:\n"
     "  mmbrdf convert ptfe ptfe.csv\n"
     "  mmbrdf convert PTFE.coeff.csv ptfe.json --basis isotropic --wavelength 351,532,633,1064 \\\n"
-    "      --angles 75,81.87 --reflectance 351:0.976,532:0.984,633:0.984,1064:0.983";
+    "      --angles 75,81.87 --reflectance 351:0.976,532:0.984,633:0.984,1064:0.983\n"
+    "  mmbrdf convert ptfe plaque.json --certificate 8:443:0.990+-0.004,8:532:0.988+-0.004";
 
 }  // namespace
 
@@ -160,6 +180,9 @@ Run convert_command(CLI::App& app, const CommandLine& line) {
   add_option(app, "--reflectance", o->reflectance, reflectance_from, "NM:R[,NM:R...]",
              "Multiply f11 by these reflectances, each at a\nwavelength in nm, linear between them, in place of the\n"
              "table of IN");
+  add_text(app, "--certificate", o->certificate, "THETA:NM:R+-U,...",
+           "Rescale f11 to these certified reflectances, or to\nthose of a FILE.csv")
+      .excludes("--reflectance");
   add_text(app, "--name", o->name, "NAME", "Name of the model [that of IN]");
   set_footer(app, footer);
   return [o, line] { convert(*o, line); };

@@ -19,6 +19,7 @@
 #include "options/question.hpp"
 #include "options/sides.hpp"
 #include "options/terms.hpp"
+#include "pages/describe.hpp"
 
 namespace mmbrdf::program {
 
@@ -64,7 +65,7 @@ struct AtWavelength {
   std::optional<UncertainModel> uncertain;  // none: not known
 };
 
-std::optional<UncertainModel> uncertain_of(const Model& model, double wavelength, const Terms& terms) {
+std::optional<UncertainModel> prepared_of(const Model& model, double wavelength, const Terms& terms) {
   return knows_uncertainty(model) ? std::optional(uncertain(model, wavelength, terms_from(terms))) : std::nullopt;
 }
 
@@ -203,7 +204,7 @@ Integrated integrated(const Model& model, Integral quantity, const Options& opti
   Integrated result;
   result.model = base_name(options.model);
   result.quantity = quantity;
-  result.has_instrument = model.provenance.contains("instrument");
+  result.uncertain = uncertain_of(model);
   for (const TypeBTerm& term : terms_from(options.terms)) result.terms.push_back(term.name);
   result.polarization = options.polarization.value_or(Polarization{}).text;
   if (options.geometry) {
@@ -217,7 +218,7 @@ Integrated integrated(const Model& model, Integral quantity, const Options& opti
   result.several_wavelengths = wavelengths.size() > 1;
   for (const double wavelength : wavelengths) {
     for (IntegratedRow& row :
-         rows_of({model, wavelength, uncertain_of(model, wavelength, options.terms)}, quantity, options)) {
+         rows_of({model, wavelength, prepared_of(model, wavelength, options.terms)}, quantity, options)) {
       if (!options.terms.budget) row.budgets.clear();
       if (options.wavelengths_nm || knows_wavelength(model)) row.wavelength_nm = nanometres(wavelength);
       result.rows.push_back(std::move(row));

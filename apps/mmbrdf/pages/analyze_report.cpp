@@ -43,12 +43,11 @@ std::string uncertainty_words(const AnalysisReport& r) {
     return r.answers.unknown_uncertainty().empty() ? "not known: at theta_r = 90 a term theta_r has no limit"
                                                    : "not known: " + r.answers.unknown_uncertainty();
   }
-  const bool has_instrument = r.answers.model().provenance.contains("instrument");
-  const std::string alone = has_instrument ? "of the fit and its instrument" : "of the fit alone";
-  const std::string among =
-      has_instrument ? "of the fit, its instrument and the terms below" : "of the fit and of the terms below";
-  const std::string text = options.terms.empty() ? alone + ": --term adds the rest of a budget" : among;
-  return "standard (k = 1), " + text +
+  const std::string of_what = uncertain_of(r.answers.model());
+  const std::string text =
+      !options.terms.empty() ? " and of the terms below"
+                             : std::string(of_what == "the fit" ? " alone" : "") + ": --term adds the rest of a budget";
+  return "standard (k = 1), of " + of_what + text +
          (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
 }
 

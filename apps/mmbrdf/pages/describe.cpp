@@ -75,6 +75,13 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
   return json;
 }
 
+std::string uncertain_of(const Model& model) {
+  const bool instrument = model.provenance.contains("instrument"),
+             certificate = model.provenance.contains("certificate");
+  return std::string("the fit") + (instrument ? certificate ? ", its instrument" : " and its instrument" : "") +
+         (certificate ? " and its certificate" : "");
+}
+
 double without_rounding(double x) { return std::abs(x) < 5e-11 ? 0 : x; }
 
 std::string matrix_text(const Mueller& m, const std::optional<Mueller>& u) {

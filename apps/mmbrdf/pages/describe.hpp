@@ -27,6 +27,9 @@ void warn_if_outside(const Model& model, std::span<const Sample> samples, const 
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);
 
+/// What the uncertainties of a model hold: "the fit, its instrument and its certificate"
+std::string uncertain_of(const Model& model);
+
 /// 0 for what is 0 but for rounding, and not -0.0000000000.
 double without_rounding(double x);
 

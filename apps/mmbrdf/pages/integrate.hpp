@@ -42,8 +42,8 @@ struct Integrated {
   std::optional<double> extrapolated;  // share of the hemisphere's projected solid angle beyond the fitted angles
   std::vector<IntegratedRow> rows;
   bool several_wavelengths = false;
-  bool has_instrument = false;     // its errors are in the uncertainties
-  std::vector<std::string> terms;  // and those of these
+  std::string uncertain;           // what the uncertainties are of: uncertain_of()
+  std::vector<std::string> terms;  // and of these
 };
 
 /// As CSV the columns are [wavelength_nm,][theta_i_deg,|theta_r_deg,]QUANTITY,u_QUANTITY, with --geometry followed by

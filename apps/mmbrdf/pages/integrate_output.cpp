@@ -156,10 +156,10 @@ std::string matrices(const Integrated& result) {
 }
 
 std::string uncertainty_line(const Integrated& result) {
-  std::string of_what = result.has_instrument ? "the fit and its instrument" : "the fit";
-  if (!result.terms.empty()) return "u: standard uncertainty of " + of_what + " and of " + joined(result.terms) + "\n";
-  if (!result.has_instrument) of_what += " alone";
-  return "u: standard uncertainty of " + of_what + "; scale, angles and sample are not in it\n";
+  const std::string start = "u: standard uncertainty of " + result.uncertain;
+  if (!result.terms.empty()) return start + " and of " + joined(result.terms) + "\n";
+  return start + (result.uncertain == "the fit" ? " alone; " : "; ") +
+         (result.uncertain.ends_with("certificate") ? "" : "scale, ") + "angles and sample are not in it\n";
 }
 
 std::string text_of(const Integrated& result) {

@@ -29,6 +29,9 @@ struct ReflectanceTable {
 /// covariances finite.
 void require_valid(const ReflectanceTable& table);
 
+/// Throws std::invalid_argument for a wavelength (micrometres) beyond the ends of a table, to 1e-7; an empty one has none.
+void require_reaches(const ReflectanceTable& table, double wavelength);
+
 /// Where the data were that a model was fitted to. Published coefficient files do not say it.
 struct Validity {
   std::vector<double> wavelengths;    ///< micrometres, rising; empty: unknown

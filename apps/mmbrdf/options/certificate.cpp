@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "options/certificate.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+/// "8:443:0.990+-0.004"
+CertifiedReflectance typed(const std::string& text) {
+  try {
+    const std::size_t first = text.find(':'), second = text.find(':', first + 1), u = text.find("+-");
+    if (second == std::string::npos) throw std::invalid_argument("two colons are needed");
+    return {.wavelength = micrometres(number(text.substr(first + 1, second - first - 1))),
+            .value = number(text.substr(second + 1, u == std::string::npos ? u : u - second - 1)),
+            .uncertainty = u == std::string::npos ? 0 : number(text.substr(u + 2)),
+            .theta = radians(number(text.substr(0, first)))};
+  } catch (const std::invalid_argument&) {
+    throw WrongUsage("--certificate", "\"" + text + "\": expected THETA:NM:R+-U, as in 8:443:0.990+-0.004, or a file");
+  }
+}
+
+std::vector<CertifiedReflectance> from_rows(std::istream& in, const std::string& name) {
+  using namespace std::string_view_literals;
+  CsvReader reader(in, name);
+  const int wavelength = reader.find(std::array{"wavelength_nm"sv}), value = reader.find(std::array{"reflectance"sv}),
+            u = reader.find(std::array{"u_reflectance"sv, "u"sv}), theta = reader.find(std::array{"theta_i_deg"sv});
+  for (const auto& [column, missing] :
+       {std::pair(wavelength, "wavelength_nm"), {value, "reflectance"}, {u, "u_reflectance (nor u)"}})
+    if (column < 0) throw reader.error(std::string("no column ") + missing);
+  std::vector<CertifiedReflectance> result;
+  while (reader.next())
+    result.push_back({micrometres(reader.number(wavelength)), reader.number(value), reader.number(u),
+                      radians(theta < 0 ? 8 : reader.number(theta))});
+  return result;
+}
+
+}  // namespace
+
+std::vector<CertifiedReflectance> certificate_from(const std::string& text, const Validity& validity) {
+  std::vector<CertifiedReflectance> result;
+  if (text.find(':') != std::string::npos) {
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');) result.push_back(typed(part));
+    return result;
+  }
+  read_input(text, [&](std::istream& in, const std::string& name) { result = from_rows(in, name); });
+  const auto left_out = std::erase_if(result, [&](const CertifiedReflectance& one) {
+    return leaves_known_range(outside({validity.wavelengths, {}, {}}, one.wavelength, {}));
+  });
+  if (left_out > 0)
+    note(std::to_string(left_out) + " of " + std::to_string(result.size() + left_out) + " values of " +
+         data_name(text) + " are left out: the model was fitted at " + nanometre_list(validity.wavelengths));
+  return result;
+}
+
+}  // namespace mmbrdf::program

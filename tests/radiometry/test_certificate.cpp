@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/radiometry/certificate.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
+
+namespace mmbrdf {
+namespace {
+
+const std::vector<CertifiedReflectance> plaque{{0.6, 0.985, 0.003}, {0.443, 0.99, 0.004}, {0.532, 0.988, 0.005, 0}};
+
+// Reflectances are exact to dhr_error; the covariance adds and takes away terms of one size, so 1e-9 of u remains.
+TEST(Certificate, IsTheReflectanceOfTheModelAndItsUncertainty) {
+  const Model model = certified(material("ptfe"), plaque).model;
+  for (const CertifiedReflectance& one : plaque) {
+    const Direction incident{one.theta, 1};
+    EXPECT_NEAR(directional_hemispherical_reflectance(model, one.wavelength, incident), one.value, 1e-13);
+    const double u = prepare_uncertainty(model, one.wavelength).directional_hemispherical_reflectance(incident);
+    EXPECT_NEAR(u / one.uncertainty, 1, 1e-9);
+  }
+}
+
+// What the fit knows of the ratio of f11 to the reflectance remains, beside the certificate.
+TEST(Certificate, CarriesItsUncertaintyIntoEveryOther) {
+  const Model before = material("ptfe");
+  std::vector<CertifiedReflectance> exact = plaque;
+  for (CertifiedReflectance& one : exact) one.uncertainty = 0;
+  const Model sharp = certified(before, exact).model, model = certified(before, plaque).model;
+  const Geometry g{{0.8, 0}, {0.5, 2.6}};
+  for (const CertifiedReflectance& one : plaque) {
+    const double alone = prepare_uncertainty(sharp, one.wavelength).evaluate(g)(0, 0),
+                 all = prepare_uncertainty(model, one.wavelength).evaluate(g)(0, 0),
+                 f11 = prepare(model, one.wavelength).f11(g);
+    EXPECT_GT(alone, 0);
+    EXPECT_NEAR(all - alone, std::pow(f11 * one.uncertainty / one.value, 2), 1e-9 * all);
+  }
+}
+
+TEST(Certificate, OfTheReflectanceThatAModelHasChangesNothing) {
+  const Model before = material("ptfe");
+  const double c = directional_hemispherical_reflectance(before, 0.532, {radians(8), 0});
+  const CertifiedModel same = certified(before, std::vector<CertifiedReflectance>{{0.532, c, 0.001}});
+  EXPECT_LT(same.change, 1e-13);
+  const Geometry g{{0.8, 0}, {0.5, 2.6}};
+  const Mueller a = prepare(before, 0.532).evaluate(g), b = prepare(same.model, 0.532).evaluate(g);
+  for (std::size_t e = 0; e < 16; ++e) EXPECT_NEAR(a.elements[e], b.elements[e], 1e-13);
+}
+
+TEST(Certificate, LeavesTheOtherElementsOverF11AndTellsHowMuchF11Changes) {
+  const Model before = material("ptfe-532");
+  const CertifiedModel grey = certified(before, std::vector<CertifiedReflectance>{{0.532, 0.5, 0.005}});
+  EXPECT_GT(grey.change, noticeable_change);
+  EXPECT_EQ(grey.wavelength, 0.532);
+  const Geometry g{{0.8, 0}, {0.5, 2.6}};
+  const Mueller a = prepare(before, 0.532).evaluate(g), b = prepare(grey.model, 0.532).evaluate(g);
+  for (std::size_t e = 0; e < 16; ++e) EXPECT_NEAR((1 - grey.change) * a.elements[e], b.elements[e], 1e-13);
+}
+
+TEST(Certificate, NarrowsTheRangeOfTheModelToItsWavelengths) {
+  EXPECT_EQ(certified(material("ptfe"), plaque).model.validity.wavelengths, (std::vector{0.443, 0.532, 0.6}));
+  const std::vector<CertifiedReflectance> one{{0.5, 0.98, 0.01}};
+  EXPECT_EQ(certified(material("ptfe"), one).model.validity.wavelengths, (std::vector{0.5}));
+}
+
+TEST(Certificate, IsDrawnFromAsItIsUncertain) {
+  const Model model = certified(material("ptfe"), plaque).model;
+  const Geometry g{{0.8, 0}, {0.5, 2.6}};
+  const auto drawn = values(Draws(model, 4000, 1).at(0.443), [&](const PreparedModel& m) { return m.f11(g); });
+  EXPECT_NEAR(distribution(drawn).standard_deviation / std::sqrt(prepare_uncertainty(model, 0.443).evaluate(g)(0, 0)),
+              1, 0.045);  // 1.1 % each
+}
+
+TEST(Certificate, OfAModelWithoutACovarianceChangesItsValuesAlone) {
+  Model model = diffuser({0.3});
+  model = certified(model, std::vector<CertifiedReflectance>{{0.5, 0.9, 0.01}}).model;
+  EXPECT_NEAR(directional_hemispherical_reflectance(model, 0.5, {0.7, 0}), 0.9, 1e-13);
+  EXPECT_FALSE(knows_uncertainty(model));
+}
+
+TEST(Certificate, ThatMakesNoSenseIsRefused) {
+  const Model model = material("ptfe");
+  const auto what = [&](const std::vector<CertifiedReflectance>& list) {
+    return message_of([&] { certified(model, list); });
+  };
+  EXPECT_EQ(what({}), "a certificate without values");
+  EXPECT_EQ(what({{1.1, 0.9, 0.01}}), "the model was not fitted at 1100 nm, where the certificate has a value");
+  EXPECT_EQ(what({{0.5, 98.8, 0.4}}),
+            "reflectance 98.8 of the certificate at 500 nm: must be in (0, 1.2], a part of 1");
+  EXPECT_EQ(what({{0.5, 0.9, -1}}), "uncertainty -1 of the certificate at 500 nm: must be in [0, 0.9]");
+  EXPECT_EQ(what({{0.5, 0.9, 0.01, radians(90)}}),
+            "polar angle 90 degrees of the certificate at 500 nm: must be in [0, 90)");
+  EXPECT_EQ(what({{0.5, 0.9, 0.01}, {0.5, 0.91, 0.01}}), "two values of the certificate at 500 nm");
+}
+
+}  // namespace
+}  // namespace mmbrdf
