@@ -241,6 +241,23 @@ class Difference(_NamedTuple):
     phi_r_deg: float
 
 
+class Significance(_NamedTuple):
+    """Differences of two models over their uncertainty, that of independent fits.
+
+    samples       where that is not 0
+    mean          of |difference| / u: 0.8 for fits of one sample that are as uncertain as they say
+    largest       of |difference| / u, at wavelength_nm and geometry
+    within        share within 1.96 u
+    """
+
+    samples: int
+    mean: float
+    largest: float
+    wavelength_nm: float
+    geometry: Geometry
+    within: float
+
+
 class Comparison(_NamedTuple):
     """Samples, or a second model, minus a model.
 
@@ -248,6 +265,7 @@ class Comparison(_NamedTuple):
     normalized         of the 15 f_ij / f11, by element: comparison.normalized['22'].rms
     polarization_rms   root mean square over those
     largest            of all differences, relative to f11
+    significance       Significance of two models by element ('11' is f11); None: not known, or samples
     """
 
     samples: int
@@ -256,6 +274,7 @@ class Comparison(_NamedTuple):
     normalized: dict[str, Difference]
     polarization_rms: float
     largest: Difference
+    significance: dict[str, Significance] | None = None
 
     def __repr__(self) -> str:
         found = f"rms of f11 {self.f11.rms:.3g} sr^-1, of the other elements {self.polarization_rms:.3g}"

@@ -91,6 +91,14 @@ std::vector<double> common_wavelengths(const Model& first, const Model& second) 
   return common;
 }
 
+std::vector<Geometry> common_geometries(const Model& first, const Model& second, std::vector<Geometry> geometries) {
+  constexpr unsigned angles = outside_theta_i | outside_theta_r;
+  std::erase_if(geometries, [&](const Geometry& g) {
+    return ((outside(first.validity, 1, g) | outside(second.validity, 1, g)) & angles) != 0;
+  });
+  return geometries;
+}
+
 double polarization_rms(const Comparison& comparison) {
   double squares = 0;
   for (std::size_t e = 1; e < 16; ++e) squares += std::pow(comparison.normalized[e].rms, 2);

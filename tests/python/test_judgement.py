@@ -212,6 +212,30 @@ def test_a_comparison_is_that_of_the_program(ring, told):
         assert repr(here).startswith(f"<mmbrdf.Comparison: {here.samples} samples, rms of f11 ")
 
 
+def test_two_models_differ_by_so_many_uncertainties(ring, told, ptfe):
+    first, second = mmbrdf.material("ptfe"), mmbrdf.material("ptfe-532")
+    found, there = mmbrdf.compare(first, second).significance, told("compare", "ptfe", "ptfe-532")
+    rows = [row for row in there["elements"] if (row["element"], row["unit"]) != ("11", "f11")]
+    for row in rows:
+        one = found[row["element"]]
+        assert (one.mean, one.largest, one.within) == pytest.approx(
+            [row["mean_over_u"], row["largest_over_u"], row["within_95"]]
+        )
+    assert mmbrdf.compare(first, ring).significance is None
+    assert mmbrdf.compare(mmbrdf.in_published_form(first), first).significance is None  # it has no covariance
+
+
+def test_two_data_sets_are_compared_by_their_fits(ptfe):
+    grid = mmbrdf.random_geometries(400, seed=3)
+    one, other = (mmbrdf.simulate(ptfe, 532, grid, speckle=0.02, seed=s) for s in (1, 2))
+    found = mmbrdf.compare(one, other)
+    fits = [mmbrdf.fit(data).model for data in (one, other)]
+    assert found == mmbrdf.compare(*fits)
+    assert found.significance["11"].within > 0.5
+    with pytest.raises(ValueError, match="samples; beside a model they are the second argument"):
+        mmbrdf.compare(one, ptfe)
+
+
 def test_what_cannot_be_compared_is_refused(ring, ptfe):
     with pytest.raises(ValueError, match="geometry: goes with two models"):
         mmbrdf.compare(ptfe, ring, geometry=mmbrdf.germer2017_grid())

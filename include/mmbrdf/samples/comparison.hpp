@@ -46,6 +46,9 @@ Comparison compare(const Model& first, const Model& second, std::span<const doub
 /// or they share none.
 std::vector<double> common_wavelengths(const Model& first, const Model& second);
 
+/// Those of the geometries whose polar angles are within the fitted ranges of both, as far as these are known.
+std::vector<Geometry> common_geometries(const Model& first, const Model& second, std::vector<Geometry> geometries);
+
 /// Root mean square over the 15 normalised elements.
 double polarization_rms(const Comparison& comparison);
 

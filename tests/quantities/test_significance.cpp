@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/quantities/significance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/polarization/covariance.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+
+namespace mmbrdf {
+namespace {
+
+const std::vector<double> green{0.532};
+
+/// A fit to noise of its own; the truth is in the model, so that uncertainties are those of the noise.
+Model fitted(unsigned long seed) {
+  const Basis basis{.orders = {7, 4}};
+  const std::vector<Sample> samples =
+      simulate(material("ptfe-532"), green, random_geometries(600, seed, radians(70)), 0.01, seed);
+  return fit(samples, basis, {}, Weights::speckle).model;
+}
+
+std::array<Significance, 16> between(const Model& first, const Model& second, const std::vector<Geometry>& at) {
+  return significance(first, second, simulate(second, green, at));
+}
+
+// |d| / u of a normal distribution: 0.798 in the mean, 0.95 within 1.96. 300 directions of one fit are correlated: 142
+// coefficients and sixteen elements.
+TEST(Significance, OfFitsToTheSameTruthIsThatOfChance) {
+  const auto found = between(fitted(1), fitted(2), random_geometries(300, 3, radians(60)));
+  double mean = 0, within = 0;
+  for (const Significance& s : found) {
+    EXPECT_EQ(s.samples, 300);
+    EXPECT_GE(s.largest, s.mean);
+    mean += s.mean / 16;
+    within += s.within / 16;
+  }
+  EXPECT_NEAR(mean, 0.8, 0.1);
+  EXPECT_NEAR(within, 0.95, 0.05);
+}
+
+TEST(Significance, OfAModelAndItselfIsNone) {
+  const Model model = material("ptfe-532");
+  for (const Significance& s : between(model, model, random_geometries(20, 1, radians(70)))) {
+    EXPECT_LT(s.largest, 1e-9);
+    EXPECT_EQ(s.within, 1);
+  }
+}
+
+TEST(Significance, IsTheDifferenceOverTheUncertaintiesOfBoth) {
+  const Model first = material("ptfe-532"), second = fitted(1);
+  const Geometry g{{0.8, 0.1}, {0.5, 2.6}};
+  const auto found = between(first, second, {g});
+  const Mueller a = prepare(first, 0.532).evaluate(g), b = prepare(second, 0.532).evaluate(g);
+  const Mueller u = standard_uncertainty(prepare_uncertainty(first, 0.532).normalized(g)),
+                v = standard_uncertainty(prepare_uncertainty(second, 0.532).normalized(g));
+  EXPECT_NEAR(found[0].mean, std::abs(b(0, 0) - a(0, 0)) / std::hypot(u(0, 0), v(0, 0)), 1e-6);
+  EXPECT_NEAR(found[5].largest, std::abs(normalized(b)(1, 1) - normalized(a)(1, 1)) / std::hypot(u(1, 1), v(1, 1)),
+              1e-6);
+  EXPECT_EQ(found[5].wavelength, 0.532);
+  EXPECT_EQ(found[5].geometry.incident.theta, 0.8);
+}
+
+TEST(Significance, NeedsTheUncertaintiesOfBoth) {
+  Model unknown = material("ptfe-532");
+  for (FittedBlock& block : unknown.blocks) block.covariance.clear();
+  EXPECT_THROW(between(material("ptfe-532"), unknown, {Geometry{}}), std::invalid_argument);
+}
+
+TEST(Significance, IsAskedWhereBothModelsWereFitted) {
+  Model narrow = material("ptfe-532");
+  narrow.validity.theta_r_max = radians(50);
+  const Geometry in{{0.8, 0}, {0.8, 0}}, out{{0.8, 0}, {1.0, 0}};
+  EXPECT_EQ(common_geometries(narrow, material("ptfe-532"), {in, out}).size(), 1U);
+  EXPECT_EQ(common_geometries(material("ptfe-532"), narrow, {in, out}).size(), 1U);
+  narrow.validity = {};
+  EXPECT_EQ(common_geometries(narrow, narrow, {in, out}).size(), 2U);
+}
+
+}  // namespace
+}  // namespace mmbrdf
