@@ -43,8 +43,8 @@ const char* const terms_help =
     "f11). Errors of terms are independent of each other, and each is the same at all geometries. With --budget: what\n"
     "each contributes, the effective degrees of freedom (Welch and Satterthwaite), k of 95 % coverage (Student; 2 "
     "where\n"
-    "they are infinite) and U = k u. The fit has the degrees of freedom rows less rank, a term those given, or\n"
-    "infinitely many.\n";
+    "they are infinite) and U = k u. The fit has the degrees of freedom rows less rank, where its model knows the\n"
+    "rows; a term those given, or infinitely many.\n";
 
 void add_terms(CLI::App& app, Terms& terms) {
   add_texts(app, "--term", terms.texts, "[NAME:]KIND=U[,dof=N]",

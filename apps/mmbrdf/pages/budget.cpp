@@ -40,9 +40,10 @@ std::string budget_text(const std::vector<BudgetLine>& lines) {
          {rounded(u.uncertainty), freedom_text(u.freedom), format("%.2f", u.coverage_factor), rounded(u.expanded)})
       row.push_back(cell);
   }
-  std::string freedoms;
-  for (const Contribution& cause : causes)
-    freedoms += (freedoms.empty() ? "" : ", ") + cause.name + " " + freedom_text(cause.freedom);
+  const double of_fit = causes.front().freedom;  // those of a fit are finite, if its model knows them
+  std::string freedoms = "fit " + (std::isinf(of_fit) ? "not known (as if infinite)" : freedom_text(of_fit));
+  for (std::size_t c = 1; c < causes.size(); ++c)
+    freedoms += ", " + causes[c].name + " " + freedom_text(causes[c].freedom);
   return text(table) + "degrees of freedom: " + freedoms +
          "; together by Welch and Satterthwaite\n"
          "U = k u: 95 % coverage, k of Student's distribution, 2 where the degrees of freedom are infinite\n";

@@ -16,7 +16,7 @@ struct BudgetLine {
   ExpandedUncertainty uncertainty;
 };
 
-/// All lines have the same causes. Empty if there are no lines.
+/// All lines have the same causes, first the fit. Empty if there are no lines.
 std::string budget_text(const std::vector<BudgetLine>& lines);
 
 /// {"terms": [{"term", "u", "degrees_of_freedom"}, …], "u", "degrees_of_freedom", "k", "U"}; null is infinite.
