@@ -33,6 +33,7 @@ Model any_model(Family family = Family::isotropic, unsigned seed = 1) {
         fitted.covariance[i * count + j] = fitted.covariance[j * count + i] = i == j ? size(engine) : number();
     fitted.rank = static_cast<int>(count) - 1;
     for (std::size_t i = 0; i < count; ++i) fitted.null_space.push_back(number());
+    fitted.rows = 12345678;
     fitted.condition = size(engine);
     fitted.block = std::move(block);
     model.blocks.push_back(std::move(fitted));
@@ -61,6 +62,7 @@ void expect_same(const Model& a, const Model& b) {
     EXPECT_EQ(a.blocks[i].covariance, b.blocks[i].covariance);
     EXPECT_EQ(a.blocks[i].rank, b.blocks[i].rank);
     EXPECT_EQ(a.blocks[i].null_space, b.blocks[i].null_space);
+    EXPECT_EQ(a.blocks[i].rows, b.blocks[i].rows);
     EXPECT_EQ(a.blocks[i].condition, b.blocks[i].condition);
   }
   EXPECT_EQ(a.reflectance.wavelengths, b.reflectance.wavelengths);
@@ -135,13 +137,14 @@ TEST(Json, WithoutWhatIsUnknownIsReadBackWithoutIt) {
     fitted.covariance.clear();
     fitted.rank = 0;
     fitted.null_space.clear();
+    fitted.rows = 0;
     fitted.condition = 0;
   }
   model.reflectance = {};
   model.validity = {};
   model.provenance = {};
   const std::string text = to_json(model);
-  for (const char* absent : {"covariance", "rank", "condition", "null_space", "\"reflectance\""})
+  for (const char* absent : {"covariance", "rank", "condition", "null_space", "\"rows\"", "\"reflectance\""})
     EXPECT_EQ(text.find(absent), std::string::npos) << absent;
   expect_same(model_from_json(text, "m.json"), model);
 }

@@ -131,6 +131,26 @@ TEST(Validity, OfAModelMustBeOne) {
   }
 }
 
+TEST(Model, HasTheDegreesOfFreedomOfTheBlockThatHasTheFewest) {
+  Model model = random_model(Family::isotropic, {2, 2}, 0, 1);
+  EXPECT_EQ(degrees_of_freedom(model), std::numeric_limits<double>::infinity());
+  model.blocks[0].rows = 100;
+  model.blocks[0].rank = 6;
+  EXPECT_EQ(degrees_of_freedom(model), 94);
+  model.blocks[1].rows = 20;
+  model.blocks[1].rank = 20;
+  EXPECT_EQ(degrees_of_freedom(model), 1);
+}
+
+TEST(ReflectanceTable, ReachesFromItsFirstNodeToItsLast) {
+  const ReflectanceTable table{{0.4, 0.7}, {0.9, 0.9}};
+  require_reaches(table, 0.4);
+  require_reaches(table, 0.7 + 1e-8);
+  require_reaches({}, 0.1);
+  EXPECT_EQ(message_of([&] { require_reaches(table, 0.351); }), "the reflectance table does not reach 351 nm");
+  EXPECT_THROW(require_reaches(table, 0.8), std::invalid_argument);
+}
+
 TEST(Model, KnowsItsOrdersAndCoefficients) {
   const Model model = random_model(Family::isotropic, {7, 4}, 1, 1);
   EXPECT_EQ(mode_count(model), 142);
