@@ -28,6 +28,7 @@ constexpr Command commands[] = {
     {"analyze", "Print what the Mueller BRDF of a model says, with uncertainties.", analyze_command},
     {"integrate", "Print reflectances of a model, and its means over finite apertures.", integrate_command},
     {"fit", "Fit a model to measured samples and print how well it fits.", fit_command},
+    {"plan", "Say what a measurement will tell, before it is made.", plan_command},
     {"select", "Find the orders and powers that measured samples support.", select_command},
     {"subsets", "Fit parts of the data apart and say how far the fits agree.", subsets_command},
     {"compare", "Say how far a model is from samples or from another model.", compare_command},

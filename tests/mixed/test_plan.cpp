@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/mixed/plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "fitting/mixed_fit.hpp"
+#include "given/halton.hpp"
+#include "given/published_samples.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<const char*, 6> block_names{"11", "g", "14", "uv", "h", "44"};
+
+json golden() {
+  std::ifstream file(MMBRDF_SOURCE_DIR "/tests/data/mixed_model.json");
+  return json::parse(file);
+}
+
+/// Components as the reference rounded them, with the noise and the f11 of the published grid at 532 nm.
+VarianceComponents reference_components(const std::vector<Sample>& samples) {
+  const json all = golden();
+  VarianceComponents result;
+  result.f11 = first_pass(samples, {}, {}, 1).f11;
+  for (const char* name : block_names) {
+    std::vector<double> hyperparameters;
+    const json& theirs = all["planning"]["components"][name];
+    for (const char* one : {"iso", "slope", "q1", "q2", "q3", "free slope", "odd"})
+      hyperparameters.push_back(theirs[one]);
+    hyperparameters.push_back(theirs[theirs.contains("cal") ? "cal" : "nonreciprocal"]);
+    const double noise = all["estimated"][name]["grid"]["noise"];
+    result.blocks.push_back({hyperparameters, noise * noise});
+  }
+  return result;
+}
+
+std::vector<PlanTarget> all_targets() {
+  std::vector<PlanTarget> result;
+  for (std::size_t b = 0; b < block_names.size(); ++b) result.push_back({PlanTarget::Kind::block, b, {}});
+  for (const double theta : {0.0, 45.0, 60.0}) result.push_back({PlanTarget::Kind::dhr, 0, {{radians(theta), 0}, {}}});
+  result.push_back({PlanTarget::Kind::f11, 0, {{0, 0}, {radians(45), 0}}});
+  return result;
+}
+
+/// Reading i of these at the azimuth that the sample is turned by, in degrees.
+std::vector<Geometry> turned_by(const std::vector<Sample>& samples, auto degrees, std::size_t step = 1) {
+  std::vector<Geometry> result;
+  for (std::size_t s = 0; s < samples.size(); s += step) {
+    Geometry g = samples[s].geometry;
+    const double turn = radians(degrees(result.size(), g));
+    g.incident.phi += turn;
+    g.reflected.phi += turn;
+    result.push_back(g);
+  }
+  return result;
+}
+
+double golden_ratio(std::size_t i, const Geometry&) {
+  return 360 * std::fmod(0.6180339887498949 * static_cast<double>(i), 1);
+}
+
+std::vector<Geometry> candidates() {
+  std::vector<Geometry> result;
+  for (const Geometry& g : halton_directions(2000, 0, 78)) {
+    const Vector3 i = unit_vector(g.incident), r = unit_vector(g.reflected);
+    const double cosine = i[0] * r[0] + i[1] * r[1] + i[2] * r[2];
+    if (g.incident.theta <= radians(75.1) && cosine < std::cos(radians(5))) result.push_back(g);
+  }
+  return result;
+}
+
+void expect_golden(const std::string& design, const std::vector<double>& found) {
+  const json expected = golden()["planning"]["designs"][design];
+  SCOPED_TRACE(design);
+  std::vector<double> list;
+  for (const char* name : block_names) list.push_back(expected[std::string("u ") + name]);
+  for (const json& u : expected["u DHR 0 45 60"]) list.push_back(u);
+  list.push_back(expected["u f(0:45)"]);
+  ASSERT_EQ(found.size(), list.size());
+  for (std::size_t t = 0; t < list.size(); ++t)
+    EXPECT_NEAR(found[t], list[t], 0.01 * list[t] + 0.5e-5);  // given to 1e-5
+}
+
+TEST(Plan, AgreesWithTheReferenceForItsDesigns) {
+  if (published("PTFE.data.csv").empty()) GTEST_SKIP() << absent("PTFE.data.csv");
+  const std::vector<Sample> samples = grid_at(0.532);
+  const VarianceComponents components = reference_components(samples);
+  const auto expect = [&](const std::string& name, const std::vector<Geometry>& design) {
+    expect_golden(name, expected_uncertainties(components, design, all_targets()));
+  };
+  expect("published grid, fixed azimuth", turned_by(samples, [](auto, auto&) { return 0.0; }));
+  expect("turned 60 deg per incidence", turned_by(samples, [](auto, const Geometry& g) {
+           return 60 * std::round(in_degrees(g.incident.theta) / 15);
+         }));
+  expect("every second reading at +180",
+         turned_by(samples, [](std::size_t i, auto&) { return i % 2 == 1 ? 180.0 : 0; }));
+  expect("golden-ratio azimuth per reading", turned_by(samples, golden_ratio));
+  expect("golden-ratio azimuth, every 4th reading", turned_by(samples, golden_ratio, 4));
+}
+
+TEST(Plan, ChoosesAsTryingEachCandidateDoes) {
+  const VarianceComponents components = default_components();
+  const std::vector<Geometry> design = random_geometries(60, 3), some = random_geometries(40, 8);
+  const std::vector<PlanTarget> targets{{PlanTarget::Kind::block, 0, {}},
+                                        {PlanTarget::Kind::dhr, 0, {{radians(45), 0}, {}}},
+                                        {PlanTarget::Kind::block, 2, {}}};
+  std::vector<Geometry> so_far = design;
+  const std::vector<double> start = expected_uncertainties(components, design, targets);
+  for (const std::size_t taken : chosen(components, design, targets, some, 3)) {
+    std::size_t best = 0;
+    double least = 1e300;
+    for (std::size_t c = 0; c < some.size(); ++c) {
+      std::vector<Geometry> with = so_far;
+      with.push_back(some[c]);
+      double sum = 0;
+      const std::vector<double> u = expected_uncertainties(components, with, targets);
+      for (std::size_t t = 0; t < u.size(); ++t) sum += u[t] * u[t] / (start[t] * start[t]);
+      if (sum < least) {
+        least = sum;
+        best = c;
+      }
+    }
+    EXPECT_EQ(taken, best);
+    so_far.push_back(some[taken]);
+  }
+}
+
+TEST(Plan, ChoosesWhatTheReferenceChooses) {
+  if (published("PTFE.data.csv").empty()) GTEST_SKIP() << absent("PTFE.data.csv");
+  const std::vector<Sample> samples = grid_at(0.532);
+  const VarianceComponents components = reference_components(samples);
+  const std::vector<Geometry> some = candidates();
+  ASSERT_EQ(some.size(), 1945);
+  const json expected = golden()["planning"]["200 further readings"]["start from published grid, fixed azimuth"];
+  const std::vector<Geometry> design = turned_by(samples, [](auto, auto&) { return 0.0; });
+  const std::vector<PlanTarget> f11{{PlanTarget::Kind::block, 0, {}}};
+  const auto picks = chosen(components, design, f11, some, 200);
+  const json& after = expected["greedy for mean u(f11)"];
+  EXPECT_EQ(std::vector(picks.begin(), picks.begin() + 5), after["first_picks"].get<std::vector<std::size_t>>());
+  std::vector<Geometry> with = design;
+  for (const std::size_t c : picks) with.push_back(some[c]);
+  EXPECT_NEAR(expected_uncertainties(components, with, f11)[0], after["u 11"].get<double>(), 1e-5);
+  std::vector<PlanTarget> every;
+  for (std::size_t b = 0; b < block_names.size(); ++b) every.push_back({PlanTarget::Kind::block, b, {}});
+  EXPECT_EQ(chosen(components, design, every, some, 5),
+            expected["greedy for all blocks"]["first_picks"].get<std::vector<std::size_t>>());
+}
+
+TEST(Plan, RefusesWhatCannotBeMeasured) {
+  const Geometry grazing{{0, 0}, {std::numbers::pi / 2, 0}};
+  EXPECT_THROW(expected_uncertainties(default_components(), {&grazing, 1}, all_targets()), std::invalid_argument);
+  EXPECT_THROW(chosen(default_components(), {}, all_targets(), {}, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mmbrdf
