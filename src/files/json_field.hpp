@@ -56,6 +56,11 @@ class Field {
     return value_.get<int>();
   }
 
+  bool boolean() const {
+    if (!value_.is_boolean()) refuse("must be true or false, not " + shown());
+    return value_.get<bool>();
+  }
+
   std::string text() const {
     if (!value_.is_string()) refuse("must be a string, not " + shown());
     return value_.get<std::string>();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "files/json_field.hpp"
+#include "files/posterior_json.hpp"
 #include "mmbrdf/files/coefficients_file.hpp"
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/write_file.hpp"
@@ -148,7 +149,7 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
 Model read_model(const Field& root) {
   require_format(root, format_name, conventions(), units(),
                  {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "rotation", "conventions",
-                  "units", "validity", "reflectance", "blocks", "provenance"});
+                  "units", "validity", "reflectance", "blocks", "posterior", "provenance"});
   Model model;
   model.name = root["name"].text();
   model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });
@@ -169,6 +170,7 @@ Model read_model(const Field& root) {
   if (root.has("reflectance"))
     model.reflectance = read_reflectance(root["reflectance"], model.blocks.front().coefficients.size());
   model.validity = read_validity(root["validity"]);
+  if (root.has("posterior")) model.posterior = read_posterior(root["posterior"], model.mapping);
   model.provenance = root["provenance"].texts();
   checked(root, [&] { require_valid(model); });
   return model;
@@ -228,6 +230,7 @@ ordered_json model_json(const Model& model) {
   root["provenance"] = model.provenance;
   root["blocks"] = ordered_json::array();
   for (const FittedBlock& fitted : model.blocks) root["blocks"].push_back(block_json(fitted));
+  if (model.posterior) root["posterior"] = posterior_json(*model.posterior);
   return root;
 }
 

@@ -135,6 +135,21 @@ void require_valid(const FittedBlock& fitted, std::size_t count) {
                                     std::to_string(j + 1));
 }
 
+/// The evaluated modes are among those of the posterior.
+void require_posterior(const Model& model) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("the posterior of the model " + why); };
+  const std::vector<Block>& behind = model.posterior->blocks();
+  if (model.family != Family::isotropic) refuse("is of the isotropic family, the model of " + to_string(model.family));
+  if (model.mapping != model.posterior->data().mapping) refuse("has another mapping to the disc");
+  if (model.blocks.size() != behind.size()) refuse("has " + std::to_string(behind.size()) + " blocks");
+  for (std::size_t b = 0; b < behind.size(); ++b)
+    for (const Mode& mode : model.blocks[b].block.modes)
+      if (std::ranges::find(behind[b].modes, mode) == behind[b].modes.end())
+        refuse("does not have the mode " + to_string(mode));
+  if (std::ranges::any_of(model.blocks, [](const FittedBlock& fitted) { return !fitted.covariance.empty(); }))
+    refuse("takes the place of a covariance, and there is one");
+}
+
 }  // namespace
 
 void require_valid(const Model& model) {
@@ -164,10 +179,12 @@ void require_valid(const Model& model) {
                                 std::to_string(model.reflectance.covariance_with_f11.size()) + " numbers, expected " +
                                 std::to_string(with_f11));
   require_valid(model.validity);
+  if (model.posterior) require_posterior(model);
 }
 
 bool has_covariance(const Model& model) {
-  return std::ranges::any_of(model.blocks, [](const FittedBlock& b) { return !b.covariance.empty(); });
+  return model.posterior ||
+         std::ranges::any_of(model.blocks, [](const FittedBlock& b) { return !b.covariance.empty(); });
 }
 
 double degrees_of_freedom(const Model& model) {

@@ -59,11 +59,12 @@ double bihemispherical_reflectance(const Model& model, double wavelength) {
          pi;
 }
 
-int hemisphere_nodes(const Model& model) {
-  const Orders order = orders(model);
-  const int degree = order.f11 + order.other;                            // in the disc coordinates
-  const int per_square = model.mapping == DiscMapping::lambert ? 1 : 2;  // ρ² is u, or u (2 − u)
-  const int in_u = per_square * (degree / 2) + 1;                        // with cos θ = 1 − u
+int hemisphere_nodes(const Model& model) { return hemisphere_nodes(orders(model), model.mapping); }
+
+int hemisphere_nodes(const Orders& orders, DiscMapping mapping) {
+  const int degree = orders.f11 + orders.other;                    // in the disc coordinates
+  const int per_square = mapping == DiscMapping::lambert ? 1 : 2;  // ρ² is u, or u (2 − u)
+  const int in_u = per_square * (degree / 2) + 1;                  // with cos θ = 1 − u
   // 2 nodes − 1 ≥ in_u, and 4 nodes − 2 azimuths > degree + 2: published models add two turns of their frame
   return std::max(in_u / 2 + 1, (degree + 8) / 4);
 }

@@ -28,8 +28,9 @@ std::vector<Contribution> of_hemisphere(const Budget& mean, const Stokes& analyz
 }  // namespace
 
 UncertainModel uncertain(const Model& model, double wavelength, std::vector<TypeBTerm> terms) {
+  const Orders highest = model.posterior ? model.posterior->data().orders : orders(model);
   return {prepare(model, wavelength), prepare_uncertainty(model, wavelength), std::move(terms),
-          hemisphere_nodes(model)};
+          hemisphere_nodes(highest, model.mapping)};
 }
 
 // In the sp frame the axes of the beam that stays are fixed; those of the other do not matter to the first row, or
@@ -51,7 +52,10 @@ std::vector<Contribution> hemispherical_directional_budget(const UncertainModel&
 
 std::vector<Contribution> bihemispherical_budget(const UncertainModel& model) {
   const Aperture all = Aperture::hemisphere();
-  return of_hemisphere(budget_of_mean(model, all, all, model.hemisphere_nodes, Frame::xy), {1, 0, 0, 0}, {1, 0, 0, 0});
+  const auto geometries =
+      model.terms.empty() ? std::vector<WeightedGeometry>{} : mean_rule(all, all, model.hemisphere_nodes);
+  return of_hemisphere(budget(model.model, model.fit, model.fit.bihemispherical_gradient(), model.terms, geometries),
+                       {1, 0, 0, 0}, {1, 0, 0, 0});
 }
 
 Budget average_budget(const UncertainModel& model, const Aperture& source, const Aperture& receiver, int nodes) {

@@ -74,10 +74,9 @@ void add(MuellerCovariance& sum, const Mueller& effect) {
 
 /// `where` is a geometry, or several with weights.
 template <class Where>
-Budget budget_of(const MuellerCovariance& fit, double freedom, const PreparedModel& model,
-                 std::span<const TypeBTerm> terms, const Where& where, Frame frame) {
-  Budget result;
-  result.terms.push_back({"fit", fit, freedom});
+Budget budget_of(std::vector<BudgetTerm> fit, const PreparedModel& model, std::span<const TypeBTerm> terms,
+                 const Where& where, Frame frame) {
+  Budget result{std::move(fit), {}};
   for (const TypeBTerm& term : terms) {
     result.terms.push_back({term.name, {}, term.freedom});
     for (const Mueller& effect : effects(term, model, where, frame)) add(result.terms.back().covariance, effect);
@@ -139,13 +138,17 @@ std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model,
 
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               const Geometry& geometry, Frame frame) {
-  return budget_of(fit.evaluate(geometry, frame), fit.freedom(), model, terms, geometry, frame);
+  return budget_of(fit.parts(fit.gradient(geometry, frame)), model, terms, geometry, frame);
 }
 
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               std::span<const WeightedGeometry> geometries, Frame frame) {
-  const MuellerGradient gradient = fit.gradient(geometries, frame);
-  return budget_of(fit.covariance(gradient, gradient), fit.freedom(), model, terms, geometries, frame);
+  return budget(model, fit, fit.gradient(geometries, frame), terms, geometries, frame);
+}
+
+Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, const MuellerGradient& gradient,
+              std::span<const TypeBTerm> terms, std::span<const WeightedGeometry> geometries, Frame frame) {
+  return budget_of(fit.parts(gradient), model, terms, geometries, frame);
 }
 
 std::vector<Mueller> drawn(std::span<const PreparedModel> draws, const PreparedModel& model,

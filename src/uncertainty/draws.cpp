@@ -15,6 +15,7 @@
 #include "numerics/random.hpp"
 #include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
+#include "uncertainty/block_at.hpp"
 #include "uncertainty/joint_covariance.hpp"
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
@@ -39,10 +40,36 @@ VectorXd means(const FittedBlock& fitted, const ReflectanceTable& table) {
 }
 
 /// U diag(√s) Uᵀ: unlike U diag(√s), the same for each choice of the eigenvectors.
-MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
-  const auto [vectors, s] = dense::eigensystem(joint_covariance(fitted, table));
-  require_semidefinite(s, "block " + fitted.block.name, covariance_tolerance);
+MatrixXd square_root(const MatrixXd& covariance, const std::string& block) {
+  const auto [vectors, s] = dense::eigensystem(covariance);
+  require_semidefinite(s, "block " + block, covariance_tolerance);
   return vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal() * vectors.transpose();
+}
+MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
+  return square_root(joint_covariance(fitted, table), fitted.block.name);
+}
+
+/// The model over the modes behind a posterior, with coefficients of 0: its covariance is another at each wavelength.
+Model over_modes_behind(const Model& model) {
+  Model result;
+  result.mapping = model.mapping;
+  result.reflectance = {model.reflectance.wavelengths, model.reflectance.values};
+  result.validity = model.validity;
+  for (const Block& block : model.posterior->blocks())
+    result.blocks.push_back({block, std::vector<double>(block.modes.size()), {}, 0, 0});
+  return result;
+}
+
+/// Independent normal numbers, a column for each draw, over all blocks of it in turn.
+void fill_normal(std::vector<MatrixXd>& blocks, unsigned long seed) {
+  std::mt19937_64 engine(seed);
+  for (Index draw = 0; draw < blocks.front().cols(); ++draw)
+    for (MatrixXd& z : blocks)
+      for (Index i = 0; i < z.rows(); i += 2) {
+        const auto [first, second] = two_normal(engine);
+        z(i, draw) = first;
+        if (i + 1 < z.rows()) z(i + 1, draw) = second;
+      }
 }
 
 double mean_of(std::span<const double> values) {
@@ -77,22 +104,60 @@ Deviations deviations(std::span<const double> values) {
 }  // namespace
 
 struct Draws::Coefficients {
+  Model behind;  // of a posterior: the model
   PreparedModel model;
   int powers = 0;
   ReflectanceTable reflectance;
   std::vector<Index> sizes;      // powers × modes of each block
-  std::vector<MatrixXd> blocks;  // coefficients by count; below those of block 11 the drawn values of the table
+  std::vector<MatrixXd> blocks;  // coefficients by count; below those of block 11 the drawn values of the table;
+                                 // of a posterior normal numbers, which become coefficients at a wavelength
 
-  double reflectance_at(double wavelength, Index draw) const;
+  /// At a wavelength, of all modes by count: Σ_p λ^p a_p, and the factor of f11 of each.
+  struct At {
+    MatrixXd coefficients;
+    VectorXd reflectances;
+  };
+  At at(double wavelength) const;
+
+ private:
+  At of_posterior(double wavelength) const;
 };
 
-double Draws::Coefficients::reflectance_at(double wavelength, Index draw) const {
-  if (reflectance.covariance.empty()) return reflectance.at(wavelength);
+Draws::Coefficients::At Draws::Coefficients::of_posterior(double wavelength) const {
+  const std::vector<BlockAt> list = blocks_at(behind, wavelength);
+  const Index count = blocks.front().cols();
+  Index modes = 0, begin = 0;
+  for (const BlockAt& block : list) modes += block.modes();
+  At result{MatrixXd(modes, count), VectorXd::Constant(count, list.front().reflectance)};
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    const BlockAt& block = list[b];
+    const MatrixXd drawn = square_root(block.covariance, behind.blocks[b].block.name) * blocks[b];
+    result.coefficients.middleRows(begin, block.modes()) = drawn.topRows(block.modes()).colwise() + block.coefficients;
+    if (block.knows_reflectance()) result.reflectances += drawn.bottomRows(1).transpose();
+    begin += block.modes();
+  }
+  return result;
+}
+
+Draws::Coefficients::At Draws::Coefficients::at(double wavelength) const {
+  if (behind.posterior) return of_posterior(wavelength);
+  Index modes = 0, begin = 0;
+  for (const Index size : sizes) modes += size / (powers + 1);
+  const Index count = blocks.front().cols();
+  At result{MatrixXd::Zero(modes, count), VectorXd::Constant(count, reflectance.at(wavelength))};
+  const std::vector<double> of_wavelength = powers_of(wavelength, powers);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Index size = sizes[b] / (powers + 1);
+    for (Index p = 0; p <= powers; ++p)
+      result.coefficients.middleRows(begin, size) +=
+          of_wavelength[static_cast<std::size_t>(p)] * blocks[b].middleRows(p * size, size);
+    begin += size;
+  }
+  if (reflectance.covariance.empty()) return result;
   const std::vector<double> weights = reflectance.weights(wavelength);
-  return blocks[0]
-      .col(draw)
-      .tail(index(weights.size()))
-      .dot(Eigen::Map<const VectorXd>(weights.data(), index(weights.size())));
+  const Index nodes = index(weights.size());
+  result.reflectances = blocks[0].bottomRows(nodes).transpose() * Eigen::Map<const VectorXd>(weights.data(), nodes);
+  return result;
 }
 
 void require_semidefinite(const Model& model) {
@@ -104,20 +169,17 @@ void require_semidefinite(const Model& model) {
 Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) {
   if (count < 2 || count > max_draws)
     throw std::invalid_argument("count = " + std::to_string(count) + ", must be in 2..." + std::to_string(max_draws));
-  Coefficients drawn{prepare(model, 1), model.powers, model.reflectance, {}, {}};
-  for (const FittedBlock& fitted : model.blocks) {
+  require_valid(model);
+  const bool has_posterior = model.posterior.has_value();
+  const Model over = has_posterior ? over_modes_behind(model) : model;
+  Coefficients drawn{has_posterior ? model : Model{}, prepare(over, 1), over.powers, over.reflectance, {}, {}};
+  for (const FittedBlock& fitted : over.blocks) {
     drawn.sizes.push_back(index(fitted.coefficients.size()));
-    drawn.blocks.emplace_back(means(fitted, model.reflectance).size(), count);
+    const bool certified = has_posterior && has_uncertain_reflectance(fitted, model.reflectance);
+    drawn.blocks.emplace_back(means(fitted, over.reflectance).size() + (certified ? 1 : 0), count);
   }
-  std::mt19937_64 engine(seed);
-  for (Index draw = 0; draw < count; ++draw)
-    for (MatrixXd& z : drawn.blocks)
-      for (Index i = 0; i < z.rows(); i += 2) {
-        const auto [first, second] = two_normal(engine);
-        z(i, draw) = first;
-        if (i + 1 < z.rows()) z(i + 1, draw) = second;
-      }
-  for (std::size_t b = 0; b < drawn.blocks.size(); ++b) {
+  fill_normal(drawn.blocks, seed);
+  for (std::size_t b = 0; b < drawn.blocks.size() && !has_posterior; ++b) {
     drawn.blocks[b] = square_root(model.blocks[b], model.reflectance) * drawn.blocks[b];
     drawn.blocks[b].colwise() += means(model.blocks[b], model.reflectance);
   }
@@ -127,23 +189,12 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
 std::vector<PreparedModel> Draws::at(double wavelength) const {
   const Coefficients& drawn = *coefficients_;
   const PreparedModel model = drawn.model.at(wavelength);
-  const std::vector<double> powers = powers_of(wavelength, drawn.powers);
-  Index modes = 0;
-  for (const Index size : drawn.sizes) modes += size / (drawn.powers + 1);
-  MatrixXd folded = MatrixXd::Zero(modes, count_);  // Σ_p λ^p a_p
-  Index begin = 0;
-  for (std::size_t b = 0; b < drawn.blocks.size(); ++b) {
-    const Index size = drawn.sizes[b] / (drawn.powers + 1);
-    for (Index p = 0; p <= drawn.powers; ++p)
-      folded.middleRows(begin, size) +=
-          powers[static_cast<std::size_t>(p)] * drawn.blocks[b].middleRows(p * size, size);
-    begin += size;
-  }
+  const auto [coefficients, reflectances] = drawn.at(wavelength);
   std::vector<PreparedModel> result;
   result.reserve(static_cast<std::size_t>(count_));
   for (Index draw = 0; draw < count_; ++draw)
     result.push_back(
-        model.with({folded.col(draw).data(), static_cast<std::size_t>(modes)}, drawn.reflectance_at(wavelength, draw)));
+        model.with({coefficients.col(draw).data(), static_cast<std::size_t>(coefficients.rows())}, reflectances(draw)));
   return result;
 }
 

@@ -4,19 +4,16 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "basis/rows.hpp"
-#include "basis/spectral.hpp"
-#include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
-#include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
-#include "uncertainty/joint_covariance.hpp"
+#include "uncertainty/block_at.hpp"
 
 // Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
@@ -34,71 +31,13 @@ using Eigen::VectorXd;
 
 constexpr double estimability_limit = 1e-8;  // theory 4.7
 
-/// One block at one wavelength.
-struct BlockAt {
-  std::vector<Element> elements;
-  Rows rows;
-  VectorXd coefficients;   // a(λ)
-  MatrixXd covariance;     // V(λ), of all parameters
-  MatrixXd free;           // combinations that the data leave free, folded at λ: modes × number
-  double lengthening = 1;  // of a row over the modes to the row over all powers
-  double reflectance = 1;  // R(λ), of block 11
-  Index first = 0;         // of its parameters among those of all blocks
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  Index modes() const { return coefficients.size(); }
-  bool knows_reflectance() const { return covariance.rows() > modes(); }
-
-  /// g_e
-  VectorXd row(const Element& element, const KTable& k_i, const KTable& k_r) const {
-    VectorXd g = VectorXd::Zero(modes());
-    rows.add(element.index(), k_i, k_r, g.data());
-    return g;
-  }
-
-  /// Slopes of R g · a over the parameters.
-  VectorXd slopes(const VectorXd& g) const {
-    VectorXd result(covariance.rows());
-    result.head(modes()) = reflectance * g;
-    if (knows_reflectance()) result(modes()) = g.dot(coefficients);
-    return result;
-  }
-};
-
-/// Combinations that the data left free, as columns; every one where they are not known.
-MatrixXd free_combinations(const FittedBlock& fitted) {
-  const Index size = index(fitted.coefficients.size()), free = size - fitted.rank;
-  if (free > 0 && fitted.null_space.empty()) return MatrixXd::Identity(size, size);
-  return Eigen::Map<const MatrixXd>(fitted.null_space.data(), size, free);
-}
-
-/// Covariance of a(λ), and of R(λ) behind it where that is block 11 and R has a covariance.
-MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, const ReflectanceTable& table,
-                           double wavelength) {
-  const MatrixXd joint = joint_covariance(fitted, table);
-  if (!has_uncertain_reflectance(fitted, table)) return fold.transpose() * joint * fold;
-  const std::vector<double> weights = table.weights(wavelength);
-  MatrixXd both = MatrixXd::Zero(joint.rows(), fold.cols() + 1);
-  both.topLeftCorner(fold.rows(), fold.cols()) = fold;
-  both.rightCols(1).bottomRows(index(weights.size())) =
-      Eigen::Map<const VectorXd>(weights.data(), index(weights.size()));
-  const MatrixXd result = both.transpose() * joint * both;
-  return (result + result.transpose()) / 2;
-}
-
-BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelength) {
-  const Index modes = index(fitted.block.modes.size()), size = index(fitted.coefficients.size());
-  const std::vector<double> powers = powers_of(wavelength, model.powers);
-  const MatrixXd fold = repetition(modes, powers);
-  BlockAt result{fitted.block.elements, Rows(fitted.block.modes, model.family), {}, {}, {}};
-  if (feeds_f11(fitted.block)) result.reflectance = model.reflectance.at(wavelength);
-  result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
-  result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
-  if (!result.coefficients.allFinite() || !result.covariance.allFinite())
-    throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
-  require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
-  result.free = fold.transpose() * free_combinations(fitted);
-  result.lengthening = Eigen::Map<const VectorXd>(powers.data(), index(powers.size())).norm();
-  return result;
+Eigen::Map<const RowMajor> slopes_of(const MuellerGradient& gradient, Index parameters) {
+  if (gradient.values.size() != 16 * static_cast<std::size_t>(parameters))
+    throw std::invalid_argument("a gradient of " + std::to_string(gradient.values.size()) + " numbers, expected " +
+                                std::to_string(16 * parameters));
+  return {gradient.values.data(), 16, parameters};
 }
 
 }  // namespace
@@ -107,7 +46,7 @@ struct PreparedUncertainty::Blocks {
   std::vector<BlockAt> list;
   Index parameters = 0;
   double freedom = 0;
-  int order = 0;
+  int order = 0;  // of the functions of the rows
   DiscMapping mapping = DiscMapping::lambert;
   bool turns = false;
 
@@ -174,15 +113,15 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
   require_valid(model);
   require_wavelength(wavelength);
   auto blocks = std::make_shared<PreparedUncertainty::Blocks>();
-  const Orders highest = orders(model);
+  const Orders highest = model.posterior ? model.posterior->data().orders : orders(model);
   blocks->order = std::max(highest.f11, highest.other);
   blocks->mapping = model.mapping;
   blocks->turns = mmbrdf::turns(model);
   blocks->freedom = degrees_of_freedom(model);
-  for (const FittedBlock& fitted : model.blocks) {
-    blocks->list.push_back(block_at(fitted, model, wavelength));
-    blocks->list.back().first = blocks->parameters;
-    blocks->parameters += blocks->list.back().covariance.rows();
+  blocks->list = blocks_at(model, wavelength);
+  for (BlockAt& block : blocks->list) {
+    block.first = blocks->parameters;
+    blocks->parameters += block.covariance.rows();
   }
   return PreparedUncertainty(std::move(blocks));
 }
@@ -244,19 +183,32 @@ MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> 
 }
 
 MuellerCovariance PreparedUncertainty::covariance(const MuellerGradient& a, const MuellerGradient& b) const {
-  for (const MuellerGradient& gradient : {std::cref(a), std::cref(b)})
-    if (gradient.values.size() != 16 * parameters())
-      throw std::invalid_argument("a gradient of " + std::to_string(gradient.values.size()) + " numbers, expected " +
-                                  std::to_string(16 * parameters()));
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> slopes_a(a.values.data(), 16, blocks_->parameters),
-      slopes_b(b.values.data(), 16, blocks_->parameters);
+  const auto slopes_a = slopes_of(a, blocks_->parameters), slopes_b = slopes_of(b, blocks_->parameters);
   MuellerCovariance result;
   Eigen::Map<RowMajor> sum(result.values.data(), 16, 16);
   for (const BlockAt& block : blocks_->list) {
     const Index size = block.covariance.rows();
     sum +=
         slopes_a.middleCols(block.first, size) * block.covariance * slopes_b.middleCols(block.first, size).transpose();
+  }
+  return result;
+}
+
+std::vector<BudgetTerm> PreparedUncertainty::parts(const MuellerGradient& gradient) const {
+  const auto slopes = slopes_of(gradient, blocks_->parameters);
+  std::vector<BudgetTerm> result{{blocks_->list.front().parts.empty() ? "fit" : "posterior", {}, freedom()}};
+  const auto add = [&](const std::string& name, const MatrixXd& covariance) {
+    auto found = std::ranges::find(result, name, &BudgetTerm::name);
+    if (found == result.end()) found = result.insert(found, {name, {}});
+    Eigen::Map<RowMajor>(found->covariance.values.data(), 16, 16) += covariance;
+  };
+  for (const BlockAt& block : blocks_->list) {
+    const MatrixXd of_block = slopes.middleCols(block.first, block.covariance.rows());
+    add(result.front().name, of_block * block.fit() * of_block.transpose());
+    for (const BlockAt::Part& part : block.parts) {
+      const MatrixXd effects = of_block * part.effects;
+      add(part.name, effects * effects.transpose());
+    }
   }
   return result;
 }
@@ -280,8 +232,18 @@ double PreparedUncertainty::directional_hemispherical_reflectance(const Directio
   return std::sqrt(std::max(slopes.dot(f11.covariance * slopes), 0.0));
 }
 
+MuellerGradient PreparedUncertainty::bihemispherical_gradient() const {
+  const KTable integrals = over_hemisphere(blocks_->mapping);
+  const BlockAt& f11 = blocks_->list.front();
+  const VectorXd slopes = f11.slopes(f11.row({}, integrals, integrals)) / (std::numbers::pi * std::numbers::pi);
+  MuellerGradient result{std::vector<double>(16 * parameters())};
+  std::copy_n(slopes.data(), slopes.size(), result.values.begin() + f11.first);
+  return result;
+}
+
 bool knows_uncertainty(const Model& model) {
-  return std::ranges::none_of(model.blocks, [](const FittedBlock& fitted) { return fitted.covariance.empty(); });
+  return model.posterior ||
+         std::ranges::none_of(model.blocks, [](const FittedBlock& fitted) { return fitted.covariance.empty(); });
 }
 
 }  // namespace mmbrdf

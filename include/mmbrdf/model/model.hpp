@@ -11,6 +11,7 @@
 
 #include "mmbrdf/basis/modes.hpp"
 #include "mmbrdf/geometry/geometry.hpp"
+#include "mmbrdf/mixed/posterior.hpp"
 
 namespace mmbrdf {
 
@@ -88,13 +89,15 @@ struct Model {
   std::vector<FittedBlock> blocks;
   ReflectanceTable reflectance;
   Validity validity;
+  std::optional<Posterior>
+      posterior{};  ///< of fits of the mixed model: their uncertainty; then no block has a covariance
   std::map<std::string, std::string> provenance;  ///< free text: data, command, software, attribution, …
 };
 
 /// Throws std::invalid_argument if blocks, coefficient counts or the reflectance table do not fit together.
 void require_valid(const Model& model);
 
-bool has_covariance(const Model& model);  ///< of a block, at least
+bool has_covariance(const Model& model);  ///< of a block, at least, or a posterior
 
 /// Of the fit: rows less rank, of the block where that is least, and 1 at least. Infinite where it is not known.
 double degrees_of_freedom(const Model& model);

@@ -48,6 +48,7 @@ double bihemispherical_reflectance(const Model& model, double wavelength);
 /// cos θ after the integral over azimuth. For orders 7, 4 and the lambert mapping 4, of degree 6; of the azimuths 12
 /// would do for the first integral.
 int hemisphere_nodes(const Model& model);
+int hemisphere_nodes(const Orders& orders, DiscMapping mapping);
 
 /// π f11: the reflectance factor, and with luminance in the place of radiance the radiance factor. 1 for the perfect
 /// diffuser.

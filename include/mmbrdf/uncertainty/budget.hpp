@@ -51,14 +51,8 @@ inline constexpr double grazing_limit = 1e-9;
 std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model,
                              std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy);
 
-struct BudgetTerm {
-  std::string name;
-  MuellerCovariance covariance;                              ///< of the elements of F, in sr⁻²
-  double freedom = std::numeric_limits<double>::infinity();  ///< degrees of freedom
-};
-
 struct Budget {
-  std::vector<BudgetTerm> terms;  ///< first "fit"
+  std::vector<BudgetTerm> terms;  ///< first those of PreparedUncertainty::parts()
   MuellerCovariance total;        ///< their sum
 };
 
@@ -69,6 +63,9 @@ Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::s
 /// Of Σ weight × F.
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy);
+/// With slopes of the fit that are known in another way.
+Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, const MuellerGradient& gradient,
+              std::span<const TypeBTerm> terms, std::span<const WeightedGeometry> geometries, Frame frame = Frame::xy);
 
 /// One matrix for each drawn model (draws.hpp), with errors of the terms drawn along, each normal. `model` is the
 /// one that was drawn from. The same seed gives the same errors at all geometries, as it is the same instrument.

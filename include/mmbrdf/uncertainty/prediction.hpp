@@ -6,8 +6,10 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mmbrdf/model/prepared.hpp"
@@ -19,6 +21,13 @@ namespace mmbrdf {
 /// row-major, an element in each row. Sums of matrices have the sums of their gradients.
 struct MuellerGradient {
   std::vector<double> values;
+};
+
+/// One independent part of an uncertainty.
+struct BudgetTerm {
+  std::string name;
+  MuellerCovariance covariance;                              ///< of the elements of F, in sr⁻²
+  double freedom = std::numeric_limits<double>::infinity();  ///< degrees of freedom
 };
 
 /// The covariance of a model's coefficients at one wavelength. May be used in many threads at once.
@@ -45,6 +54,16 @@ class PreparedUncertainty {
   /// parameters. covariance(gradient(g), gradient(g)) is evaluate(g) but for rounding. Throws std::invalid_argument for
   /// gradients of another size.
   MuellerCovariance covariance(const MuellerGradient& a, const MuellerGradient& b) const;
+
+  /// covariance(gradient, gradient) in its parts. Of a fit of least squares it is one, "fit"; of the mixed model:
+  ///   posterior     what noise, the end of the basis and the anisotropy of the sample leave open
+  ///   declared …    errors that all readings share, as they were declared; those of an instrument likewise
+  ///   projection    what the evaluated modes miss of the posterior mean: of higher orders, of the wavelength
+  std::vector<BudgetTerm> parts(const MuellerGradient& gradient) const;
+
+  /// Slopes of the mean of F over both hemispheres that gives the bihemispherical reflectance over π: of f11, the other
+  /// elements are 0.
+  MuellerGradient bihemispherical_gradient() const;
 
   std::size_t parameters() const;
 

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "uncertainty/block_at.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "basis/spectral.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+#include "numerics/dense.hpp"
+#include "numerics/eigen_index.hpp"
+#include "numerics/semidefinite.hpp"
+#include "uncertainty/joint_covariance.hpp"
+
+// Between two fitted wavelengths, at part τ of the way, the variances of a posterior are linear in τ; those of what the
+// evaluated coefficients a(λ) deviate by from the posterior means μ,
+//   (1 − τ) p₀² + τ p₁² + 2 τ (1 − τ) (p₀² + p₁²),     p = gᵀa(λ) − hᵀμ at either end,
+// are those of a random walk between both ends and of a step that is not known better than they are (theory 8.5).
+// Beyond the fitted wavelengths they are those of the nearest.
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Combinations that the data left free, as columns; every one where they are not known.
+MatrixXd free_combinations(const FittedBlock& fitted) {
+  const Index size = index(fitted.coefficients.size()), free = size - fitted.rank;
+  if (free > 0 && fitted.null_space.empty()) return MatrixXd::Identity(size, size);
+  return Eigen::Map<const MatrixXd>(fitted.null_space.data(), size, free);
+}
+
+/// Covariance of a(λ), and of R(λ) behind it where that is block 11 and R has a covariance.
+MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, const ReflectanceTable& table,
+                           double wavelength) {
+  const MatrixXd joint = joint_covariance(fitted, table);
+  if (!has_uncertain_reflectance(fitted, table)) return fold.transpose() * joint * fold;
+  const std::vector<double> weights = table.weights(wavelength);
+  MatrixXd both = MatrixXd::Zero(joint.rows(), fold.cols() + 1);
+  both.topLeftCorner(fold.rows(), fold.cols()) = fold;
+  both.rightCols(1).bottomRows(index(weights.size())) =
+      Eigen::Map<const VectorXd>(weights.data(), index(weights.size()));
+  const MatrixXd result = both.transpose() * joint * both;
+  return (result + result.transpose()) / 2;
+}
+
+BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelength) {
+  const Index modes = index(fitted.block.modes.size()), size = index(fitted.coefficients.size());
+  const std::vector<double> powers = powers_of(wavelength, model.powers);
+  const MatrixXd fold = repetition(modes, powers);
+  BlockAt result{fitted.block.elements, Rows(fitted.block.modes, model.family), {}, {}, {}, {}};
+  if (feeds_f11(fitted.block)) result.reflectance = model.reflectance.at(wavelength);
+  result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
+  result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
+  if (!result.coefficients.allFinite() || !result.covariance.allFinite())
+    throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
+  require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
+  result.free = fold.transpose() * free_combinations(fitted);
+  result.lengthening = Eigen::Map<const VectorXd>(powers.data(), index(powers.size())).norm();
+  return result;
+}
+
+/// What counts of a posterior at a wavelength.
+struct Node {
+  std::size_t index;
+  double posterior, deviation;  // factors of variances
+};
+
+std::vector<Node> nodes_at(const std::vector<PosteriorAt>& known, double wavelength) {
+  const auto above = std::ranges::lower_bound(known, wavelength, {}, &PosteriorAt::wavelength);
+  if (above == known.end()) return {{known.size() - 1, 1, 1}};
+  const auto high = static_cast<std::size_t>(above - known.begin());
+  if (high == 0 || above->wavelength == wavelength) return {{high, 1, 1}};
+  const double low = known[high - 1].wavelength, tau = (wavelength - low) / (above->wavelength - low),
+               step = 2 * tau * (1 - tau);
+  return {{high - 1, 1 - tau, 1 - tau + step}, {high, tau, tau + step}};
+}
+
+/// Coefficients of the modes behind a block: those that are evaluated, at a wavelength, and 0.
+VectorXd among(const Block& behind, const FittedBlock& fitted, double wavelength) {
+  VectorXd result = VectorXd::Zero(index(behind.modes.size()));
+  const std::vector<double> a = at_wavelength(fitted.coefficients, fitted.block.modes.size(), wavelength);
+  for (std::size_t q = 0; q < a.size(); ++q)
+    result(std::ranges::find(behind.modes, fitted.block.modes[q]) - behind.modes.begin()) = a[q];
+  return result;
+}
+
+/// Of the reflectance at a wavelength. Errors of a certificate count as independent of the posterior.
+double table_uncertainty(const ReflectanceTable& table, double wavelength) {
+  const std::vector<double> list = table.weights(wavelength);
+  const Eigen::Map<const VectorXd> weights(list.data(), index(list.size()));
+  const Eigen::Map<const MatrixXd> covariance(table.covariance.data(), weights.size(), weights.size());
+  return std::sqrt(std::max(weights.dot(covariance * weights), 0.0));
+}
+
+BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, double wavelength) {
+  const PosteriorData& data = posterior.data();
+  const Block& behind = posterior.blocks()[b];
+  const Index modes = index(behind.modes.size());
+  const bool uncertain = has_uncertain_reflectance(model.blocks[b], model.reflectance);
+  const Index size = uncertain ? modes + 1 : modes;
+  BlockAt result{behind.elements,
+                 Rows(behind.modes, Family::isotropic),
+                 among(behind, model.blocks[b], wavelength),
+                 MatrixXd::Zero(size, size),
+                 {},
+                 MatrixXd(modes, 0)};
+  if (feeds_f11(behind)) result.reflectance = model.reflectance.at(wavelength);
+  const auto add = [&](const std::string& name, const VectorXd& of_modes, double of_reflectance = 0) {
+    VectorXd effect = VectorXd::Constant(size, of_reflectance);
+    effect.head(modes) = of_modes;
+    result.parts.push_back({name, effect});
+    result.covariance += effect * effect.transpose();
+  };
+  if (uncertain) add("certificate", VectorXd::Zero(modes), table_uncertainty(model.reflectance, wavelength));
+  for (const auto& [k, factor, deviation] : nodes_at(data.wavelengths, wavelength)) {
+    const PosteriorAt& at = data.wavelengths[k];
+    const BlockPosterior& here = at.blocks[b];
+    result.covariance.topLeftCorner(modes, modes) +=
+        factor * Eigen::Map<const MatrixXd>(posterior.covariance(k, b).data(), modes, modes);
+    const Eigen::Map<const Eigen::MatrixXf> shared(here.shared.data(), modes, index(data.errors.size()));
+    for (std::size_t e = 0; e < data.errors.size(); ++e)
+      if (data.errors[e].size > 0)
+        add(data.errors[e].name, std::sqrt(factor) * data.errors[e].size * shared.col(index(e)).cast<double>());
+    add("projection", std::sqrt(deviation) * (among(behind, model.blocks[b], at.wavelength) -
+                                              Eigen::Map<const VectorXd>(here.mean.data(), modes)));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<BlockAt> blocks_at(const Model& model, double wavelength) {
+  std::vector<BlockAt> result;
+  for (std::size_t b = 0; b < model.blocks.size(); ++b)
+    result.push_back(model.posterior ? block_at(*model.posterior, model, b, wavelength)
+                                     : block_at(model.blocks[b], model, wavelength));
+  return result;
+}
+
+}  // namespace mmbrdf
