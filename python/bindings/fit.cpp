@@ -5,6 +5,8 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include "fit.hpp"
@@ -32,6 +34,7 @@ void sign(FitResult& result, const Request& request, std::size_t rows) {
   model.provenance["rows"] = std::to_string(rows);
   model.provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
   model.provenance["weights"] = to_string(request.weights);
+  model.provenance["uncertainty"] = to_string(model.posterior ? Uncertainty::sample : Uncertainty::noise);
   if (request.options.covariance != Covariance::residuals)
     model.provenance["covariance"] = to_string(request.options.covariance);
   std::string noise;
@@ -47,6 +50,21 @@ FittedPointer signed_result(FitResult result, const Request& request, std::size_
   sign(result, request, rows);
   auto model = std::make_shared<ModelObject>(result.model);
   return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
+}
+
+DeclaredErrors declared_from(const std::map<std::string, double>& named) {
+  DeclaredErrors declared;
+  for (const auto& [name, value] : named) {
+    if (!(value >= 0 && std::isfinite(value)))
+      throw py::value_error("declared['" + name + "'] must be 0 or more, not " + formatted("{:.6g}", value));
+    if (name == "scale")
+      declared.scale = value;
+    else if (name == "source_deg" || name == "receiver_deg")
+      (name == "source_deg" ? declared.source : declared.receiver) = radians(value);
+    else
+      throw py::value_error("declared has no '" + name + "', only 'scale', 'source_deg' and 'receiver_deg'");
+  }
+  return declared;
 }
 
 FittedPointer fitted(const Dataset& data, const Request& request) {
@@ -102,7 +120,7 @@ py::tuple pickled(const Fitted& fitted) {
   return py::make_tuple(py::bytes(to_json(r.model)), tuple_of(r.solutions, solution),
                         bits<Elements>("FitResult", {&r.elements, 1}), bits<Mueller>("FitResult", r.residuals),
                         bits<NoiseEstimate>("FitResult", r.noise), bits<Basis>("FitResult", {&fitted.basis, 1}),
-                        to_string(fitted.weights));
+                        to_string(fitted.weights), r.warnings);
 }
 
 FittedPointer unpickled(const py::tuple& state) {
@@ -111,7 +129,8 @@ FittedPointer unpickled(const py::tuple& state) {
               .solutions = {},
               .elements = from_bits<Elements>("FitResult", state[2]).at(0),
               .residuals = from_bits<Mueller>("FitResult", state[3]),
-              .noise = from_bits<NoiseEstimate>("FitResult", state[4])};
+              .noise = from_bits<NoiseEstimate>("FitResult", state[4]),
+              .warnings = state[7].cast<std::vector<std::string>>()};
   for (const py::handle one : state[1]) {
     const auto s = one.cast<py::tuple>();
     r.solutions.push_back({s[0].cast<Values>(), s[1].cast<Values>(), s[2].cast<int>(), s[3].cast<double>(),
@@ -134,6 +153,8 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "polarization_rms", [](const Fitted& f) { return polarization_rms(f.result); },
           "Root mean square over the 15 normalised elements")
+      .def_property_readonly(
+          "warnings", [](const Fitted& f) { return f.result.warnings; }, "What there is to heed: a line each")
       .def_property_readonly("noise", noise_of, "With weights='estimated': the law found at each wavelength, as dicts")
       .def("__repr__", representation)
       .def(py::pickle(&pickled, &unpickled));
@@ -147,7 +168,16 @@ constexpr const char* fit_doc =
     "reflectance  {wavelength in nm: value} that f11 is divided by; {}: by nothing. None: for several wavelengths "
     "each\n"
     "             one's own normal-incidence reflectance, for one nothing\n"
-    "weights      'none', 'speckle', 'data' (1/u^2 of the samples) or 'estimated'\n"
+    "uncertainty  'sample': holds for a real sample, its anisotropy and what the basis misses included; the samples\n"
+    "             need not determine every coefficient. 'noise': of the noise alone, by least squares. Where 'sample' "
+    "cannot\n"
+    "             be had, as for other bases than 'isotropic', it is 'noise', and FitResult.warnings says why\n"
+    "declared     {'scale': relative, 'source_deg': ..., 'receiver_deg': ...}: standard uncertainties of errors that "
+    "all\n"
+    "             samples share, with 'sample'; none by default\n"
+    "weights      'none', 'speckle', 'data' (1/u^2 of the samples) or 'estimated'; None: 'speckle' with 'sample', "
+    "'none'\n"
+    "             with 'noise'\n"
     "covariance   'residuals' or 'sandwich', for noise that is not as the weights say\n"
     "minimum_norm accept data that do not determine every coefficient (germer2017: always)\n"
     "as_printed   germer2017 at the azimuths the samples have, to compare only; the model keeps it\n"
@@ -234,10 +264,15 @@ void bind_fit(py::module_& m) {
       "fit",
       [](const Dataset& data, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
          std::optional<int> powers, const std::optional<std::map<double, double>>& reflectance,
-         const std::string& weights, const std::string& covariance, bool minimum_norm, bool as_printed,
+         const std::string& uncertainty, const std::map<std::string, double>& declared,
+         const std::optional<std::string>& weights, const std::string& covariance, bool minimum_norm, bool as_printed,
          const InstrumentPointer& instrument, const std::string& name, const std::string& attribution) {
         Request request{
-            basis_from(family, orders, mapping, as_printed), {}, weights_from(weights), instrument, name, attribution};
+            basis_from(family, orders, mapping, as_printed), {}, Weights::none, instrument, name, attribution};
+        request.options.uncertainty = uncertainty_from(uncertainty);
+        request.options.declared = declared_from(declared);
+        const bool of_sample = request.options.uncertainty == Uncertainty::sample;
+        request.weights = weights ? weights_from(*weights) : of_sample ? Weights::speckle : Weights::none;
         request.options.powers = powers;
         if (reflectance) request.options.reflectance = reflectance_table(*reflectance);
         request.options.minimum_norm = minimum_norm;
@@ -246,7 +281,8 @@ void bind_fit(py::module_& m) {
       },
       py::arg("data"), py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
       py::arg("mapping") = "lambert", py::arg("powers") = py::none(), py::arg("reflectance") = py::none(),
-      py::arg("weights") = "none", py::arg("covariance") = "residuals", py::arg("minimum_norm") = false,
+      py::arg("uncertainty") = "sample", py::arg("declared") = std::map<std::string, double>{},
+      py::arg("weights") = py::none(), py::arg("covariance") = "residuals", py::arg("minimum_norm") = false,
       py::arg("as_printed") = false, py::arg("instrument") = py::none(), py::arg("name") = "",
       py::arg("attribution") = "", fit_doc);
 }

@@ -341,6 +341,8 @@ class FitResult:
     def polarization_rms(self) -> float: ...
     @property
     def noise(self) -> list[dict[str, float]]: ...
+    @property
+    def warnings(self) -> list[str]: ...
 
 class FitAccumulator:
     def __init__(
@@ -604,7 +606,9 @@ def fit(
     mapping: str = "lambert",
     powers: int | None = None,
     reflectance: dict[float, float] | None = None,
-    weights: str = "none",
+    uncertainty: str = "sample",
+    declared: dict[str, float] = ...,
+    weights: str | None = None,
     covariance: str = "residuals",
     minimum_norm: bool = False,
     as_printed: bool = False,

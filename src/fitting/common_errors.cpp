@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mixed/readings.hpp"
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
@@ -26,6 +27,7 @@ void require_fitting(const Model& model, std::span<const Sample> samples, std::s
   if (model.powers != 0) throw std::invalid_argument("the model has powers of the wavelength");
   if (!model.reflectance.covariance.empty())
     throw std::invalid_argument("the reflectance that f11 is divided by comes from samples of its own");
+  if (model.posterior) throw std::invalid_argument("the model has a posterior in place of a covariance");
   if (samples.empty()) throw std::invalid_argument("no samples");
   for (const Sample& sample : samples)
     if (!same_wavelength(sample.wavelength, samples[0].wavelength))
@@ -90,6 +92,46 @@ void require_covariance(const FitResult& fitted) {
   }
 }
 
+/// XᵀW² D of the columns of a block and these errors of the samples.
+MatrixXd weighted_products(const MixedColumns& columns, const PosteriorAt& at, std::span<const Sample> samples,
+                           std::span<const SampleChanges> errors, double reflectance) {
+  std::vector<Geometry> geometries;
+  for (const Sample& sample : samples) geometries.push_back(sample.geometry);
+  const bool is_f11 = feeds_f11(columns.isotropic());
+  const Eigen::VectorXd weights =
+      reading_weights(at.law, geometries,
+                      is_f11 && at.law.relative ? first_f11(at.f11, columns.mapping(), geometries) : Eigen::VectorXd());
+  const MatrixXd rows = columns.at(geometries);
+  MatrixXd effects(rows.rows(), static_cast<Index>(errors.size()));
+  for (Index row = 0; const Element& element : columns.isotropic().elements)
+    for (std::size_t s = 0; s < samples.size(); ++s, ++row) {
+      const double w = weights(static_cast<Index>(s));
+      for (std::size_t k = 0; k < errors.size(); ++k)
+        effects(row, static_cast<Index>(k)) =
+            w * w * errors[k][s].elements[element.index()] / (is_f11 ? reflectance : 1);
+    }
+  return rows.transpose() * effects;
+}
+
+/// The posterior of a model of one wavelength with more errors that all its samples share: what one of them does to the
+/// coefficients is V XᵀW² D / s².
+Posterior with_shared_errors(const Model& model, std::span<const Sample> samples,
+                             std::span<const SampleChanges> errors) {
+  PosteriorData data = model.posterior->data();
+  if (data.wavelengths.size() != 1) throw std::invalid_argument("the model is of more than one wavelength");
+  PosteriorAt& at = data.wavelengths.front();
+  const double reflectance = model.reflectance.at(at.wavelength);
+  for (std::size_t k = 0; k < errors.size(); ++k) data.errors.push_back({"instrument", 1});
+  for (std::size_t b = 0; b < at.blocks.size(); ++b) {
+    const MixedColumns columns(model.posterior->blocks()[b], data.mapping);
+    const MatrixXd effects = covariance_of_all(data, at, at.blocks[b], columns).topRows(columns.isotropic_count()) *
+                             weighted_products(columns, at, samples, errors, reflectance) / at.blocks[b].noise_variance;
+    const Eigen::MatrixXf shared = effects.cast<float>();
+    at.blocks[b].shared.insert(at.blocks[b].shared.end(), shared.data(), shared.data() + shared.size());
+  }
+  return Posterior(std::move(data));
+}
+
 }  // namespace
 
 std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::span<const Sample> samples) {
@@ -143,8 +185,13 @@ void require_measured_by(std::span<const Sample> samples, const Calibration& ins
 void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Basis& basis, Weights weights,
                     const Calibration& instrument, const std::string& name) {
   require_measured_by(samples, instrument, name);
-  require_covariance(fitted);
   const Reduction reduction(instrument.polarimeter, instrument.covariance);
+  if (fitted.model.posterior) {
+    fitted.model.posterior = with_shared_errors(fitted.model, samples, instrument_errors(reduction, samples));
+    fitted.model.provenance["instrument"] = name;
+    return;
+  }
+  require_covariance(fitted);
   add_common_errors(fitted.model, samples, instrument_errors(reduction, samples),
                     fit_weights(samples, basis, fitted, weights));
   fitted.model.provenance["instrument"] = name;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "basis/spectral.hpp"
+#include "fitting/mixed_fit.hpp"
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
@@ -26,6 +27,8 @@ constexpr Named<Weights> weights_names[] = {
     {Weights::none, "none"}, {Weights::speckle, "speckle"}, {Weights::data, "data"}, {Weights::estimated, "estimated"}};
 constexpr Named<Covariance> covariance_names[] = {{Covariance::residuals, "residuals"},
                                                   {Covariance::sandwich, "sandwich"}};
+
+constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sample"}, {Uncertainty::noise, "noise"}};
 
 constexpr double involved = 1e-6;       // least part of a free combination for which a mode is named
 constexpr std::size_t most_named = 24;  // modes in a message of one line
@@ -282,7 +285,8 @@ ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const doub
   return fit;
 }
 
-FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
+FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
+                                   Weights weights) {
   FitAccumulator accumulator(basis);
   accumulator.add(samples);
   FitResult result = accumulator.solved(options);
@@ -312,6 +316,24 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
   return result;
 }
 
+FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
+  if (options.uncertainty == Uncertainty::noise) return FitAccumulator::of_noise(samples, basis, options, weights);
+  std::string reason;
+  if (const std::string without = no_mixed_model(samples, basis, weights); !without.empty())
+    reason = without;
+  else
+    try {
+      return FitAccumulator::of_sample(samples, basis, options, weights);
+    } catch (const MixedFailure& failure) {
+      reason = failure.what();
+    }
+  FitResult result = FitAccumulator::of_noise(samples, basis, options, weights);
+  result.warnings.push_back("uncertainties are those of the noise alone: " + reason);
+  return result;
+}
+
+std::string to_string(Uncertainty uncertainty) { return name_of(uncertainty_names, uncertainty); }
+Uncertainty uncertainty_from(const std::string& name) { return value_of(uncertainty_names, name, "uncertainty"); }
 std::string to_string(Weights weights) { return name_of(weights_names, weights); }
 Weights weights_from(const std::string& name) { return value_of(weights_names, name, "weights"); }
 std::string to_string(Covariance covariance) { return name_of(covariance_names, covariance); }

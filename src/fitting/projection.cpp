@@ -80,6 +80,7 @@ Model in_published_form(const Model& model) {
   result.family = Family::germer2017;
   result.rotation = Rotation::covariant;  // no matter what it was: the isotropic family is evaluated as it is
   result.reflectance = {model.reflectance.wavelengths, model.reflectance.values};
+  result.posterior.reset();
   result.blocks.clear();
   for (Block& block : blocks(Family::germer2017, modes)) {
     FittedBlock fitted{std::move(block), {}, {}, 0, 0};

@@ -21,14 +21,26 @@ namespace mmbrdf::program {
 
 namespace {
 
+FitOptions of_sample() {
+  FitOptions options;
+  options.uncertainty = Uncertainty::sample;
+  return options;
+}
+
 struct Options {
   std::string data, output, name, attribution, instrument;
   Basis basis;
-  FitOptions fit;
+  FitOptions fit = of_sample();
   std::optional<std::vector<double>> wavelengths_nm;
-  Weights weights = Weights::none;
+  std::optional<Weights> given_weights;
   Format format = Format::text;
 };
+
+/// The mixed model estimates a scale of the speckle law; for the noise alone every row counts the same.
+Weights weights(const Options& options) {
+  return options.given_weights.value_or(options.fit.uncertainty == Uncertainty::sample ? Weights::speckle
+                                                                                       : Weights::none);
+}
 
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
 void require_valid(const Options& options) {
@@ -46,7 +58,8 @@ void sign(Model& model, const Options& options, long rows, const CommandLine& li
   model.provenance["rows"] = std::to_string(rows);
   model.provenance["command"] = line.text({options.data, options.output, options.instrument});
   model.provenance["software"] = software();
-  model.provenance["weights"] = to_string(options.weights);
+  model.provenance["weights"] = to_string(weights(options));
+  model.provenance["uncertainty"] = to_string(model.posterior ? Uncertainty::sample : Uncertainty::noise);
   if (options.fit.covariance == Covariance::sandwich) model.provenance["covariance"] = "sandwich";
   if (!options.attribution.empty()) model.provenance["attribution"] = options.attribution;
 }
@@ -77,10 +90,10 @@ void note_free_combinations(const FitResult& result) {
   }
 }
 
-/// Weights and sandwiches need a first fit, and with it all samples in memory, and so do an instrument's errors.
+/// The mixed model, weights and sandwiches need a first fit, and with it all samples in memory, and so do an instrument's errors.
 bool streams(const Options& options) {
-  return options.weights == Weights::none && options.fit.covariance == Covariance::residuals &&
-         options.instrument.empty();
+  return options.fit.uncertainty == Uncertainty::noise && weights(options) == Weights::none &&
+         options.fit.covariance == Covariance::residuals && options.instrument.empty();
 }
 
 /// Says which option helps, where the library only refuses.
@@ -99,7 +112,7 @@ void add_instrument(FitResult& result, std::span<const Sample> samples, const Op
   const std::string name = base_name(options.instrument);
   heed(judged(instrument), name);
   require_instrument_of(samples, instrument, name);
-  mmbrdf::add_instrument(result, samples, options.basis, options.weights, instrument, name);
+  mmbrdf::add_instrument(result, samples, options.basis, weights(options), instrument, name);
 }
 
 FitResult fitted(const Options& options, long& rows) {
@@ -114,7 +127,7 @@ FitResult fitted(const Options& options, long& rows) {
   });
   try {
     if (streams(options)) return accumulator.solve(options.fit);
-    FitResult result = fit(all, options.basis, options.fit, options.weights);
+    FitResult result = fit(all, options.basis, options.fit, weights(options));
     if (!options.instrument.empty()) add_instrument(result, all, options);
     return result;
   } catch (const std::invalid_argument& error) {
@@ -136,9 +149,10 @@ void fit_data(const Options& options, const CommandLine& line) {
   sign(result.model, options, rows, line);
   record_noise(result.model, result);
   save_or_warn(result.model, options);
-  print({.data = data_name(options.data), .weights = to_string(options.weights), .rows = rows, .result = result},
+  print({.data = data_name(options.data), .weights = to_string(weights(options)), .rows = rows, .result = result},
         options.format);
-  note_free_combinations(result);
+  for (const std::string& warning : result.warnings) warn(warning);
+  if (!result.model.posterior) note_free_combinations(result);
 }
 
 constexpr const char* footer =
@@ -169,7 +183,13 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Fit these wavelengths only, in nm");
   add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,NM:R...]",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
-  add_weights_option(app, o->weights);
+  add_option(app, "--uncertainty", o->fit.uncertainty, uncertainty_from, "NAME",
+             "sample: holds for a real sample, its anisotropy and\nwhat the basis misses included; noise: of the noise "
+             "alone [sample]");
+  add_option(app, "--declare", o->fit.declared, declared_from, "NAME=U[,NAME=U...]",
+             "Errors that all rows share: scale=0.3%, source=0.5deg,\nreceiver=0.5deg (of the arms); standard "
+             "uncertainties [none]");
+  add_weights_option(app, o->given_weights, "speckle; none for the noise alone");
   add_option(app, "--covariance", o->fit.covariance, covariance_from, "NAME",
              "residuals, or sandwich: for noise that is not as the weights say [residuals]");
   add_file(app, "--instrument", o->instrument, "INSTRUMENT.json",

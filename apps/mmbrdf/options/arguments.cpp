@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string_view>
 
 namespace mmbrdf::program {
 
@@ -133,6 +135,36 @@ ReflectanceTable reflectance_from(const std::string& text) {
   return table;
 }
 
+namespace {
+
+/// A number followed by a unit.
+double measured(const std::string& text, std::string_view unit, const std::string& whole) {
+  double value = 0;
+  if (!text.ends_with(unit) || !read(text.substr(0, text.size() - unit.size()), value) ||
+      !(value >= 0 && std::isfinite(value)))
+    throw wrong(whole, "scale=0.3%, source=0.5deg or receiver=0.5deg");
+  return value;
+}
+
+}  // namespace
+
+DeclaredErrors declared_from(const std::string& text) {
+  DeclaredErrors declared;
+  std::set<std::string> given;
+  for (const std::string& part : split(text, ',')) {
+    const std::size_t equals = std::min(part.find('='), part.size());
+    const std::string name = part.substr(0, equals), value = part.substr(std::min(equals + 1, part.size()));
+    if (!given.insert(name).second) throw std::invalid_argument("\"" + part + "\": this error is given twice");
+    if (name == "scale")
+      declared.scale = value.ends_with('%') ? measured(value, "%", part) / 100 : measured(value, "", part);
+    else if (name == "source" || name == "receiver")
+      (name == "source" ? declared.source : declared.receiver) = radians(measured(value, "deg", part));
+    else
+      throw wrong(part, "scale=0.3%, source=0.5deg or receiver=0.5deg");
+  }
+  return declared;
+}
+
 Grid grid_from(const std::string& text) {
   if (text == "germer2017") return {};
   const std::string prefix = "random:";
@@ -187,13 +219,6 @@ void add_basis_option(CLI::App& app, Basis& basis) {
   add_option(app, "--basis", basis.family, family_from, "NAME", "isotropic, germer2017 or anisotropic [isotropic]");
   add_option(app, "--orders", basis.orders, orders_from, "N,M",
              "Highest radial order of f11 and of the other elements [7,4]");
-}
-
-void add_weights_option(CLI::App& app, Weights& weights) {
-  add_option(app, "--weights", weights, weights_from, "NAME",
-             "none, speckle: cos(theta_r)/cos(theta_i), data: 1/u^2 of the\nsamples' own uncertainties, or estimated "
-             "from what an\n"
-             "unweighted fit leaves of 14 and 41 [none]");
 }
 
 }  // namespace mmbrdf::program

@@ -43,6 +43,9 @@ std::vector<double> range_from(const std::string& text);     ///< FROM:TO:STEP, 
 Orders orders_from(const std::string& text);                 ///< F11,OTHER
 ReflectanceTable reflectance_from(const std::string& text);  ///< NM:R[,NM:R…] in any order, as reflectance_line()
 
+/// scale=0.3%,source=0.5deg,receiver=0.5deg, each once at most: standard uncertainties. A scale may be a number too.
+DeclaredErrors declared_from(const std::string& text);
+
 /// germer2017 or random:N
 struct Grid {
   int random = 0;  ///< number of random pairs of directions; 0: the published grid
@@ -87,7 +90,13 @@ Option add_option(CLI::App& app, const std::string& names, Target& target, T (*p
 /// --basis and --orders
 void add_basis_option(CLI::App& app, Basis& basis);
 
-/// --weights
-void add_weights_option(CLI::App& app, Weights& weights);
+/// --weights; `standard` is what holds without.
+template <class Target>
+void add_weights_option(CLI::App& app, Target& weights, const std::string& standard = "none") {
+  add_option(app, "--weights", weights, weights_from, "NAME",
+             "none, speckle: cos(theta_r)/cos(theta_i), data: 1/u^2 of the\nsamples' own uncertainties, or estimated "
+             "from what an\nunweighted fit leaves of 14 and 41 [" +
+                 standard + "]");
+}
 
 }  // namespace mmbrdf::program

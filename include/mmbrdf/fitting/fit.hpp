@@ -60,12 +60,22 @@ enum class Covariance {
              ///< the weights say. Errors of different elements count as independent. White 1980.
 };
 
-/// "none", "speckle", "data", "estimated"; "residuals", "sandwich". The opposites throw std::invalid_argument for
-/// another name.
+/// What the uncertainties of a fit hold for.
+enum class Uncertainty {
+  sample,  ///< a real sample: the mixed model of theory 8. Its modes of generous order, its anisotropy and the noise are
+           ///< estimated together, whatever the rank of the data; the evaluated coefficients are the nearest to the
+           ///< posterior mean. Of bases that are isotropic.
+  noise,   ///< the noise alone, as if the sample were isotropic and the basis without end: least squares
+};
+
+/// "none", "speckle", "data", "estimated"; "residuals", "sandwich"; "sample", "noise". The opposites throw
+/// std::invalid_argument for another name.
 std::string to_string(Weights weights);
 std::string to_string(Covariance covariance);
+std::string to_string(Uncertainty uncertainty);
 Weights weights_from(const std::string& name);
 Covariance covariance_from(const std::string& name);
+Uncertainty uncertainty_from(const std::string& name);
 
 struct FitOptions {
   std::optional<int> powers;  ///< highest power of the wavelength; default 0 for one wavelength, 1 for several
@@ -77,6 +87,9 @@ struct FitOptions {
   /// published grid, whose incidence at 0.001 degrees is as good as 0, is found not to determine order 11.
   double rank_tolerance = 1e-8;
   Covariance covariance = Covariance::residuals;  ///< sandwich needs the samples again: only in fit()
+  /// sample: only in fit(). Where it cannot be had the fit is as for noise, and FitResult::warnings says why.
+  Uncertainty uncertainty = Uncertainty::noise;
+  DeclaredErrors declared{};  ///< of a fit of the sample
 };
 
 /// How well one matrix element is fitted. An element without modes is 0 in the model, and its samples are the
@@ -94,7 +107,8 @@ struct FitResult {
   std::array<ElementFit, 16> elements;  ///< in row-major order
   std::vector<Mueller> residuals;  ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
                                    ///< Only from fit(); a FitAccumulator keeps no samples.
-  std::vector<NoiseEstimate> noise;  ///< of Weights::estimated: the law at each fitted wavelength; else empty
+  std::vector<NoiseEstimate> noise;   ///< of Weights::estimated: the law at each fitted wavelength; else empty
+  std::vector<std::string> warnings;  ///< a line each; only from fit()
 };
 
 /// Root mean square over the 15 normalised elements.
@@ -150,6 +164,9 @@ class FitAccumulator {
   static std::shared_ptr<const std::vector<Design>> designs(std::span<const Block> blocks, Family family);
   AtWavelength& slot(double wavelength);
   friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);
+  static FitResult of_noise(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
+                            Weights weights);
+  static FitResult of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options, Weights weights);
   FitResult solved(const FitOptions& options) const;
   Solution block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance, double rank_tolerance,
                           SvdCache& known) const;

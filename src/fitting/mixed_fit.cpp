@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fitting/mixed_fit.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include "basis/rows.hpp"
+#include "basis/spectral.hpp"
+#include "fitting/arm_errors.hpp"
+#include "mixed/readings.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "numerics/dense.hpp"
+#include "numerics/eigen_index.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::ptrdiff_t least_readings = 30;  // at a wavelength: sixty in random directions are known to do
+constexpr double first_tolerance = 1e-10;      // of the rank of the fits of a first pass: it needs none in full
+constexpr double least_relative_f11 = 1e-2;    // of the mean: darker readings are not weighed by what they happen to be
+
+std::vector<Geometry> geometries_of(std::span<const Sample> samples) {
+  std::vector<Geometry> result;
+  for (const Sample& sample : samples) result.push_back(sample.geometry);
+  return result;
+}
+
+/// f11 of order first_order, weighed as if the readings were without noise.
+std::vector<double> first_f11_fit(std::span<const Sample> samples, DiscMapping mapping, const ReadingLaw& law,
+                                  double reflectance) {
+  const Rows columns(blocks(Family::isotropic, {first_order, 0}).front().modes, Family::isotropic);
+  double mean = 0;
+  for (const Sample& sample : samples) mean += sample.f11 / reflectance / static_cast<double>(samples.size());
+  const VectorXd weights = reading_weights(law, geometries_of(samples), {});
+  LeastSquares rows(static_cast<int>(columns.columns()));
+  std::vector<double> row(columns.columns());
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const auto& [i, r] = samples[s].geometry;
+    std::ranges::fill(row, 0);
+    columns.add(0, functions_at(i, first_order, mapping), functions_at(r, first_order, mapping), row.data());
+    const double f = samples[s].f11 / reflectance,
+                 w = weights(static_cast<Index>(s)) / (law.relative ? std::max(f, least_relative_f11 * mean) : 1);
+    rows.add(row, std::array{f}, std::array{w * w});
+  }
+  return rows.solve(first_tolerance).x;
+}
+
+/// w² of each element.
+std::vector<Mueller> squared_weights(std::span<const Sample> samples, DiscMapping mapping, const ReadingLaw& law,
+                                     std::span<const double> f11) {
+  const std::vector<Geometry> geometries = geometries_of(samples);
+  const VectorXd f = law.relative ? first_f11(f11, mapping, geometries) : VectorXd::Ones(index(samples.size()));
+  const VectorXd w = reading_weights(law, geometries, {});
+  std::vector<Mueller> result(samples.size());
+  for (Index s = 0; s < w.size(); ++s) {
+    if (!(f(s) > 0))
+      throw std::invalid_argument("sample " + std::to_string(s + 1) + ": f11 of the first fit is " + shortest(f(s)));
+    Mueller& weights = result[static_cast<std::size_t>(s)];
+    weights.elements.fill(w(s) * w(s));
+    weights(0, 0) /= f(s) * f(s);
+  }
+  return result;
+}
+
+/// Distinct directions with their counts, in rising order.
+std::vector<ReadingDirections> directions_of(std::span<const Sample> samples) {
+  std::map<std::array<float, 4>, std::uint32_t> counts;
+  for (const Sample& sample : samples) {
+    const auto& [i, r] = sample.geometry;
+    ++counts[{static_cast<float>(i.theta), static_cast<float>(i.phi), static_cast<float>(r.theta),
+              static_cast<float>(r.phi)}];
+  }
+  std::vector<ReadingDirections> result;
+  for (const auto& [angles, count] : counts) result.push_back({angles, count});
+  return result;
+}
+
+/// What becomes of a series.
+struct Fitted {
+  const Series* series;
+  FirstPass first;
+  std::vector<BlockFit> blocks;
+};
+
+/// Calls work(i) for each i on all cores; throws the first of what they throw.
+void in_any_order(std::size_t count, const auto& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr thrown;
+  std::mutex guard;
+  const auto some = [&] {
+    for (std::size_t i; (i = next++) < count;) try {
+        work(i);
+      } catch (...) {
+        const std::scoped_lock lock(guard);
+        if (!thrown) thrown = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> others;
+    const std::size_t threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+    for (std::size_t t = 1; t < threads; ++t) others.emplace_back(some);
+    some();
+  }
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+/// Σ_p λ^p a_p through the coefficients at each wavelength, all with the same weight; power after power.
+std::vector<double> through(const std::map<double, Fitted>& wavelengths, std::size_t block, int powers) {
+  MatrixXd rows(index(wavelengths.size()), powers + 1),
+      values(rows.rows(), index(wavelengths.begin()->second.blocks[block].coefficients.size()));
+  Index k = 0;
+  for (const auto& [wavelength, at] : wavelengths) {
+    const std::vector<double> of_wavelength = powers_of(wavelength, powers);
+    rows.row(k) = Eigen::Map<const VectorXd>(of_wavelength.data(), rows.cols());
+    values.row(k++) = Eigen::Map<const VectorXd>(at.blocks[block].coefficients.data(), values.cols());
+  }
+  const MatrixXd line = dense::shortest_least_squares(rows, values).transpose();  // modes × powers
+  return {line.data(), line.data() + line.size()};
+}
+
+/// What is thrown within becomes the reason why there is no mixed model.
+auto tried(const auto& work) {
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    throw MixedFailure(error.what());
+  }
+}
+
+/// The samples by wavelength, with the laws that the weights stand for.
+std::map<double, Series> series_of(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
+                                   Weights weights) {
+  std::map<double, Series> result;
+  const std::vector<double> nodes = wavelengths(samples);
+  for (const Sample& sample : samples)
+    result[nodes[wavelength_index(nodes, sample.wavelength)]].samples.push_back(sample);
+  std::vector<NoiseEstimate> noise;
+  if (weights == Weights::estimated) {
+    FitOptions plain = options;
+    plain.uncertainty = Uncertainty::noise;
+    noise = fit(samples, basis, plain, weights).noise;
+  }
+  for (auto& [wavelength, one] : result) {
+    if (weights == Weights::none) one.law = {0, 0, false};
+    if (weights != Weights::estimated) continue;
+    const NoiseLaw& law = noise[wavelength_index(nodes, wavelength)].law;
+    one.law = {law.incident_exponent, law.reflected_exponent, true};
+  }
+  return result;
+}
+
+}  // namespace
+
+Orders generous(const Orders& evaluated) {
+  return {std::max(evaluated.f11, generous_orders.f11), std::max(evaluated.other, generous_orders.other)};
+}
+
+FirstPass first_pass(std::span<const Sample> samples, const Basis& basis, const ReadingLaw& law, double reflectance) {
+  FirstPass result{reflectance, first_f11_fit(samples, basis.mapping, law, reflectance), {}};
+  FitAccumulator evaluated(basis);
+  evaluated.add(samples, squared_weights(samples, basis.mapping, law, result.f11));
+  FitOptions options;
+  options.powers = 0;
+  options.reflectance = ReflectanceTable{};
+  options.minimum_norm = true;
+  options.rank_tolerance = first_tolerance;
+  result.model = evaluated.solve(options).model;
+  return result;
+}
+
+Gram sums_of(const MixedColumns& columns, std::span<const Sample> samples, const FirstPass& first,
+             const ReadingLaw& law) {
+  Gram result(columns.size(), static_cast<Index>(declared_errors));
+  const bool is_f11 = feeds_f11(columns.isotropic());
+  const double divisor = is_f11 ? first.reflectance : 1;
+  const PreparedModel model = prepare(first.model, samples.front().wavelength);
+  for (std::size_t begin = 0; begin < samples.size(); begin += readings_at_once) {
+    const auto some = samples.subspan(begin, std::min(readings_at_once, samples.size() - begin));
+    const std::vector<Geometry> geometries = geometries_of(some);
+    const Index count = index(some.size());
+    const bool relative = is_f11 && law.relative;
+    const VectorXd weights =
+        reading_weights(law, geometries, relative ? first_f11(first.f11, columns.mapping(), geometries) : VectorXd());
+    const ArmErrors arms = arm_errors(model, geometries);
+    MatrixXd rows = columns.at(geometries), errors = MatrixXd::Zero(rows.rows(), result.d.cols());
+    VectorXd values(rows.rows());
+    for (Index at = 0; const Element& element : columns.isotropic().elements) {
+      const std::size_t e = element.index();
+      for (Index s = 0; s < count; ++s, ++at) {
+        const auto sample = static_cast<std::size_t>(s);
+        values(at) = (is_f11 ? some[sample].f11 : some[sample].normalized.elements[e]) / divisor;
+        if (is_f11) errors(at, 0) = model.f11(geometries[sample]) / divisor;
+        errors(at, 1) = arms.source[sample].elements[e] / divisor;
+        errors(at, 2) = arms.receiver[sample].elements[e] / divisor;
+      }
+    }
+    const VectorXd w = weights.replicate(columns.elements(), 1);
+    rows.array().colwise() *= w.array();
+    errors.array().colwise() *= w.array();
+    values.array() *= w.array();
+    result.add(rows, values, errors);
+  }
+  return result;
+}
+
+std::vector<Mueller> series_weights(const Series& series, const Basis& basis) {
+  const auto& [samples, law, reflectance] = series;
+  return squared_weights(samples, basis.mapping, law, first_f11_fit(samples, basis.mapping, law, reflectance));
+}
+
+std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, Weights weights) {
+  if (basis.family != Family::isotropic) return "the " + to_string(basis.family) + " basis has no mixed model";
+  if (weights == Weights::data) return "weights of the data have no law";
+  for (const double wavelength : wavelengths(samples)) {
+    const auto count = std::ranges::count_if(
+        samples, [&](const Sample& sample) { return same_wavelength(sample.wavelength, wavelength); });
+    if (count < least_readings)
+      return std::to_string(count) + " samples at " + shortest(in_nanometres(wavelength)) + " nm, at least " +
+             std::to_string(least_readings) + " are needed";
+  }
+  return "";
+}
+
+MixedFit mixed_fit(const std::map<double, Series>& series, const Basis& basis, int powers,
+                   const DeclaredErrors& declared) {
+  PosteriorData data{generous(basis.orders), basis.mapping, shared_errors(declared), {}, {}};
+  const std::vector<Block> evaluated = blocks(basis.family, basis.orders);
+  std::vector<MixedColumns> columns;
+  for (const Block& block : blocks(Family::isotropic, data.orders)) columns.emplace_back(block, basis.mapping);
+  std::map<double, Fitted> wavelengths;
+  std::vector<Fitted*> list;
+  for (const auto& [wavelength, one] : series) {
+    Fitted& at = wavelengths[wavelength];
+    at = {&one, first_pass(one.samples, basis, one.law, one.reflectance), std::vector<BlockFit>(columns.size())};
+    list.push_back(&at);
+  }
+  in_any_order(list.size() * columns.size(), [&](std::size_t i) {
+    Fitted& at = *list[i / columns.size()];
+    const std::size_t b = columns.size() - 1 - i % columns.size();
+    at.blocks[b] =
+        fit_block(columns[b], sums_of(columns[b], at.series->samples, at.first, at.series->law), evaluated[b]);
+  });
+  for (auto& [wavelength, at] : wavelengths) {
+    PosteriorAt known{wavelength, at.series->law, at.first.f11, 0, {}};
+    for (BlockFit& block : at.blocks) known.blocks.push_back(std::move(block.posterior));
+    const std::vector<ReadingDirections> directions = directions_of(at.series->samples);
+    if (directions.size() > most_directions) {
+      for (std::size_t b = 0; b < columns.size(); ++b) round_covariance(known.blocks[b], at.blocks[b].covariance);
+    } else {
+      known.readings = static_cast<std::size_t>(std::ranges::find(data.readings, directions) - data.readings.begin());
+      if (known.readings == data.readings.size()) data.readings.push_back(directions);
+    }
+    data.wavelengths.push_back(std::move(known));
+  }
+  std::vector<std::vector<double>> coefficients;
+  for (std::size_t b = 0; b < columns.size(); ++b) coefficients.push_back(through(wavelengths, b, powers));
+  return {Posterior(std::move(data)), std::move(coefficients)};
+}
+
+// ---- a fit of the sample ----
+
+/// Least squares with the weights of the mixed model says how well the data fit; the coefficients are those of the mixed
+/// model.
+FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options,
+                                    Weights weights) {
+  options.minimum_norm = true;
+  std::map<double, Series> series = series_of(samples, basis, options, weights);
+  FitResult result;
+  for (const bool scaled : {false, true}) {  // f11 is divided by a reflectance that may be its own
+    FitAccumulator accumulator(basis);
+    for (auto& [wavelength, one] : series) {
+      if (scaled) one.reflectance = result.model.reflectance.at(wavelength);
+      accumulator.add(one.samples, tried([&, &one = one] { return series_weights(one, basis); }));
+    }
+    result = accumulator.solved(options);
+    if (!scaled && !result.model.reflectance.values.empty()) continue;
+    const MixedFit mixed = tried([&] { return mixed_fit(series, basis, result.model.powers, options.declared); });
+    for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
+      FittedBlock& fitted = result.model.blocks[b];
+      fitted.coefficients = mixed.coefficients[b];
+      fitted.covariance.clear();
+      for (const Element& element : fitted.block.elements)
+        result.elements[element.index()] =
+            accumulator.element_fit(element.index(), fitted.coefficients, result.model.reflectance);
+    }
+    result.model.posterior = mixed.posterior;
+    result.model.reflectance.covariance.clear();
+    result.model.reflectance.covariance_with_f11.clear();
+    break;
+  }
+  result.residuals = residuals(result.model, samples);
+  return result;
+}
+
+}  // namespace mmbrdf

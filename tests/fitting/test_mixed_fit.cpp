@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The mixed model of the published measurements against an independent implementation in numpy (tests/data).
+#include "fitting/mixed_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "given/published_samples.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using nlohmann::json;
+
+const char* const grid = "PTFE.data.csv";
+const char* const random_set = "PTFE.data.random.csv";
+
+json golden() {
+  std::ifstream file(MMBRDF_SOURCE_DIR "/tests/data/mixed_model.json");
+  return json::parse(file);
+}
+
+/// Blocks as the reference names them, with the order of its elements.
+struct Named {
+  const char* name;
+  std::vector<int> elements;  // 11, 12, …
+};
+const std::vector<Named> named = {
+    {"11", {11}}, {"g", {12, 13, 21, 31}}, {"14", {14, 41}}, {"uv", {22, 33, 32, 23}}, {"h", {42, 43, 24, 34}},
+    {"44", {44}}};
+
+std::vector<Geometry> geometries(const json& list) {
+  std::vector<Geometry> result;
+  for (const json& g : list) result.push_back({direction_from_degrees(g[0], g[1]), direction_from_degrees(g[2], g[3])});
+  return result;
+}
+
+/// Rows of all isotropic modes at some geometries, with elements in the order of the reference.
+MatrixXd rows(const MixedColumns& columns, const Named& block, const std::vector<Geometry>& at) {
+  const MatrixXd ours = columns.isotropic_at(at);
+  const auto count = static_cast<Index>(at.size());
+  MatrixXd result(ours.rows(), ours.cols());
+  for (Index e = 0; e < columns.elements(); ++e) {
+    const int wanted = block.elements[static_cast<std::size_t>(e)];
+    const auto found = std::ranges::find(columns.isotropic().elements, Element{wanted / 10 - 1, wanted % 10 - 1});
+    result.middleRows(e * count, count) =
+        ours.middleRows((found - columns.isotropic().elements.begin()) * count, count);
+  }
+  return result;
+}
+
+VectorXd numbers(const json& list) {
+  std::vector<double> flat;
+  for (const json& item : list)
+    if (item.is_array())
+      for (const json& x : item) flat.push_back(x);
+    else
+      flat.push_back(item);
+  return Eigen::Map<VectorXd>(flat.data(), static_cast<Index>(flat.size()));
+}
+
+/// Largest |difference| less what the last digit that is given hides, over the scale of each.
+double farthest(const VectorXd& found, const VectorXd& expected, const VectorXd& scale, double digit) {
+  return ((found - expected).cwiseAbs().array() - digit).cwiseMax(0).cwiseQuotient(scale.array()).maxCoeff();
+}
+double farthest(const VectorXd& found, const VectorXd& expected, double digit) {
+  return farthest(found, expected, expected.cwiseAbs().cwiseMax(digit), digit);
+}
+
+struct OfBlock {
+  MixedColumns columns;
+  Gram gram;
+  Block evaluated;
+};
+
+std::vector<Sample> samples_of(const char* file) {
+  return at_wavelengths(read_samples(published(file)), std::array{0.532});
+}
+
+std::vector<OfBlock> sums(const std::vector<Sample>& samples) {
+  const Basis basis;
+  const ReadingLaw law;
+  const FirstPass first = first_pass(samples, basis, law, 1);
+  const std::vector<Block> evaluated = blocks(basis.family, basis.orders),
+                           behind = blocks(Family::isotropic, generous(basis.orders));
+  std::vector<OfBlock> result;
+  for (std::size_t b = 0; b < behind.size(); ++b) {
+    const MixedColumns columns(behind[b], basis.mapping);
+    result.push_back({columns, sums_of(columns, samples, first, law), evaluated[b]});
+  }
+  return result;
+}
+
+/// What a fit says at the golden geometries.
+struct Said {
+  VectorXd value, mean, posterior, projection;
+  MatrixXd shared;  // a column for each declared error of size 1
+};
+Said said(const OfBlock& block, const BlockFit& fit, const MatrixXd& h) {
+  const auto n = static_cast<Index>(fit.posterior.mean.size());
+  const std::vector<Index> kept = columns_of(block.evaluated, block.columns.isotropic());
+  Said result;
+  result.value =
+      h(Eigen::all, kept) * Eigen::Map<const VectorXd>(fit.coefficients.data(), static_cast<Index>(kept.size()));
+  result.mean = h * Eigen::Map<const VectorXd>(fit.posterior.mean.data(), n);
+  result.posterior = (h * fit.covariance).cwiseProduct(h).rowwise().sum().cwiseMax(0).cwiseSqrt();
+  result.projection = (result.value - result.mean).cwiseAbs();
+  result.shared = h * Eigen::Map<const Eigen::MatrixXf>(fit.posterior.shared.data(), n, 3).cast<double>();
+  return result;
+}
+
+TEST(MixedFit, AgreesWithTheReferenceAtFixedVariances) {
+  if (published(grid).empty()) GTEST_SKIP() << absent(grid);
+  const json all = golden();
+  const std::vector<Geometry> at = geometries(all["geometries"]);
+  const std::vector<OfBlock> blocks = sums(samples_of(grid));
+  for (std::size_t b = 0; b < named.size(); ++b) {
+    const json& expected = all["fixed"][named[b].name];
+    const OfBlock& block = blocks[b];
+    const Prior prior = prior_of(block.columns);
+    const Parts parts = parts_of(block.gram.g, block.columns.calibration_count());
+    Variances variances(prior.mean.size() + 1);
+    variances << prior.mean, std::log(3e-5);
+    const Evidence found = evidence(block.gram, parts, prior, variances);
+    SCOPED_TRACE(named[b].name);
+    EXPECT_NEAR(found.alone / expected["log_evidence"].get<double>(), 1, 1e-8);
+    EXPECT_EQ(block.gram.n, expected["n"]);
+    EXPECT_NEAR(block.gram.yy, expected["yy"], 1e-6);
+    VectorXd gradient(variances.size());  // by name: theirs come in another order
+    std::map<std::string, std::string> theirs{{"free_slope", "free slope"}, {"calibration", "cal"}};
+    for (Index h = 0; h < prior.mean.size(); ++h) {
+      const std::string& name = prior.names[static_cast<std::size_t>(h)];
+      gradient(h) = expected["gradient"][theirs.contains(name) ? theirs[name] : name];
+    }
+    gradient(prior.mean.size()) = expected["gradient"]["ln s2"];
+    EXPECT_LT(farthest(found.gradient, gradient, 1e-5), 1e-5);
+    const Said here = said(block, fit_block_at(block.columns, block.gram, block.evaluated, variances),
+                           rows(block.columns, named[b], at));
+    const VectorXd u = numbers(expected["u_posterior"]);
+    EXPECT_LT(farthest(here.mean, numbers(expected["mean"]), 1e-8), 1e-6);
+    EXPECT_LT(farthest(here.value, numbers(expected["value"]), 1e-8), 1e-6);
+    EXPECT_LT(farthest(here.posterior, u, 1e-8), 1e-5);
+    const std::array<const char*, 3> errors{"scale", "source arm", "receiver arm"};
+    for (Index e = 0; e < 3; ++e) {
+      const json::const_iterator effect = expected["declared"].find(errors[static_cast<std::size_t>(e)]);
+      if (effect == expected["declared"].end()) continue;
+      EXPECT_LT(farthest(here.shared.col(e), numbers(*effect), 1e-6), 1e-5) << effect.key();
+    }
+  }
+}
+
+void expect_estimate(const char* file, const char* series) {
+  const json all = golden();
+  const std::vector<Geometry> at = geometries(all["geometries"]);
+  const std::vector<OfBlock> blocks = sums(samples_of(file));
+  for (std::size_t b = 0; b < named.size(); ++b) {
+    SCOPED_TRACE(std::string(series) + " " + named[b].name);
+    const json& expected = all["estimated"][named[b].name][series];
+    const OfBlock& block = blocks[b];
+    EXPECT_EQ(block.columns.isotropic_count(), expected["columns"][0]);
+    EXPECT_EQ(block.columns.size(), std::accumulate(expected["columns"].begin(), expected["columns"].end(), 0,
+                                                    [](int sum, const json& x) { return sum + x.get<int>(); }));
+    const BlockFit fit = fit_block(block.columns, block.gram, block.evaluated);
+    EXPECT_GT(fit.posterior.evidence, expected["objective"].get<double>() - 0.05);
+    EXPECT_NEAR(std::sqrt(fit.posterior.noise_variance) / expected["noise"].get<double>(), 1, 1e-3);
+    EXPECT_LT(fit.evaluations, 20);
+    const Said here = said(block, fit, rows(block.columns, named[b], at));
+    const VectorXd u = numbers(expected["u"]), posterior = numbers(expected["posterior"]);
+    EXPECT_LT(farthest(here.mean, numbers(expected["mean"]), u.cwiseMax(1e-6), 1e-6), 0.03);
+    EXPECT_LT(farthest(here.value, numbers(expected["value"]), u.cwiseMax(1e-6), 1e-6), 0.03);
+    EXPECT_LT(farthest(here.posterior, posterior, 1e-6), 0.02);
+    EXPECT_LT(farthest(here.projection, numbers(expected["projection"]), 1e-5), 0.03 + 1e-3);
+    const VectorXd arms = here.shared.rightCols(2).rowwise().norm() * radians(0.5);
+    EXPECT_LT(farthest(arms, numbers(expected["declared arms"]), 1e-5), 0.03);
+  }
+}
+
+TEST(MixedFit, FindsTheVariancesOfTheReferenceForThePublishedGrid) {
+  if (published(grid).empty()) GTEST_SKIP() << absent(grid);
+  expect_estimate(grid, "grid");
+}
+
+TEST(MixedFit, FindsTheVariancesOfTheReferenceForThePublishedRandomSet) {
+  if (published(random_set).empty()) GTEST_SKIP() << absent(random_set);
+  expect_estimate(random_set, "random");
+}
+
+TEST(MixedFit, SumsOfPartsOfASeriesAddUp) {
+  if (published(grid).empty()) GTEST_SKIP() << absent(grid);
+  const std::vector<Sample> samples = samples_of(grid);
+  const Basis basis;
+  const ReadingLaw law;
+  const FirstPass first = first_pass(samples, basis, law, 1);
+  const MixedColumns columns(blocks(Family::isotropic, generous_orders).front(), basis.mapping);
+  const std::span<const Sample> all(samples);
+  const Gram whole = sums_of(columns, all, first, law);
+  Gram merged = sums_of(columns, all.first(700), first, law);
+  merged.merge(sums_of(columns, all.subspan(700), first, law));
+  const Block evaluated = blocks(basis.family, basis.orders).front();
+  const BlockPosterior a = fit_block(columns, whole, evaluated).posterior,
+                       b = fit_block(columns, merged, evaluated).posterior;
+  EXPECT_NEAR(a.evidence, b.evidence, 1e-6);  // the search ends where a step would gain 1e-8
+  for (std::size_t h = 0; h < a.hyperparameters.size(); ++h)
+    EXPECT_NEAR(a.hyperparameters[h], b.hyperparameters[h], 1e-5);
+}
+
+}  // namespace
+}  // namespace mmbrdf
