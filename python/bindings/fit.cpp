@@ -104,6 +104,16 @@ py::list noise_of(const Fitted& fitted) {
   return result;
 }
 
+py::dict reduced_chi_squared(const Fitted& fitted) {
+  const auto [f11, others] = chi_squared_per_dof(fitted.result);
+  py::dict result;
+  result["f11"] = f11;
+  result["others"] = others;
+  for (std::size_t b = 0; b < fitted.result.solutions.size(); ++b)
+    result[fitted.result.model.blocks[b].block.name.c_str()] = fitted.result.solutions[b].variance();
+  return result;
+}
+
 std::string representation(const Fitted& fitted) {
   return "<mmbrdf.FitResult: " + std::to_string(fitted.result.elements[0].rows) + " samples, rms of f11 " +
          formatted("{:.3g}", fitted.result.elements[0].rms) + ", of the other elements " +
@@ -130,6 +140,7 @@ FittedPointer unpickled(const py::tuple& state) {
               .elements = from_bits<Elements>("FitResult", state[2]).at(0),
               .residuals = from_bits<Mueller>("FitResult", state[3]),
               .noise = from_bits<NoiseEstimate>("FitResult", state[4]),
+              .weights = weights_from(state[6].cast<std::string>()),
               .warnings = state[7].cast<std::vector<std::string>>()};
   for (const py::handle one : state[1]) {
     const auto s = one.cast<py::tuple>();
@@ -155,6 +166,9 @@ void bind_result(py::module_& m) {
           "Root mean square over the 15 normalised elements")
       .def_property_readonly(
           "warnings", [](const Fitted& f) { return f.result.warnings; }, "What there is to heed: a line each")
+      .def_property_readonly("chi_squared_per_dof", reduced_chi_squared,
+                             "Of 'f11', of 'others', the 15 other elements together, and of each block by its name: "
+                             "near 1 if\nweights='data' and the uncertainties are right. 0 without degrees of freedom")
       .def_property_readonly("noise", noise_of, "With weights='estimated': the law found at each wavelength, as dicts")
       .def("__repr__", representation)
       .def(py::pickle(&pickled, &unpickled));

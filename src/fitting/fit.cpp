@@ -108,6 +108,18 @@ double polarization_rms(const FitResult& result) {
   return rows > 0 ? std::sqrt(squares / rows) : 0;
 }
 
+ReducedChiSquared chi_squared_per_dof(const FitResult& result) {
+  std::array<double, 2> squares{}, freedom{};  // of f11, of the others
+  for (std::size_t e = 0; e < 16; ++e) {
+    squares[e > 0] += result.elements[e].chi_squared;
+    freedom[e > 0] += static_cast<double>(result.elements[e].rows);
+  }
+  for (std::size_t b = 0; b < result.solutions.size(); ++b)
+    freedom[result.model.blocks[b].block.elements.front().index() > 0] -= result.solutions[b].rank;
+  const auto ratio = [&](std::size_t part) { return freedom[part] > 0 ? squares[part] / freedom[part] : 0; };
+  return {ratio(0), ratio(1)};
+}
+
 FitAccumulator::FitAccumulator(const Basis& basis)
     : basis_(basis), blocks_(blocks(basis.family, basis.orders)), designs_(designs(blocks_, basis.family)) {
   require_valid(basis.family, basis.rotation);
@@ -300,6 +312,7 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
     result = accumulator.solved(options);
     result.noise = std::move(noise);
   }
+  result.weights = weights;
   result.residuals = residuals(result.model, samples);
   if (options.covariance == Covariance::sandwich) {
     list.resize(samples.size(), ones());

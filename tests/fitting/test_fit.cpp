@@ -56,6 +56,16 @@ std::vector<Sample> samples_of(const Model& model, double speckle = 0, unsigned 
   return simulate(model, model.validity.wavelengths, germer2017_grid(), speckle, seed);
 }
 
+/// With the uncertainties of the speckle law stated.
+std::vector<Sample> with_uncertainties(std::vector<Sample> samples, double speckle) {
+  for (Sample& s : samples) {
+    const double u = speckle * std::sqrt(std::cos(s.geometry.incident.theta) / std::cos(s.geometry.reflected.theta));
+    s.uncertainty.elements.fill(u);
+    s.uncertainty(0, 0) = u * s.f11;
+  }
+  return samples;
+}
+
 // ---- laws ----------------------------------------------------------------------------------------------------------
 
 // The reflectance table is found from the data: a model that has its own normal-incidence DHR in it comes back.
@@ -262,6 +272,35 @@ TEST(Fit, ElementTableIsThatOfTheResiduals) {
 // For Gaussian noise of known law (â − a)ᵀ V⁻¹ (â − a) / n has expectation 1 if V is the true covariance. Here V is
 // diagonal in the basis of the singular vectors, so it is enough to look at each coefficient: the mean of (â − a)² /
 // V_aa over 40 seeds and 142 coefficients, correlated ones among them, scatters by about 0.04.
+// Speckle that is stated as it is, or a third of it. The standard deviation of χ²/ν is √(2/ν): 0.033 and 0.0086.
+TEST(Fit, ChiSquaredPerDegreeOfFreedomIsOneWhereTheUncertaintiesAreRight) {
+  for (const double stated : {1.0, 1.0 / 3}) {
+    const FitResult result =
+        fit(with_uncertainties(samples_of(material("ptfe-532"), 0.006), 0.006 * stated), {}, {}, Weights::data);
+    const auto [f11, others] = chi_squared_per_dof(result);
+    EXPECT_NEAR(f11 * stated * stated, 1, 0.1);
+    EXPECT_NEAR(others * stated * stated, 1, 0.026);
+    EXPECT_NEAR(f11, result.solutions[0].variance(), 1e-12 * f11);
+    double squares = 0, freedom = 0;
+    for (std::size_t b = 1; b < result.solutions.size(); ++b) {
+      const auto nu = static_cast<double>(result.solutions[b].degrees_of_freedom());
+      squares += nu * result.solutions[b].variance();
+      freedom += nu;
+    }
+    EXPECT_NEAR(others, squares / freedom, 1e-12 * others);
+  }
+}
+
+TEST(Fit, ChiSquaredCountsTheRowsOfElementsWithoutModes) {
+  const std::vector<Sample> samples = with_uncertainties(samples_of(material("ptfe-532"), 0.006), 0.006);
+  const FitResult result = fit(samples, {Family::isotropic, {7, 0}}, {}, Weights::data);
+  double squares = 0;
+  for (std::size_t e = 1; e < 16; ++e) squares += result.elements[e].chi_squared;
+  long rank = 0;
+  for (std::size_t b = 1; b < result.solutions.size(); ++b) rank += result.solutions[b].rank;
+  EXPECT_NEAR(chi_squared_per_dof(result).others, squares / static_cast<double>(15 * 1824 - rank), 1e-9);
+}
+
 TEST(Fit, CovarianceOfSpeckleWeightsPredictsTheErrorsThatSpeckleMakes) {
   const Model model = material("ptfe-532");
   double sum = 0, variance = 0;

@@ -135,6 +135,16 @@ def test_a_fit_says_how_well_it_fits(samples):
     assert "1824 samples" in repr(result)
 
 
+def test_chi_squared_per_degree_of_freedom_is_near_1_where_the_uncertainties_are_right(samples):
+    u = 0.01 * np.sqrt(np.cos(np.radians(samples.theta_i_deg)) / np.cos(np.radians(samples.theta_r_deg)))
+    u = u[:, None, None] * np.ones((4, 4))
+    u[:, 0, 0] *= samples.f11
+    known = mmbrdf.Dataset(532, *samples.geometry, samples.mueller, uncertainty=u)
+    found = mmbrdf.fit(known, weights="data").chi_squared_per_dof
+    assert list(found)[:3] == ["f11", "others", "11"] and found["11"] == pytest.approx(found["f11"], rel=1e-12)
+    assert all(0.8 < value < 1.2 for value in found.values())
+
+
 def test_copies_of_a_fit_are_the_same(samples):
     for options in ({}, {"weights": "estimated", "orders": (3, 2)}):
         result = mmbrdf.fit(samples, **options)

@@ -31,13 +31,19 @@ long polarization_rows(const FitResult& result) {
   return rows;
 }
 
+/// Whether chi^2 can be set beside the degrees of freedom.
+bool knows_scale(const FitResult& result) { return result.weights == Weights::data; }
+
 Table::Row block_row(const FitResult& result, std::size_t b) {
   const Solution& solution = result.solutions[b];
-  return {result.model.blocks[b].block.name, solution.x.size(), solution.rank, solution.condition()};
+  Table::Row row{result.model.blocks[b].block.name, solution.x.size(), solution.rank, solution.condition()};
+  if (knows_scale(result)) row.push_back(solution.degrees_of_freedom() > 0 ? Json(solution.variance()) : Json());
+  return row;
 }
 
 Table blocks(const FitResult& result) {
   Table table{{{"block", "%-20s"}, {"coefficients", "%12s"}, {"rank", "%6s"}, {"condition", "%11.4g"}}};
+  if (knows_scale(result)) table.columns.push_back({"chi_squared_per_dof", "%10.3g", "chi^2/dof"});
   for (std::size_t b = 0; b < result.solutions.size(); ++b) table.rows.push_back(block_row(result, b));
   return table;
 }
@@ -45,14 +51,16 @@ Table blocks(const FitResult& result) {
 /// In CSV with its block, and with a line of all but 11.
 Table elements(const FitResult& result) {
   Table table{{{"element", "%-7s"}, {"rows", "%8s"}, {"rms", "%12.6g"}, {"chi_squared", "%12.6g", "chi^2"}}};
-  for (const Column& column : blocks(result).columns) table.columns.push_back({column.name, "", "", in_csv});
+  const std::vector<Column> of_blocks = blocks(result).columns;
+  for (const Column& column : of_blocks) table.columns.push_back({column.name, "", "", in_csv});
   table.columns.push_back({"", " %s", "", in_text, ""});
   for (std::size_t element = 0; element < 16; ++element) {
     const ElementFit& fit = result.elements[element];
     const std::size_t b = block_of(result.model, element);
     const bool fitted = b < result.solutions.size();
     Table::Row row{element_name(element), fit.rows, fit.rms, fit.chi_squared};
-    std::ranges::move(fitted ? block_row(result, b) : Table::Row{"no modes", 0, 0, {}}, std::back_inserter(row));
+    std::ranges::move(fitted ? block_row(result, b) : Table::Row{"no modes", 0, 0}, std::back_inserter(row));
+    row.resize(4 + of_blocks.size());
     row.push_back(fitted ? "" : "no modes");
     table.rows.push_back(row);
   }
@@ -74,8 +82,13 @@ void print_text(const FitReport& report) {
             << text(blocks(report.result));
   const char* f11 = model.reflectance.values.empty() ? "f11, sr^-1" : "f11 / reflectance, sr^-1";
   std::cout << format("\nrms of %-27s %.6g\n", f11, report.result.elements[0].rms)
-            << format("rms of %-27s %.6g\n", "the 15 others / f11", polarization_rms(report.result))
-            << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
+            << format("rms of %-27s %.6g\n", "the 15 others / f11", polarization_rms(report.result));
+  if (knows_scale(report.result)) {
+    const ReducedChiSquared reduced = chi_squared_per_dof(report.result);
+    std::cout << format("%-34s %.3g\n%-34s %.3g\n", "chi^2/dof of f11", reduced.f11, "chi^2/dof of the 15 others",
+                        reduced.others);
+  }
+  std::cout << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
   for (std::size_t i = 0; i < report.result.noise.size(); ++i) {
     std::cout << (i == 0 ? "\nnoise of elements 14 and 41, relative for f11\n" : "") << noise_line(report.result, i)
               << '\n';
@@ -104,6 +117,10 @@ void print_json(const FitReport& report) {
   json.update(basis_json(model));
   json["elements"] = json_of(elements(report.result));
   json["blocks"] = json_of(blocks(report.result));
+  if (knows_scale(report.result)) {
+    const auto [f11, others] = chi_squared_per_dof(report.result);
+    json["chi_squared_per_dof"] = {{"f11", f11}, {"others", others}};
+  }
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);
   json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);

@@ -109,10 +109,19 @@ struct FitResult {
                                    ///< Only from fit(); a FitAccumulator keeps no samples.
   std::vector<NoiseEstimate> noise;   ///< of Weights::estimated: the law at each fitted wavelength; else empty
   std::vector<std::string> warnings;  ///< a line each; only from fit()
+  Weights weights = Weights::none;   ///< those of fit(); a FitAccumulator knows no name for what it is given
 };
 
 /// Root mean square over the 15 normalised elements.
 double polarization_rms(const FitResult& result);
+
+/// Σ w r² / (rows − rank) of f11 and of the 15 others together; of a block it is Solution::variance(). Where weights are
+/// 1/u² (Weights::data): near 1 if the uncertainties are right and the model has the structure of the sample. 0 without
+/// degrees of freedom.
+struct ReducedChiSquared {
+  double f11 = 0, others = 0;
+};
+ReducedChiSquared chi_squared_per_dof(const FitResult& result);
 
 /// Takes samples in any order and number, and solves whenever asked. Memory grows with the number of distinct
 /// wavelengths and with the orders, not with the number of samples.
