@@ -25,8 +25,8 @@ namespace {
 
 constexpr Named<Weights> weights_names[] = {
     {Weights::none, "none"}, {Weights::speckle, "speckle"}, {Weights::data, "data"}, {Weights::estimated, "estimated"}};
-constexpr Named<Covariance> covariance_names[] = {{Covariance::residuals, "residuals"},
-                                                  {Covariance::sandwich, "sandwich"}};
+constexpr Named<Covariance> covariance_names[] = {
+    {Covariance::residuals, "residuals"}, {Covariance::sandwich, "sandwich"}, {Covariance::given, "given"}};
 
 constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sample"}, {Uncertainty::noise, "noise"}};
 
@@ -260,9 +260,9 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
       result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
     FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
                        solution.condition(), solution.null_space, solution.rows};
-    if (solution.degrees_of_freedom() > 0) {
+    if (const std::optional<double> variance = row_variance(solution, options.covariance)) {
       fitted.covariance = solution.inverse;
-      for (double& c : fitted.covariance) c *= solution.variance();
+      for (double& c : fitted.covariance) c *= *variance;
     }
     model.blocks.push_back(std::move(fitted));
     result.solutions.push_back(std::move(solution));
@@ -271,8 +271,8 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   for (std::size_t e = 0; e < 16; ++e)
     if (block_of_[e] < 0)  // no mode: the model's element is 0
       result.elements[e] = element_fit(e, std::array{0.0}, model.reflectance);
-  if (takes_own_reflectance(options) && result.solutions.front().degrees_of_freedom() > 0)
-    add_own_reflectance_covariance(result, options.rank_tolerance, known, nullptr);
+  if (takes_own_reflectance(options) && row_variance(result.solutions.front(), options.covariance))
+    add_own_reflectance_covariance(result, options, known, nullptr);
   return result;
 }
 
@@ -330,6 +330,8 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
 }
 
 FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
+  if (options.covariance == Covariance::given && weights != Weights::data)
+    throw std::invalid_argument("covariance given is that of the samples' own uncertainties: it takes weights data");
   if (options.uncertainty == Uncertainty::noise) return FitAccumulator::of_noise(samples, basis, options, weights);
   std::string reason;
   if (const std::string without = no_mixed_model(samples, basis, weights); !without.empty())

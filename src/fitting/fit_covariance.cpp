@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Core>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -45,9 +46,15 @@ double small_sample_factor(const Solution& solution) {
 
 }  // namespace
 
+std::optional<double> row_variance(const Solution& solution, Covariance covariance) {
+  if (covariance == Covariance::given) return 1;
+  if (solution.degrees_of_freedom() <= 0) return {};
+  return solution.variance();
+}
+
 /// With a reflectance from the data themselves an error ε of τ changes both R, by R dᵀP ε, and what y is divided by:
 ///   dR = R dᵀP ε,     da = G Λ (ε − τ dR / R).
-void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double rank_tolerance, SvdCache& known,
+void FitAccumulator::add_own_reflectance_covariance(FitResult& result, const FitOptions& options, SvdCache& known,
                                                     const FitAccumulator* squares) const {
   Model& model = result.model;
   const Solution& f11 = result.solutions.front();
@@ -61,9 +68,9 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, double ra
     const LeastSquares& rows = at.elements.front();
     const double reflectance = model.reflectance.values[static_cast<std::size_t>(k)];
     const VectorXd tau = vector(rows.normal_vector()) / reflectance;
-    const VectorXd q = square(rows.solve(rank_tolerance, &known).inverse, modes) * d;
+    const VectorXd q = square(rows.solve(options.rank_tolerance, &known).inverse, modes) * d;
     const MatrixXd c = squares ? square(squares->wavelengths_.at(wavelength).elements.front().normal_matrix(), modes)
-                               : MatrixXd(f11.variance() * square(rows.normal_matrix(), modes));
+                               : MatrixXd(*row_variance(f11, options.covariance) * square(rows.normal_matrix(), modes));
     MatrixXd slopes = MatrixXd::Zero(size + count, modes);
     slopes.topRows(size) = g * repetition(modes, powers_of(wavelength, model.powers)) *
                            (MatrixXd::Identity(modes, modes) - tau * q.transpose());
@@ -98,7 +105,7 @@ void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, 
     model.blocks[b].covariance = row_major(0.5 * (half + half.transpose()));
   }
   if (takes_own_reflectance(options) && result.solutions.front().degrees_of_freedom() > 0)
-    add_own_reflectance_covariance(result, options.rank_tolerance, known, &squares);
+    add_own_reflectance_covariance(result, options, known, &squares);
 }
 
 }  // namespace mmbrdf

@@ -291,6 +291,41 @@ TEST(Fit, ChiSquaredPerDegreeOfFreedomIsOneWhereTheUncertaintiesAreRight) {
   }
 }
 
+// Of one wavelength, and of several that are divided by a reflectance from the same data.
+TEST(Fit, UncertaintiesCountAsGivenOrScaledByTheResiduals) {
+  for (const char* name : {"ptfe-532", "ptfe"}) {
+    const auto fitted = [&](double stated, Covariance covariance) {
+      FitOptions options;
+      options.covariance = covariance;
+      return fit(with_uncertainties(samples_of(material(name), 0.006), stated), {}, options, Weights::data);
+    };
+    const FitResult once = fitted(0.006, Covariance::given), thrice = fitted(0.018, Covariance::given),
+                    scaled = fitted(0.018, Covariance::residuals);
+    for (std::size_t b = 0; b < once.solutions.size(); ++b) {
+      const double s2 = thrice.solutions[b].variance();
+      for (std::size_t i = 0; i < once.model.blocks[b].covariance.size(); ++i) {
+        const double c = once.model.blocks[b].covariance[i], size = once.model.blocks[b].covariance[0];
+        EXPECT_NEAR(thrice.model.blocks[b].covariance[i], 9 * c, 1e-9 * size);
+        EXPECT_NEAR(scaled.model.blocks[b].covariance[i], 9 * s2 * c, 1e-9 * size);
+      }
+    }
+    for (std::size_t i = 0; i < once.model.reflectance.covariance.size(); ++i)
+      EXPECT_NEAR(thrice.model.reflectance.covariance[i], 9 * once.model.reflectance.covariance[i], 1e-13);
+  }
+}
+
+TEST(Fit, UncertaintiesAsGivenNeedNoDegreesOfFreedomButTheWeightsOfTheData) {
+  const std::vector<Sample> one = with_uncertainties({samples_of(material("ptfe-532"), 0.006)[700]}, 0.006);
+  FitOptions options;
+  options.covariance = Covariance::given;
+  const FitResult result = fit(one, {Family::isotropic, {0, 0}}, options, Weights::data);
+  EXPECT_EQ(result.solutions[0].degrees_of_freedom(), 0);
+  const double f11 = result.model.blocks[0].coefficients[0], u = std::sqrt(result.model.blocks[0].covariance[0]);
+  EXPECT_NEAR(u / f11, one[0].uncertainty(0, 0) / one[0].f11, 1e-12);
+  EXPECT_EQ(message_of([&] { fit(one, {}, options); }),
+            "covariance given is that of the samples' own uncertainties: it takes weights data");
+}
+
 TEST(Fit, ChiSquaredCountsTheRowsOfElementsWithoutModes) {
   const std::vector<Sample> samples = with_uncertainties(samples_of(material("ptfe-532"), 0.006), 0.006);
   const FitResult result = fit(samples, {Family::isotropic, {7, 0}}, {}, Weights::data);

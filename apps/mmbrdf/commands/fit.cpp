@@ -60,7 +60,8 @@ void sign(Model& model, const Options& options, long rows, const CommandLine& li
   model.provenance["software"] = software();
   model.provenance["weights"] = to_string(weights(options));
   model.provenance["uncertainty"] = to_string(model.posterior ? Uncertainty::sample : Uncertainty::noise);
-  if (options.fit.covariance == Covariance::sandwich) model.provenance["covariance"] = "sandwich";
+  if (options.fit.covariance != Covariance::residuals)
+    model.provenance["covariance"] = to_string(options.fit.covariance);
   if (!options.attribution.empty()) model.provenance["attribution"] = options.attribution;
 }
 
@@ -149,7 +150,11 @@ void fit_data(const Options& options, const CommandLine& line) {
   sign(result.model, options, rows, line);
   record_noise(result.model, result);
   save_or_warn(result.model, options);
-  print({.data = data_name(options.data), .weights = to_string(weights(options)), .rows = rows, .result = result},
+  print({.data = data_name(options.data),
+         .weights = to_string(weights(options)),
+         .covariance = to_string(options.fit.covariance),
+         .rows = rows,
+         .result = result},
         options.format);
   for (const std::string& warning : result.warnings) warn(warning);
   if (!result.model.posterior) note_free_combinations(result);
@@ -194,7 +199,8 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
              "uncertainties [none]");
   add_weights_option(app, o->given_weights, "speckle; none for the noise alone");
   add_option(app, "--covariance", o->fit.covariance, covariance_from, "NAME",
-             "residuals, or sandwich: for noise that is not as the weights say [residuals]");
+             "residuals: --weights tell how uncertain a row is relative\nto others, residuals how much; sandwich: for "
+             "noise that\nis not as the weights say; given: u of --weights data as\nthey are [residuals]");
   add_file(app, "--instrument", o->instrument, "INSTRUMENT.json",
            "Of mmbrdf calibrate: what it is uncertain by is added\nto the covariance, since all samples share it");
   add_flag(app, "--minimum-norm", o->fit.minimum_norm,

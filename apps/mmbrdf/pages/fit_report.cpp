@@ -34,6 +34,13 @@ long polarization_rows(const FitResult& result) {
 /// Whether chi^2 can be set beside the degrees of freedom.
 bool knows_scale(const FitResult& result) { return result.weights == Weights::data; }
 
+/// Whether the user's uncertainties count as they are.
+std::string source_of_uncertainties(const std::string& covariance) {
+  if (covariance == "given") return "those of the data, as given";
+  if (covariance == "sandwich") return "the residuals, row by row (sandwich)";
+  return "those of the data, scaled by the root of chi^2/dof (as given: --covariance given)";
+}
+
 Table::Row block_row(const FitResult& result, std::size_t b) {
   const Solution& solution = result.solutions[b];
   Table::Row row{result.model.blocks[b].block.name, solution.x.size(), solution.rank, solution.condition()};
@@ -86,7 +93,9 @@ void print_text(const FitReport& report) {
   if (knows_scale(report.result)) {
     const ReducedChiSquared reduced = chi_squared_per_dof(report.result);
     std::cout << format("%-34s %.3g\n%-34s %.3g\n", "chi^2/dof of f11", reduced.f11, "chi^2/dof of the 15 others",
-                        reduced.others);
+                        reduced.others)
+              << format("%-34s ", "uncertainties of the model from") << source_of_uncertainties(report.covariance)
+              << '\n';
   }
   std::cout << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
   for (std::size_t i = 0; i < report.result.noise.size(); ++i) {
@@ -120,6 +129,7 @@ void print_json(const FitReport& report) {
   if (knows_scale(report.result)) {
     const auto [f11, others] = chi_squared_per_dof(report.result);
     json["chi_squared_per_dof"] = {{"f11", f11}, {"others", others}};
+    json["covariance"] = report.covariance;
   }
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);

@@ -10,8 +10,9 @@
 namespace mmbrdf::program {
 
 struct FitReport {
-  std::string data;     ///< name of the data file
-  std::string weights;  ///< none, speckle, data or estimated
+  std::string data;        ///< name of the data file
+  std::string weights;     ///< none, speckle, data or estimated
+  std::string covariance;  ///< residuals, sandwich or given
   long rows;
   const FitResult& result;
 };

@@ -58,6 +58,7 @@ enum class Covariance {
   residuals,  ///< s² (Xᵀ W X)⁺: right if the weights are as 1/variance
   sandwich,  ///< (Xᵀ W X)⁺ Xᵀ W diag(r²) W X (Xᵀ W X)⁺ × rows / (rows − rank): for residuals that are not as uniform as
              ///< the weights say. Errors of different elements count as independent. White 1980.
+  given,     ///< (Xᵀ W X)⁺: of weights 1/u², whatever the residuals are. fit() takes it with Weights::data only.
 };
 
 /// What the uncertainties of a fit hold for.
@@ -68,7 +69,7 @@ enum class Uncertainty {
   noise,   ///< the noise alone, as if the sample were isotropic and the basis without end: least squares
 };
 
-/// "none", "speckle", "data", "estimated"; "residuals", "sandwich"; "sample", "noise". The opposites throw
+/// "none", "speckle", "data", "estimated"; "residuals", "sandwich", "given"; "sample", "noise". The opposites throw
 /// std::invalid_argument for another name.
 std::string to_string(Weights weights);
 std::string to_string(Covariance covariance);
@@ -122,6 +123,9 @@ struct ReducedChiSquared {
   double f11 = 0, others = 0;
 };
 ReducedChiSquared chi_squared_per_dof(const FitResult& result);
+
+/// The variance of a row of unit weight: s², none without degrees of freedom; or 1 as given.
+std::optional<double> row_variance(const Solution& solution, Covariance covariance);
 
 /// Takes samples in any order and number, and solves whenever asked. Memory grows with the number of distinct
 /// wavelengths and with the orders, not with the number of samples.
@@ -179,7 +183,7 @@ class FitAccumulator {
   FitResult solved(const FitOptions& options) const;
   Solution block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance, double rank_tolerance,
                           SvdCache& known) const;
-  void add_own_reflectance_covariance(FitResult& result, double rank_tolerance, SvdCache& known,
+  void add_own_reflectance_covariance(FitResult& result, const FitOptions& options, SvdCache& known,
                                       const FitAccumulator* squares) const;
   void use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const;
   bool takes_own_reflectance(const FitOptions& options) const;
