@@ -13,6 +13,7 @@
 #include "instrument.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "pickles.hpp"
 
 namespace mmbrdf::python {
@@ -130,7 +131,7 @@ py::tuple pickled(const Fitted& fitted) {
   return py::make_tuple(py::bytes(to_json(r.model)), tuple_of(r.solutions, solution),
                         bits<Elements>("FitResult", {&r.elements, 1}), bits<Mueller>("FitResult", r.residuals),
                         bits<NoiseEstimate>("FitResult", r.noise), bits<Basis>("FitResult", {&fitted.basis, 1}),
-                        to_string(fitted.weights), r.warnings);
+                        to_string(fitted.weights), r.warnings, static_cast<unsigned>(r.sides));
 }
 
 FittedPointer unpickled(const py::tuple& state) {
@@ -140,8 +141,9 @@ FittedPointer unpickled(const py::tuple& state) {
               .elements = from_bits<Elements>("FitResult", state[2]).at(0),
               .residuals = from_bits<Mueller>("FitResult", state[3]),
               .noise = from_bits<NoiseEstimate>("FitResult", state[4]),
-              .weights = weights_from(state[6].cast<std::string>()),
-              .warnings = state[7].cast<std::vector<std::string>>()};
+              .warnings = state[7].cast<std::vector<std::string>>(),
+              .sides = static_cast<Sides>(state[8].cast<unsigned>()),
+              .weights = weights_from(state[6].cast<std::string>())};
   for (const py::handle one : state[1]) {
     const auto s = one.cast<py::tuple>();
     r.solutions.push_back({s[0].cast<Values>(), s[1].cast<Values>(), s[2].cast<int>(), s[3].cast<double>(),
@@ -164,11 +166,14 @@ void bind_result(py::module_& m) {
       .def_property_readonly(
           "polarization_rms", [](const Fitted& f) { return polarization_rms(f.result); },
           "Root mean square over the 15 normalised elements")
-      .def_property_readonly(
-          "warnings", [](const Fitted& f) { return f.result.warnings; }, "What there is to heed: a line each")
       .def_property_readonly("chi_squared_per_dof", reduced_chi_squared,
                              "Of 'f11', of 'others', the 15 other elements together, and of each block by its name: "
                              "near 1 if\nweights='data' and the uncertainties are right. 0 without degrees of freedom")
+      .def_property_readonly(
+          "warnings", [](const Fitted& f) { return without_gil([&] { return fit_warnings(f.result); }); },
+          "What there is to be wary of, a sentence each: one plane or side only, chi^2, condition, reflectances above "
+          "1,\n"
+          "f11 that is not positive. Computed when asked for")
       .def_property_readonly("noise", noise_of, "With weights='estimated': the law found at each wavelength, as dicts")
       .def("__repr__", representation)
       .def(py::pickle(&pickled, &unpickled));

@@ -8,6 +8,7 @@
 
 #include "basis/spectral.hpp"
 #include "fitting/mixed_fit.hpp"
+#include "fitting/row_variance.hpp"
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
@@ -52,10 +53,13 @@ std::string short_name(const Block& block, std::size_t coefficient, std::size_t 
   return name;
 }
 
-/// What the data leave free of a block, or nothing.
-std::string undetermined(const Block& block, const Solution& solution) {
+/// What the data leave free of a block, or nothing. In one plane it is half of the modes, and their names say nothing.
+std::string undetermined(const Block& block, const Solution& solution, Sides sides) {
   const std::size_t n = solution.x.size(), free = n - size(solution.rank);
   if (free == 0) return "";
+  const std::string rank =
+      "; block " + block.name + ": rank " + std::to_string(solution.rank) + " of " + std::to_string(n);
+  if (sides == plane_of_incidence) return rank;
   std::string names;
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -64,14 +68,7 @@ std::string undetermined(const Block& block, const Solution& solution) {
     if (part > involved && ++count <= most_named) names.append(" ").append(short_name(block, i, n));
   }
   if (count > most_named) names.append(" and ").append(std::to_string(count - most_named)).append(" more");
-  return "; block " + block.name + ": rank " + std::to_string(solution.rank) + " of " + std::to_string(n) + ", " +
-         std::to_string(free) + " combinations are free of the modes (n,m,k,l)" + names;
-}
-
-void require_determined(const std::string& complaints) {
-  if (!complaints.empty())
-    throw std::invalid_argument("the data do not determine the model" + complaints +
-                                "; choose lower orders, or ask for the solution of minimum norm");
+  return rank + ", " + std::to_string(free) + " combinations are free of the modes (n,m,k,l)" + names;
 }
 
 Mueller ones() {
@@ -108,18 +105,6 @@ double polarization_rms(const FitResult& result) {
   return rows > 0 ? std::sqrt(squares / rows) : 0;
 }
 
-ReducedChiSquared chi_squared_per_dof(const FitResult& result) {
-  std::array<double, 2> squares{}, freedom{};  // of f11, of the others
-  for (std::size_t e = 0; e < 16; ++e) {
-    squares[e > 0] += result.elements[e].chi_squared;
-    freedom[e > 0] += static_cast<double>(result.elements[e].rows);
-  }
-  for (std::size_t b = 0; b < result.solutions.size(); ++b)
-    freedom[result.model.blocks[b].block.elements.front().index() > 0] -= result.solutions[b].rank;
-  const auto ratio = [&](std::size_t part) { return freedom[part] > 0 ? squares[part] / freedom[part] : 0; };
-  return {ratio(0), ratio(1)};
-}
-
 FitAccumulator::FitAccumulator(const Basis& basis)
     : basis_(basis), blocks_(blocks(basis.family, basis.orders)), designs_(designs(blocks_, basis.family)) {
   require_valid(basis.family, basis.rotation);
@@ -153,6 +138,7 @@ void FitAccumulator::merge(const FitAccumulator& other) {
   }
   theta_i_max_ = std::max(theta_i_max_, other.theta_i_max_);
   theta_r_max_ = std::max(theta_r_max_, other.theta_r_max_);
+  sides_ = static_cast<Sides>(sides_ | other.sides_);
   samples_ += other.samples_;
 }
 
@@ -195,9 +181,11 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
   ReflectanceTable table;
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance, &known);
-    if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
-      throw std::invalid_argument("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
-                                  "reflectance it is to be divided by; give a reflectance table" + free);
+    if (const std::string free = undetermined(blocks_[0], solution, sides_);
+        !free.empty() && !accepts_minimum_norm(options))
+      require_determined("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
+                             "reflectance it is to be divided by; give a reflectance table",
+                         free, options);
     Model f11;
     f11.family = basis_.family;
     f11.mapping = basis_.mapping;
@@ -242,6 +230,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   std::string complaints;
   SvdCache known;
   FitResult result;
+  result.sides = sides_;
   Model& model = result.model;
   model.family = basis_.family;
   model.mapping = basis_.mapping;
@@ -255,7 +244,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   require_covered(model.reflectance);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     Solution solution = block_solution(b, powers, model.reflectance, options.rank_tolerance, known);
-    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
+    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution, sides_);
     for (const Element& element : blocks_[b].elements)
       result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
     FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
@@ -267,13 +256,43 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
     model.blocks.push_back(std::move(fitted));
     result.solutions.push_back(std::move(solution));
   }
-  require_determined(complaints);
+  require_determined("the data do not determine the model", complaints, options);
   for (std::size_t e = 0; e < 16; ++e)
     if (block_of_[e] < 0)  // no mode: the model's element is 0
       result.elements[e] = element_fit(e, std::array{0.0}, model.reflectance);
   if (takes_own_reflectance(options) && row_variance(result.solutions.front(), options.covariance))
     add_own_reflectance_covariance(result, options, known, nullptr);
   return result;
+}
+
+/// "5,4": the highest of f11 and of the others, each apart, or "" if order 0 is too much.
+std::string FitAccumulator::determined_orders(const FitOptions& options) const {
+  const int powers = chosen_powers(options);
+  SvdCache known;
+  const auto determines = [&](const Orders& orders, bool f11) {
+    const FitAccumulator lower = at_orders(orders);
+    const auto full = [](const Solution& s) { return size(s.rank) == s.x.size(); };
+    for (std::size_t b = f11 ? 0 : 1; b < (f11 ? 1 : lower.blocks_.size()); ++b)
+      if (!full(lower.block_solution(b, powers, {}, options.rank_tolerance, known))) return false;
+    return !f11 || !takes_own_reflectance(options) || std::ranges::all_of(lower.wavelengths_, [&](const auto& at) {
+      return full(at.second.elements[0].solve(options.rank_tolerance, &known));
+    });
+  };
+  Orders orders = basis_.orders;
+  while (orders.f11 >= 0 && !determines({orders.f11, 0}, true)) --orders.f11;
+  while (orders.other >= 0 && !determines({0, orders.other}, false)) --orders.other;
+  if (orders.f11 < 0 || orders.other < 0) return "";
+  return std::to_string(orders.f11) + "," + std::to_string(orders.other);
+}
+
+void FitAccumulator::require_determined(const std::string& refusal, const std::string& free,
+                                        const FitOptions& options) const {
+  if (free.empty()) return;
+  const std::string orders = determined_orders(options);
+  throw std::invalid_argument((sides_ == plane_of_incidence ? "measured in one plane only, that of incidence: " : "") +
+                              refusal + free + "; choose lower orders" +
+                              (orders.empty() ? "" : " (up to " + orders + " they do)") +
+                              ", or ask for the solution of minimum norm");
 }
 
 void FitAccumulator::require_covered(const ReflectanceTable& table) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "basis/spectral.hpp"
+#include "fitting/row_variance.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "numerics/eigen_index.hpp"
@@ -45,12 +46,6 @@ double small_sample_factor(const Solution& solution) {
 }
 
 }  // namespace
-
-std::optional<double> row_variance(const Solution& solution, Covariance covariance) {
-  if (covariance == Covariance::given) return 1;
-  if (solution.degrees_of_freedom() <= 0) return {};
-  return solution.variance();
-}
 
 /// With a reflectance from the data themselves an error ε of τ changes both R, by R dᵀP ε, and what y is divided by:
 ///   dR = R dᵀP ε,     da = G Λ (ε − τ dR / R).

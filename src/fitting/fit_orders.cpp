@@ -33,6 +33,7 @@ FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
   FitAccumulator result(basis);
   result.theta_i_max_ = theta_i_max_;
   result.theta_r_max_ = theta_r_max_;
+  result.sides_ = sides_;
   result.samples_ = samples_;
   for (std::size_t e = 0; e < 16; ++e) {
     std::vector<std::size_t> kept;  // of the modes of the element's block

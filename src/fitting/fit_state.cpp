@@ -12,7 +12,7 @@
 #include "text/numbers.hpp"
 
 //   the basis: family, both orders, mapping, rotation
-//   samples, largest θi, largest θr,   then for each wavelength, rising: λ,
+//   samples, largest θi, largest θr, sides,   then for each wavelength, rising: λ,
 //   then for each element, row-major: the sum of its weights, and the state of its triangle
 
 namespace mmbrdf {
@@ -52,7 +52,7 @@ std::vector<double> numbers_of(const Basis& basis) {
 
 std::vector<double> FitAccumulator::state() const {
   std::vector<double> result = numbers_of(basis_);
-  result.insert(result.end(), {static_cast<double>(samples_), theta_i_max_, theta_r_max_});
+  result.insert(result.end(), {static_cast<double>(samples_), theta_i_max_, theta_r_max_, static_cast<double>(sides_)});
   for (const auto& [wavelength, at] : wavelengths_) {
     result.push_back(wavelength);
     for (std::size_t e = 0; e < 16; ++e) {
@@ -72,11 +72,12 @@ FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const do
   if (!std::ranges::equal(reader.next(ours.size()), ours))
     throw std::invalid_argument("a state of a fit with another basis");
   const double samples = reader.next("a number of samples", most);
-  if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 3))
+  if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 4))
     throw std::invalid_argument("a state of a fit with a number of samples " + shortest(samples));
   result.samples_ = static_cast<long>(samples);
   result.theta_i_max_ = reader.next("a largest theta_i", std::numbers::pi / 2);
   result.theta_r_max_ = reader.next("a largest theta_r", std::numbers::pi / 2);
+  result.sides_ = static_cast<Sides>(reader.next("sides of the plane of incidence", 7));
   while (!reader.at_end()) {
     const double wavelength = reader.next(1).front();
     require_wavelength(wavelength);

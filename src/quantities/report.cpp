@@ -14,6 +14,8 @@
 #include "mmbrdf/fitting/symmetry.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/conventions.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
@@ -41,10 +43,7 @@ struct Field {
   Warnings warnings{};
 };
 
-std::string at(const Geometry& g) {
-  return "theta_i " + rounded(degrees(g.incident.theta), 4) + ", theta_r " + rounded(degrees(g.reflected.theta), 4) +
-         ", phi_r - phi_i " + rounded(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360), 4) + " degrees";
-}
+std::string at(const Geometry& geometry) { return place_line(geometry); }
 
 std::string count_of(std::size_t count, const std::string& what) { return counted(static_cast<long>(count), what); }
 
@@ -103,8 +102,8 @@ Json fit_json(const Model& model) {
 
 /// Within the fitted angles, and up to the horizon.
 std::vector<double> polar_limits(const Validity& validity) {
-  if (!validity.theta_i_max || !validity.theta_r_max) return {radians(90)};
-  return {std::max(*validity.theta_i_max, *validity.theta_r_max), radians(90)};
+  const double fitted = fitted_theta_max(validity);
+  return fitted < radians(90) ? std::vector{fitted, radians(90)} : std::vector{fitted};
 }
 
 Warnings unphysical(const ModelDiagnostics& d, const std::string& wavelength) {
@@ -115,14 +114,8 @@ Warnings unphysical(const ModelDiagnostics& d, const std::string& wavelength) {
     warnings.push_back(std::to_string(d.unrealizable) + " of " + std::to_string(d.geometries) + " matrices " + where +
                        " cannot exist; the smallest eigenvalue / f11 is " + rounded(d.margin.value, 3) + " at " +
                        at(d.margin.geometry));
-  if (d.not_positive_f11 > 0)
-    warnings.push_back("f11 is not positive at " + std::to_string(d.not_positive_f11) + " of " +
-                       counted(d.geometries, "direction") + " " + where + ", down to " + rounded(d.f11.value, 3) +
-                       " sr^-1 at " + at(d.f11.geometry));
-  if (fitted && d.dhr > 1)
-    warnings.push_back("the directional-hemispherical reflectance reaches " + fixed(d.dhr, 4) + " at theta_i " +
-                       rounded(degrees(d.dhr_theta_i), 4) + " degrees, " + wavelength +
-                       ": more light comes back than falls in");
+  if (std::string line = not_positive_line(d, where); !line.empty()) warnings.push_back(line);
+  if (std::string line = energy_line(d, where); fitted && !line.empty()) warnings.push_back(line);
   return warnings;
 }
 
@@ -182,7 +175,9 @@ Field data_field(const Model& model, const ReportedSamples& data) {
                {"samples", data.samples.size()},
                {"wavelengths", nanometre_list(wavelengths(data.samples))},
                {"residuals and noise", "of the model as it is"},
-               {"symmetries, leverage and outliers", "of fits of its basis to these samples, without weights"}}};
+               {"chi_squared", "of fits of its basis to these samples, weighted by their uncertainties"},
+               {"conventions, symmetries, leverage and outliers",
+                "of fits of its basis to these samples, without weights"}}};
   RangeCount range;
   for (const Sample& s : data.samples) range.add(outside(model.validity, s.wavelength, s.geometry));
   if (range.outside > 0) field.warnings.push_back(range.line("sample") + ": residuals there are of extrapolations");
@@ -202,6 +197,14 @@ Json residuals_json(const Comparison& comparison) {
   for (std::size_t e = 1; e < 16; ++e)
     rows.push_back(difference_json(element_name(e), "f11", comparison.normalized[e]));
   return rows;
+}
+
+Field conventions(const Model& model, std::span<const Sample> samples) {
+  const std::vector<ConventionFit> fits = convention_fits(samples, orders(model), model.mapping);
+  Field field;
+  for (const auto& [read_as, rms] : fits) field.value.push_back({{"read_as", read_as}, {"rms", rms}});
+  if (std::string line = convention_warning(fits); !line.empty()) field.warnings.push_back(line);
+  return field;
 }
 
 /// The tests of a symmetry; `what` is what the data are said to break.
@@ -243,14 +246,37 @@ Field noise(const Model& model, std::span<const Sample> samples) {
   return field;
 }
 
-/// Of a fit of the same basis to these samples, without weights.
-SampleDiagnostics refitted(const Model& model, std::span<const Sample> samples) {
+/// A fit of the same basis to these samples.
+FitResult refitted(const Model& model, std::span<const Sample> samples, Weights weights) {
   FitOptions options;
   options.minimum_norm = true;
   if (!model.reflectance.values.empty() && wavelengths(samples).size() > 1)
     options.reflectance = ReflectanceTable{model.reflectance.wavelengths, model.reflectance.values};
-  return sample_diagnostics(samples,
-                            fit(samples, {model.family, orders(model), model.mapping, model.rotation}, options));
+  return fit(samples, {model.family, orders(model), model.mapping, model.rotation}, options, weights);
+}
+
+bool knows_all_uncertainties(const Sample& sample) {
+  return std::ranges::all_of(sample.uncertainty.elements, [](double u) { return u > 0; });
+}
+
+/// And what the samples say against themselves.
+Field chi_squared(const FitResult& fitted) {
+  Field field{"the samples do not state the uncertainties of all their elements: what chi^2 would be is not known",
+              data_warnings(fitted)};
+  if (fitted.weights != Weights::data) return field;
+  field.value = Json::array();
+  long freedom = 0;
+  for (std::size_t b = 0; b < fitted.solutions.size(); ++b) {
+    const Solution& solution = fitted.solutions[b];
+    field.value.push_back({{"block", fitted.model.blocks[b].block.name},
+                           {"degrees_of_freedom", solution.degrees_of_freedom()},
+                           {"chi_squared_per_dof", solution.variance()}});
+    freedom += b > 0 ? solution.degrees_of_freedom() : 0;
+  }
+  field.value.push_back({{"block", "all but 11"},
+                         {"degrees_of_freedom", freedom},
+                         {"chi_squared_per_dof", chi_squared_per_dof(fitted).others}});
+  return field;
 }
 
 Field leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
@@ -294,6 +320,10 @@ void add(Json& report, const std::string& name, Field field) {
 void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
   add(report, "data", data_field(model, data));
   report["residuals"] = residuals_json(compare(model, data.samples));
+  const FitResult unweighted = refitted(model, data.samples, Weights::none);
+  const bool weighs = std::ranges::all_of(data.samples, knows_all_uncertainties);
+  add(report, "chi_squared", chi_squared(weighs ? refitted(model, data.samples, Weights::data) : unweighted));
+  add(report, "conventions", conventions(model, data.samples));
   const SymmetryTests tests = symmetry_tests(data.samples, orders(model), model.mapping);
   add(report, "reciprocity", symmetry(tests.reciprocity, "reciprocity"));
   add(report, "mirror_symmetry", symmetry(tests.mirror, "mirror symmetry"));
@@ -302,7 +332,7 @@ void add_samples(Json& report, const Model& model, const ReportedSamples& data) 
     report["dependence_on_phi_i"] =
         "the source has one azimuth in these data: whether the sample is isotropic cannot be told";
   add(report, "noise", noise(model, data.samples));
-  const SampleDiagnostics diagnostics = refitted(model, data.samples);
+  const SampleDiagnostics diagnostics = sample_diagnostics(data.samples, unweighted);
   add(report, "leverage", leverage(diagnostics, data.samples));
   add(report, "outliers", outlier_field(diagnostics, data.samples));
 }

@@ -1,55 +1,113 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/quantities/trust.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/text/units.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-void take_in(ModelDiagnostics& result, const Geometry& geometry, const PreparedModel& prepared) {
-  const Mueller f = prepared.evaluate(geometry);
-  ++result.geometries;
-  if (!(f(0, 0) > 0)) ++result.not_positive_f11;
-  if (f(0, 0) < result.f11.value) result.f11 = {f(0, 0), geometry};
-  if (f(0, 0) == 0) return;
-  const double margin = realizability_margin(normalized(f));
-  if (margin < 0) ++result.unrealizable;
-  if (margin < result.margin.value) result.margin = {margin, geometry};
+/// Calls `visit` with the places, in order.
+void visit_places(double theta_max, int coarser, const auto& visit) {
+  const double step = 2.5 * coarser;
+  const auto steps = static_cast<int>(degrees(theta_max) / step + 1e-9);
+  for (int i = 0; i <= steps; ++i)
+    for (int r = 0; r <= steps; ++r)
+      for (int d = 0; d <= 24 / coarser; ++d)
+        visit(Geometry{{radians(step * i), 0}, {radians(step * r), radians(3 * step * d)}});
+}
+
+void find_largest_dhr(F11Diagnostics& result, const Model& model) {
+  const auto steps = 5 * static_cast<int>(degrees(result.theta_max) / 2.5 + 1e-9);
+  for (int i = 0; i <= steps; ++i) {
+    const double theta = radians(0.5 * i);
+    const double dhr = directional_hemispherical_reflectance(model, result.wavelength, {theta, 0});
+    if (i > 0 && dhr <= result.dhr) continue;
+    result.dhr = dhr;
+    result.dhr_theta_i = theta;
+  }
+  if (result.dhr > 1 && knows_uncertainty(model))
+    result.u_dhr = directional_hemispherical_uncertainty(model, prepare_uncertainty(model, result.wavelength),
+                                                         {result.dhr_theta_i, 0});
+}
+
+/// What so large a reflectance usually comes from.
+std::string usual_causes(double dhr) {
+  if (dhr > 10) return "is f11, or a reflectance that was given, in percent?";
+  if (dhr > 2) return "is f11 multiplied by pi, or are the matrices divided by their element 11?";
+  return "is the scale of f11 right?";
 }
 
 }  // namespace
 
-ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double theta_max) {
+F11Diagnostics f11_diagnostics(const Model& model, double wavelength, double theta_max, int coarser) {
   if (!(theta_max >= 0 && theta_max <= radians(90) * (1 + 1e-12)))
     throw std::invalid_argument("largest polar angle " + shortest(degrees(theta_max)) + " degrees is not in [0, 90]");
   const PreparedModel prepared = prepare(model, wavelength);
-  ModelDiagnostics result;
+  F11Diagnostics result;
   result.wavelength = wavelength;
   result.theta_max = theta_max;
-  result.margin.value = result.f11.value = std::numeric_limits<double>::max();
-  const auto steps = static_cast<int>(degrees(theta_max) / 2.5 + 1e-9);
-  for (int i = 0; i <= steps; ++i)
-    for (int r = 0; r <= steps; ++r)
-      for (int d = 0; d <= 24; ++d)
-        take_in(result, {{radians(2.5 * i), 0}, {radians(2.5 * r), radians(7.5 * d)}}, prepared);
-  if (result.margin.value == std::numeric_limits<double>::max()) result.margin = {};  // f11 is 0 everywhere
-  for (int i = 0; i <= 5 * steps; ++i) {
-    const double theta = radians(0.5 * i), dhr = directional_hemispherical_reflectance(model, wavelength, {theta, 0});
-    if (i == 0 || dhr > result.dhr) {
-      result.dhr = dhr;
-      result.dhr_theta_i = theta;
-    }
-  }
+  result.f11.value = std::numeric_limits<double>::max();
+  visit_places(theta_max, coarser, [&](const Geometry& geometry) {
+    const double f11 = prepared.f11(geometry);
+    ++result.geometries;
+    if (!(f11 > 0)) ++result.not_positive_f11;
+    if (f11 < result.f11.value) result.f11 = {f11, geometry};
+  });
+  find_largest_dhr(result, model);
   return result;
+}
+
+ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double theta_max) {
+  ModelDiagnostics result{f11_diagnostics(model, wavelength, theta_max), {}, 0};
+  const PreparedModel prepared = prepare(model, wavelength);
+  bool first = true;
+  visit_places(theta_max, 1, [&](const Geometry& geometry) {
+    const Mueller f = prepared.evaluate(geometry);
+    if (f(0, 0) == 0) return;
+    const double margin = realizability_margin(normalized(f));
+    if (margin < 0) ++result.unrealizable;
+    if (first || margin < result.margin.value) result.margin = {margin, geometry};
+    first = false;
+  });
+  return result;
+}
+
+double fitted_theta_max(const Validity& validity) {
+  if (!validity.theta_i_max || !validity.theta_r_max) return radians(90);
+  return std::max(*validity.theta_i_max, *validity.theta_r_max);
+}
+
+std::string not_positive_line(const F11Diagnostics& found, const std::string& where) {
+  if (found.not_positive_f11 == 0) return "";
+  return "f11 is not positive at " + std::to_string(found.not_positive_f11) + " of " +
+         counted(found.geometries, "direction") + " " + where + ", down to " + rounded(found.f11.value, 3) +
+         " sr^-1 at " + place_line(found.f11.geometry);
+}
+
+std::string energy_line(const F11Diagnostics& found, const std::string& where) {
+  if (!(found.dhr - 1 > found.u_dhr)) return "";
+  return "the directional-hemispherical reflectance reaches " + fixed(found.dhr, 4) +
+         (found.u_dhr > 0 ? " +- " + rounded(found.u_dhr, 2) : "") + " at theta_i " +
+         rounded(degrees(found.dhr_theta_i), 4) + " degrees, " + where + ": more light comes back than falls in; " +
+         usual_causes(found.dhr);
+}
+
+std::string place_line(const Geometry& g) {
+  return "theta_i " + rounded(degrees(g.incident.theta), 4) + ", theta_r " + rounded(degrees(g.reflected.theta), 4) +
+         ", phi_r - phi_i " + rounded(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360), 4) + " degrees";
 }
 
 }  // namespace mmbrdf

@@ -111,6 +111,13 @@ std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<co
   return kept;
 }
 
+Sides side(const Geometry& geometry) {
+  const auto& [incident, reflected] = geometry;
+  const double out = std::sin(reflected.phi - incident.phi) * std::sin(std::min(incident.theta, reflected.theta));
+  if (std::abs(out) <= std::sin(side_tolerance)) return plane_of_incidence;
+  return out < 0 ? negative_side : positive_side;
+}
+
 std::string sample_element(std::size_t element) { return (element == 0 ? "f" : "m") + element_name(element); }
 
 bool has_uncertainty(const Sample& sample) {

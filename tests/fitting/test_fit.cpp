@@ -161,19 +161,20 @@ TEST(Fit, RefusesNumbersThatAreNoStateOfItsBasis) {
   };
   EXPECT_EQ(refusal(5, -1), "a state of a fit with a number of samples -1");
   EXPECT_EQ(refusal(6, 1.6), "a state of a fit with a largest theta_i 1.6");
-  EXPECT_EQ(refusal(9, -2), "a state of a fit with a sum of weights -2");
+  EXPECT_EQ(refusal(10, -2), "a state of a fit with a sum of weights -2");
+  EXPECT_EQ(refusal(8, 9), "a state of a fit with sides of the plane of incidence 9");
   EXPECT_EQ(refusal(5, 1.5), "a state of a fit with a number of samples 1.5");
   EXPECT_EQ(refusal(5, 0), "a state of a fit with a number of samples 0");
   EXPECT_EQ(refusal(3, 1), "a state of a fit with another basis");  // of the same size: the other mapping
-  EXPECT_NE(refusal(8, -0.5), "nothing was thrown");
-  EXPECT_NE(refusal(10, std::nan("")), "nothing was thrown");
+  EXPECT_NE(refusal(9, -0.5), "nothing was thrown");
+  EXPECT_NE(refusal(11, std::nan("")), "nothing was thrown");
   const auto refused = [&](std::span<const double> numbers, const Basis& of) {
     return message_of([&] { FitAccumulator::from_state(of, numbers); });
   };
   EXPECT_EQ(refused(std::span(state).first(state.size() - 1), basis), "a state of a fit that ends too soon");
   EXPECT_EQ(refused(state, {Family::isotropic, {3, 2}}), "a state of a fit with another basis");
   std::vector<double> twice = state;
-  twice.insert(twice.end(), state.begin() + 8, state.end());
+  twice.insert(twice.end(), state.begin() + 9, state.end());
   EXPECT_EQ(refused(twice, basis), "a state of a fit whose wavelengths do not rise");
 }
 

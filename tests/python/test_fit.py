@@ -145,6 +145,28 @@ def test_chi_squared_per_degree_of_freedom_is_near_1_where_the_uncertainties_are
     assert all(0.8 < value < 1.2 for value in found.values())
 
 
+def test_uncertainties_count_as_given_or_scaled_by_the_residuals(samples):
+    at = (532, 45, 0, 30, 180)
+
+    def u_f11(times, **options):
+        u = times * np.full((4, 4), 0.01)
+        known = mmbrdf.Dataset(532, *samples.geometry, samples.mueller, uncertainty=u)
+        return mmbrdf.fit(known, weights="data", **options).model.evaluate_uncertainty(*at)[0, 0]
+
+    assert u_f11(3, covariance="given") == pytest.approx(3 * u_f11(1, covariance="given"), rel=1e-9)
+    assert u_f11(3) == pytest.approx(u_f11(1), rel=1e-9)
+    with pytest.raises(ValueError, match="takes weights data"):
+        mmbrdf.fit(samples, covariance="given")
+
+
+def test_a_fit_warns_of_what_contradicts_itself(samples):
+    assert mmbrdf.fit(samples).warnings == []
+    (percent,) = mmbrdf.fit(mmbrdf.Dataset(532, *samples.geometry, 100 * samples.mueller)).warnings
+    assert "in percent?" in percent
+    one_side = mmbrdf.fit(samples[np.sin(np.radians(samples.phi_r_deg - samples.phi_i_deg)) >= 0])
+    assert pickle.loads(pickle.dumps(one_side)).warnings == one_side.warnings != []
+
+
 def test_copies_of_a_fit_are_the_same(samples):
     for options in ({}, {"weights": "estimated", "orders": (3, 2)}):
         result = mmbrdf.fit(samples, **options)
@@ -192,7 +214,7 @@ def test_a_fit_to_a_model_without_noise_is_that_model(ptfe):
 
 
 def test_data_that_do_not_determine_a_model_are_refused(samples):
-    with pytest.raises(ValueError, match="free"):
+    with pytest.raises(ValueError, match="do not determine the model"):
         mmbrdf.fit(samples[:20])
     assert mmbrdf.fit(samples[:20], minimum_norm=True).model.blocks[0].rank < 40
     for wrong in ({"basis": "fourier"}, {"weights": "heavy"}, {"orders": (-1, 4)}, {"covariance": "small"}, {"powers": 3},

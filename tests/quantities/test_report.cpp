@@ -32,8 +32,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::array green{0.532};
 
 const std::vector<std::string> of_the_model{"title", "warnings", "model", "fit", "realizability", "reflectances"};
-const std::vector<std::string> of_samples{"data",  "residuals", "reciprocity", "mirror_symmetry", "dependence_on_phi_i",
-                                          "noise", "leverage",  "outliers"};
+const std::vector<std::string> of_samples{
+    "data",  "residuals", "chi_squared", "conventions", "reciprocity", "mirror_symmetry", "dependence_on_phi_i",
+    "noise", "leverage",    "outliers"};
 
 std::vector<std::string> names(const Json& object) {
   std::vector<std::string> result;
@@ -156,6 +157,26 @@ TEST(Report, HasTheNumbersOfTheSamplesToTheLastBit) {
   const SampleDiagnostics::Leverage& block = diagnostics.leverage[3];
   EXPECT_EQ(json["leverage"][3]["largest_leverage"].get<double>(), block.values[block.largest]);
   EXPECT_EQ(json["leverage"][3]["sample"], block.largest + 1);
+}
+
+TEST(Report, SetsTheResidualsBesideTheUncertaintiesOfTheSamples) {
+  std::vector<Sample> samples = measured(material("ptfe-532"));
+  const Model model = fitted(samples);
+  EXPECT_TRUE(report(model, samples)["chi_squared"].is_string());
+  for (Sample& s : samples) {
+    const double u = 0.01 * std::sqrt(std::cos(s.geometry.incident.theta) / std::cos(s.geometry.reflected.theta));
+    s.uncertainty.elements.fill(u);
+    s.uncertainty(0, 0) = u * s.f11;
+  }
+  const Json json = report(model, samples);
+  const FitResult weighted = fit(samples, {Family::isotropic, {4, 2}}, {}, Weights::data);
+  ASSERT_EQ(json["chi_squared"].size(), 7U);
+  EXPECT_EQ(json["chi_squared"][0]["block"], "11");
+  EXPECT_EQ(json["chi_squared"][0]["chi_squared_per_dof"].get<double>(), weighted.solutions[0].variance());
+  EXPECT_EQ(json["chi_squared"][6]["block"], "all but 11");
+  EXPECT_EQ(json["chi_squared"][6]["chi_squared_per_dof"].get<double>(), chi_squared_per_dof(weighted).others);
+  for (Sample& s : samples) s.uncertainty = 0.1 * s.uncertainty;
+  EXPECT_TRUE(warns(report(model, samples), "chi^2 per degree of freedom is "));
 }
 
 TEST(Report, OfAModelAsPrintedHasTheLeverageOfTheRowsThatWereFitted) {

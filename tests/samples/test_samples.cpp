@@ -33,6 +33,18 @@ double degrees_from_retro(const Geometry& g) {
 
 }  // namespace
 
+TEST(Side, IsOfTheReceiverBesideThePlaneOfIncidence) {
+  const auto at = [](double theta_i, double phi_i, double theta_r, double phi_r) {
+    return side({{radians(theta_i), radians(phi_i)}, {radians(theta_r), radians(phi_r)}});
+  };
+  EXPECT_EQ(at(30, 20, 50, 110), positive_side);
+  EXPECT_EQ(at(30, 20, 50, 290), negative_side);
+  EXPECT_EQ(at(30, 20, 50, 200.05), plane_of_incidence);
+  EXPECT_EQ(at(30, 20, 50, 201), negative_side);
+  EXPECT_EQ(at(0.001, 180, 50, 90), plane_of_incidence);  // at the normal every plane is that of incidence
+  EXPECT_EQ(at(50, 90, 0, 0), plane_of_incidence);
+}
+
 TEST(Wavelengths, AreDistinctAndRise) {
   const std::vector<Sample> samples{sample_at(0.633), sample_at(0.351), sample_at(0.633), sample_at(0.532)};
   EXPECT_EQ(wavelengths(samples), (std::vector<double>{0.351, 0.532, 0.633}));

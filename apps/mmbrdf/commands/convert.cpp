@@ -140,6 +140,7 @@ void convert(const Options& options, const CommandLine& line) {
   result.name = options.name.empty() ? result.name : options.name;
   result.provenance["conversion"] = line.text({options.input, options.output}) + " (" + software() + ")";
   save(result, options.output);
+  warn_if_above_one(result, known_wavelengths(result));
   warn_of_what_is_left_out(model, options.output, !options.name.empty());
   if (!model_format(options.output).lost && has_covariance(model) && !has_covariance(result))
     warn("the covariance of the coefficients is not carried over");

@@ -11,6 +11,8 @@
 #include "command.hpp"
 #include "mmbrdf/files/instrument_file.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
+#include "mmbrdf/quantities/conventions.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "options/polarimetry.hpp"
@@ -116,11 +118,32 @@ void add_instrument(FitResult& result, std::span<const Sample> samples, const Op
   mmbrdf::add_instrument(result, samples, options.basis, weights(options), instrument, name);
 }
 
-FitResult fitted(const Options& options, long& rows) {
+/// Some of the samples of a stream at its first wavelength, evenly spread over what there was so far.
+class Spread {
+ public:
+  void add(std::span<const Sample> samples) {
+    for (const Sample& sample : samples) {
+      if (!some_.empty() && !same_wavelength(sample.wavelength, some_.front().wavelength)) continue;
+      if (seen_++ % stride_ == 0) some_.push_back(sample);
+      if (some_.size() < 2 * most_tried) continue;
+      for (std::size_t i = 0; i < most_tried; ++i) some_[i] = some_[2 * i];
+      some_.resize(most_tried);
+      stride_ *= 2;
+    }
+  }
+  std::span<const Sample> some() const { return some_; }
+
+ private:
+  std::vector<Sample> some_;
+  std::size_t seen_ = 0, stride_ = 1;
+};
+
+FitResult fitted(const Options& options, long& rows, Spread& some) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
   read_samples_at(options.data, options.wavelengths_nm, [&](std::span<const Sample> samples) {
     rows += static_cast<long>(samples.size());
+    some.add(samples);
     if (streams(options))
       accumulator.add(samples);
     else
@@ -146,7 +169,8 @@ void record_noise(Model& model, const FitResult& result) {
 void fit_data(const Options& options, const CommandLine& line) {
   require_valid(options);
   long rows = 0;
-  FitResult result = fitted(options, rows);
+  Spread some;
+  FitResult result = fitted(options, rows, some);
   sign(result.model, options, rows, line);
   record_noise(result.model, result);
   save_or_warn(result.model, options);
@@ -156,7 +180,7 @@ void fit_data(const Options& options, const CommandLine& line) {
          .rows = rows,
          .result = result},
         options.format);
-  for (const std::string& warning : result.warnings) warn(warning);
+  for (const std::string& warning : fit_warnings(result, some.some())) warn(warning);
   if (!result.model.posterior) note_free_combinations(result);
 }
 
@@ -174,6 +198,11 @@ constexpr const char* footer =
     "at normal incidence, unless --reflectance gives it; the model keeps that table. Any number of rows takes the "
     "same\n"
     "memory, but for --weights, --covariance sandwich and --instrument.\n"
+    "\n"
+    "Warnings tell of reflectances above 1, of f11 that is not positive, of samples in one plane or on one side of it, "
+    "of\n"
+    "chi^2 and condition, and of samples that would fit better in another frame or with other signs than those of\n"
+    "xy: S2 = y - x, S4 = left - right.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf fit data.csv -o model.json\n"

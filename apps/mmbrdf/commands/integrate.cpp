@@ -2,6 +2,7 @@
 // mmbrdf integrate
 
 #include "pages/integrate.hpp"
+#include "pages/describe.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -267,6 +268,7 @@ void integrate(const Options& options) {
   const Integrated result = integrated(model, quantity, options);
   check_range(result, model.validity, options.strict);
   check_determined(model, quantity, options);
+  warn_if_above_one(model, wavelengths_of(model, options));
   if (!knows_uncertainty(model)) warn(result.model + " has no covariance: uncertainties are not known");
   write_text(options.output, written(result, options.format));
 }

@@ -2,10 +2,12 @@
 #include "pages/describe.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "pages/output.hpp"
@@ -108,6 +110,15 @@ std::string printed(const nlohmann::ordered_json& json) {
   for (const auto& [name, value] : json.items())
     text += (text.empty() ? "{\n  " : ",\n  ") + dumped(name) + ": " + by_lines(value);
   return text + "\n}\n";
+}
+
+void warn_if_above_one(const Model& model, std::span<const double> wavelengths) {
+  for (const double wavelength : wavelengths) {
+    const std::string where =
+        knows_wavelength(model) ? "at " + nanometre_list(std::array{wavelength}) : "at any wavelength";
+    const std::string line = energy_line(f11_diagnostics(model, wavelength, 0), where);
+    if (!line.empty()) return warn(line);
+  }
 }
 
 void print(const nlohmann::ordered_json& json) { std::cout << printed(json); }

@@ -23,6 +23,10 @@ void note_unless_printed(const Model& model, const std::string& name);
 /// say of that.
 void warn_if_outside(const Model& model, std::span<const Sample> samples, const std::string& name);
 
+/// Says on standard error at which of these wavelengths (micrometres), the first, more light comes back than falls in along
+/// the normal, and what that usually comes from.
+void warn_if_above_one(const Model& model, std::span<const double> wavelengths);
+
 /// Directional-hemispherical reflectance at normal incidence: "0.97515 at 351 nm, 0.98416 at 532 nm"
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "pages/describe.hpp"
 #include "pages/table.hpp"
 

@@ -23,6 +23,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mmbrdf/model/model.hpp"
@@ -109,23 +110,13 @@ struct FitResult {
   std::vector<Mueller> residuals;  ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
                                    ///< Only from fit(); a FitAccumulator keeps no samples.
   std::vector<NoiseEstimate> noise;   ///< of Weights::estimated: the law at each fitted wavelength; else empty
-  std::vector<std::string> warnings;  ///< a line each; only from fit()
-  Weights weights = Weights::none;   ///< those of fit(); a FitAccumulator knows no name for what it is given
+  std::vector<std::string> warnings;  ///< a line each, only from fit(); more in fit_warnings()
+  Sides sides = no_side;              ///< of the plane of incidence on which there are samples
+  Weights weights = Weights::none;    ///< those of fit(); a FitAccumulator knows no name for what it is given
 };
 
 /// Root mean square over the 15 normalised elements.
 double polarization_rms(const FitResult& result);
-
-/// Σ w r² / (rows − rank) of f11 and of the 15 others together; of a block it is Solution::variance(). Where weights are
-/// 1/u² (Weights::data): near 1 if the uncertainties are right and the model has the structure of the sample. 0 without
-/// degrees of freedom.
-struct ReducedChiSquared {
-  double f11 = 0, others = 0;
-};
-ReducedChiSquared chi_squared_per_dof(const FitResult& result);
-
-/// The variance of a row of unit weight: s², none without degrees of freedom; or 1 as given.
-std::optional<double> row_variance(const Solution& solution, Covariance covariance);
 
 /// Takes samples in any order and number, and solves whenever asked. Memory grows with the number of distinct
 /// wavelengths and with the orders, not with the number of samples.
@@ -143,8 +134,7 @@ class FitAccumulator {
   /// As if all of other's samples had been added here. Throws std::invalid_argument for another basis.
   void merge(const FitAccumulator& other);
 
-  /// An accumulator of the same samples at other orders. Throws std::invalid_argument if one is higher than those of
-  /// the basis.
+  /// Of the same samples at other orders. Throws std::invalid_argument if one is higher than those of the basis.
   FitAccumulator at_orders(const Orders& orders) const;
 
   long samples() const { return samples_; }
@@ -155,14 +145,13 @@ class FitAccumulator {
   /// Throws std::invalid_argument unless the numbers are a state of this basis.
   static FitAccumulator from_state(const Basis& basis, std::span<const double> state);
 
-  /// Throws std::invalid_argument if there are no samples, if the powers need more wavelengths than there are, if a
-  /// reflectance table does not reach a wavelength, if the samples do not determine the model and minimum_norm
-  /// is off: the message says how many combinations of which modes are free; or for a sandwich covariance.
+  /// Throws std::invalid_argument for no samples, more powers than the wavelengths tell, a reflectance table that does not
+  /// reach one, a sandwich covariance; and, without minimum_norm, for samples that do not determine the model: the message
+  /// says which modes are free, whether all samples lie in one plane, and which orders they do determine.
   FitResult solve(const FitOptions& options = {}) const;
 
-  /// How well a model, of whatever data, fits the samples: their f11 is divided by its reflectance.
-  /// Throws std::invalid_argument for a model of another basis, or of the same where one turns samples and the other
-  /// does not.
+  /// How well a model, of whatever data, fits the samples: their f11 is divided by its reflectance. Throws
+  /// std::invalid_argument for a model of another basis, or if one turns samples and the other does not.
   std::array<ElementFit, 16> misfit(const Model& model) const;
 
  private:
@@ -173,7 +162,6 @@ class FitAccumulator {
 
   struct Design;   // modes of elements: fit_rows.cpp
   struct Folding;  // of samples into triangles: there too
-
   static std::shared_ptr<const std::vector<Design>> designs(std::span<const Block> blocks, Family family);
   AtWavelength& slot(double wavelength);
   friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);
@@ -189,6 +177,8 @@ class FitAccumulator {
   bool takes_own_reflectance(const FitOptions& options) const;
   bool turns() const;
   bool accepts_minimum_norm(const FitOptions& options) const;
+  std::string determined_orders(const FitOptions& options) const;
+  void require_determined(const std::string& refusal, const std::string& free, const FitOptions& options) const;
   int chosen_powers(const FitOptions& options) const;
   ReflectanceTable own_reflectance(const FitOptions& options, SvdCache& known) const;
   void require_covered(const ReflectanceTable& table) const;
@@ -200,6 +190,7 @@ class FitAccumulator {
   std::shared_ptr<const std::vector<Design>> designs_;
   std::map<double, AtWavelength> wavelengths_;
   double theta_i_max_ = 0, theta_r_max_ = 0;
+  Sides sides_ = no_side;
   long samples_ = 0;
 };
 

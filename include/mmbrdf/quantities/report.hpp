@@ -22,6 +22,9 @@
 ///   residuals             samples − model: a row for f11 in sr⁻¹, one for f11 relative to f11, one for each of the 15
 ///                         other elements: element ("11" … "44"), unit ("sr^-1" or "f11"), rms, mean, largest,
 ///                         wavelength_nm, at (compare)
+///   chi_squared           row by block, and one of all but 11: block, degrees_of_freedom, chi_squared_per_dof of a fit
+///                         weighted by the uncertainties of the samples; where not all are known, a sentence
+///   conventions           row by what the samples may be read as: read_as, rms (convention_fits)
 ///   reciprocity           row by block: block, rows, more_coefficients, rms, rms_without, F, p (symmetry_tests);
 ///   mirror_symmetry       rows as for reciprocity; rms_without is what is left without the symmetry
 ///   dependence_on_phi_i   rows as for reciprocity, without isotropy; where the source has one azimuth in the samples,
@@ -67,8 +70,8 @@ struct ReportedSamples {
 };
 
 /// Of the model called `name`, at these wavelengths (micrometres); none given: at known_wavelengths(model). Residuals
-/// and noise are those of the model as it is; symmetries, leverage and outliers are of fits of its basis to the
-/// samples, without weights. Throws std::invalid_argument for an invalid model or wavelength, if there is no wavelength
+/// and noise are those of the model as it is; chi^2, conventions, symmetries, leverage and outliers are of fits of its basis to the
+/// samples, without weights but for chi^2. Throws std::invalid_argument for an invalid model or wavelength, if there is no wavelength
 /// to report on, and for samples as compare(), symmetry_tests() and fit() do.
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths = {},
                         const std::optional<ReportedSamples>& samples = {});

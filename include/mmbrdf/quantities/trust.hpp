@@ -1,30 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where a model is not physical.
+/// Where a model is not physical, and in which words.
 #pragma once
+
+#include <string>
 
 #include "mmbrdf/model/model.hpp"
 
 namespace mmbrdf {
 
-/// A model alone, at one wavelength: theta_i and theta_r in steps of 2.5 degrees up to theta_max, phi_r − phi_i in
-/// steps of 7.5 degrees from 0 to 180 (theory 6.2).
-struct ModelDiagnostics {
+/// What f11 of a model says at one wavelength, in a few milliseconds: theta_i and theta_r in steps of 2.5 degrees up to
+/// theta_max, phi_r − phi_i in steps of 7.5 degrees from 0 to 180 (theory 6.2); or `coarser` times these steps.
+struct F11Diagnostics {
   struct Extreme {
     double value = 0;
     Geometry geometry;
   };
   double wavelength = 0, theta_max = 0;
   int geometries = 0;
-  Extreme margin;            ///< smallest coherency eigenvalue of M / f11: negative is not realizable (Cloude 1986)
-  int unrealizable = 0;      ///< how many are negative
   Extreme f11;               ///< smallest, sr⁻¹
   int not_positive_f11 = 0;  ///< how many are
   double dhr = 0;  ///< largest directional-hemispherical reflectance, in steps of 0.5 degrees: above 1, the model
                    ///< or the scale of its data creates energy
   double dhr_theta_i = 0;
+  double u_dhr = 0;  ///< standard uncertainty of a dhr above 1; else, and where it is not known, 0
 };
 
-/// Throws std::invalid_argument for an invalid model or wavelength, or theta_max not in [0, π/2].
+/// And the whole matrix, at the same places.
+struct ModelDiagnostics : F11Diagnostics {
+  Extreme margin;        ///< smallest coherency eigenvalue of M / f11: negative is not realizable (Cloude 1986)
+  int unrealizable = 0;  ///< how many are negative
+};
+
+/// Both throw std::invalid_argument for an invalid model or wavelength, or theta_max not in [0, π/2].
+F11Diagnostics f11_diagnostics(const Model& model, double wavelength, double theta_max = radians(90), int coarser = 1);
 ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double theta_max = radians(90));
+
+/// The largest polar angle of the data that a model was fitted to; π/2 if that is not known.
+double fitted_theta_max(const Validity& validity);
+
+/// A sentence on f11 that is not positive, and one on a reflectance above 1 by more than its uncertainty, with what is
+/// usually the cause; empty if there is none. `where` is such as "within the fitted angles at 532 nm".
+std::string not_positive_line(const F11Diagnostics& found, const std::string& where);
+std::string energy_line(const F11Diagnostics& found, const std::string& where);
+
+/// How a geometry is called in sentences: "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees".
+std::string place_line(const Geometry& geometry);
 
 }  // namespace mmbrdf

@@ -25,6 +25,17 @@ struct Sample {
 /// Whether the uncertainty of any of its elements is known.
 bool has_uncertainty(const Sample& sample);
 
+/// On which side of its plane of incidence a geometry lies; a bit each, so that many can be told in one number.
+enum Sides : unsigned {
+  no_side = 0,
+  plane_of_incidence =
+      1,  ///< source, normal and receiver lie in one plane, to side_tolerance: also all that is at the normal
+  negative_side = 2,  ///< sin(φr − φi) < 0
+  positive_side = 4,
+};
+Sides side(const Geometry& geometry);
+inline constexpr double side_tolerance = radians(0.1);  ///< of the one direction against the plane of the other
+
 /// What samples hold, as their columns are called: "f11", "m12" … "m44" for 0, 1 … 15.
 std::string sample_element(std::size_t element);
 

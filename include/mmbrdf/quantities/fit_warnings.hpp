@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What a fit says against itself: whether its data are what they are taken for.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/fitting/fit.hpp"
+
+namespace mmbrdf {
+
+/// Σ w r² / (rows − rank) of f11 and of the 15 others together; of a block it is Solution::variance(). Where weights are
+/// 1/u² (Weights::data): near 1 if the uncertainties are right and the model has the structure of the sample. 0 without
+/// degrees of freedom.
+struct ReducedChiSquared {
+  double f11 = 0, others = 0;
+};
+ReducedChiSquared chi_squared_per_dof(const FitResult& result);
+
+/// Beyond these there is a warning. A χ² per degree of freedom that large is no chance from 30 degrees of freedom on (p =
+/// 1e-3); and with a condition that large the least determined combination of coefficients is 1e5 times as uncertain as
+/// the best.
+inline constexpr double high_chi_squared = 2, high_condition = 1e5;
+
+/// A sentence for each of the following that holds, without a full stop:
+///
+///   - the samples lie in one plane only, or all on one side of it (to side_tolerance)
+///   - with Weights::data, χ² per degree of freedom of f11 or the others exceeds high_chi_squared
+///   - the condition of a block exceeds high_condition; not of a mixed model, whose uncertainty says it
+std::vector<std::string> data_warnings(const FitResult& result);
+
+/// Those of the fit itself (FitResult::warnings), data_warnings(), and of the model within the fitted angles, at no more than most_checked of the fitted wavelengths:
+///
+///   - a directional-hemispherical reflectance above 1 by more than its standard uncertainty: energy_line()
+///   - f11 that is not positive: not_positive_line()
+///
+/// and, if there are samples, that they fit better in another frame or with other signs: convention_warning(). These may
+/// be some of those fitted. Takes a few milliseconds for each wavelength and each of the conventions.
+std::vector<std::string> fit_warnings(const FitResult& result, std::span<const Sample> samples = {});
+inline constexpr std::size_t most_checked = 12;
+
+}  // namespace mmbrdf
