@@ -53,7 +53,7 @@ constexpr const char* select_doc =
     "Which orders and powers of the wavelength the data support, by cross-validation: a Selection.\n\n"
     "orders_f11, orders_other  (first, last); None: (2, 9) and (2, 6), of anisotropic (1, 4) and (1, 3)\n"
     "powers                    (first, last); None: (0, 1), (0, 0) for one wavelength\n"
-    "folds, random_folds, seed sample number modulo folds, or by lot\n"
+    "folds, random_folds, seed number of the direction modulo folds, or by lot\n"
     "leave_out                 'angle', 'wavelength', 'angle,wavelength' or 'none'; None: what the data allow\n"
     "Other arguments as those of fit(). Recommended is the lowest order whose error is within 1 % of the smallest;\n"
     "refused is what the data do not determine, and orders above the best whose error is more than 50 % larger.";

@@ -65,6 +65,12 @@ std::array<int, 16> uncertainty_columns(const CsvReader& reader) {
   return columns;
 }
 
+/// Of the angle by which the sample was turned, −1 if it was not.
+int rotation_column(const CsvReader& reader) {
+  constexpr std::string_view names[] = {"sample_rotation_deg"};
+  return reader.find(names);
+}
+
 double uncertainty(const CsvReader& reader, int column) {
   const double value = measured(reader, column);
   if (value < 0)
@@ -89,6 +95,7 @@ SampleReader::SampleReader(std::istream& in, const std::string& name)
     : name_(name),
       reader_(in, name),
       geometry_(reader_),
+      rotation_(rotation_column(reader_)),
       elements_(element_columns(reader_, m11_)),
       uncertainties_(uncertainty_columns(reader_)) {}
 
@@ -105,6 +112,7 @@ bool SampleReader::next(Sample& sample) {
   for (std::size_t e = 1; e < elements_.size(); ++e) sample.normalized.elements[e] = measured(reader_, elements_[e]);
   for (std::size_t e = 0; e < uncertainties_.size(); ++e)
     sample.uncertainty.elements[e] = uncertainties_[e] < 0 ? 0 : uncertainty(reader_, uncertainties_[e]);
+  if (rotation_ >= 0) sample = turned(sample, -radians(measured(reader_, rotation_)));
   if (m11_ >= 0 && reader_.number(m11_) != 1)
     throw reader_.error("m11: " + std::string(reader_.field(m11_)) +
                         ": must be 1 next to f11, as elements are divided by it");

@@ -149,10 +149,9 @@ std::vector<SubsetSplit> split_samples(std::span<const Sample> samples, const Di
   std::vector<SubsetSplit> result;
   for (int i = 0; i < division.splits; ++i) {
     const unsigned long seed = division.seed + static_cast<unsigned long>(i);
-    result.push_back(split(samples,
-                           division.by_lot() ? random_folds(samples.size(), division.parts, seed)
-                                             : folds_by_row(samples.size(), division.parts),
-                           question));
+    result.push_back(split(
+        samples, folds_by_direction(samples, division.parts, division.by_lot() ? std::optional(seed) : std::nullopt),
+        question));
     if (division.by_lot()) result.back().seed = seed;
   }
   return result;

@@ -176,7 +176,7 @@ Field data_field(const Model& model, const ReportedSamples& data) {
                {"wavelengths", nanometre_list(wavelengths(data.samples))},
                {"residuals and noise", "of the model as it is"},
                {"chi_squared", "of fits of its basis to these samples, weighted by their uncertainties"},
-               {"conventions, symmetries, leverage and outliers",
+               {"conventions, symmetries, repeats, leverage and outliers",
                 "of fits of its basis to these samples, without weights"}}};
   RangeCount range;
   for (const Sample& s : data.samples) range.add(outside(model.validity, s.wavelength, s.geometry));
@@ -312,6 +312,25 @@ Field outlier_field(const SampleDiagnostics& diagnostics, std::span<const Sample
   return field;
 }
 
+/// What repeats say of the misfit: a table, or the sentence that there are none.
+Field repeats(std::span<const Sample> samples, const FitResult& fitted) {
+  Field field;
+  for (const LackOfFit& test : lack_of_fit(samples, fitted)) {
+    if (test.repeats == 0) return {"no geometry was measured twice: repeats would tell noise from misfit"};
+    field.value.push_back({{"block", test.block},
+                           {"repeats", test.repeats},
+                           {"pure_error", test.pure_error},
+                           {"misfit", test.misfit},
+                           {"F", test.f},
+                           {"p", test.p}});
+    if (test.p < significant_p && test.misfit > (1 + noticeable_fall) * test.pure_error)
+      field.warnings.push_back("the model misses block " + test.block +
+                               " by more than repeats scatter: F = " + rounded(test.f, 3) + ", " +
+                               rounded(test.misfit, 3) + " against " + rounded(test.pure_error, 3));
+  }
+  return field;
+}
+
 void add(Json& report, const std::string& name, Field field) {
   report[name] = std::move(field.value);
   for (std::string& warning : field.warnings) report["warnings"].push_back(std::move(warning));
@@ -332,6 +351,7 @@ void add_samples(Json& report, const Model& model, const ReportedSamples& data) 
     report["dependence_on_phi_i"] =
         "the source has one azimuth in these data: whether the sample is isotropic cannot be told";
   add(report, "noise", noise(model, data.samples));
+  add(report, "repeats", repeats(data.samples, unweighted));
   const SampleDiagnostics diagnostics = sample_diagnostics(data.samples, unweighted);
   add(report, "leverage", leverage(diagnostics, data.samples));
   add(report, "outliers", outlier_field(diagnostics, data.samples));

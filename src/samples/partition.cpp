@@ -2,7 +2,10 @@
 #include "mmbrdf/samples/partition.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -16,12 +19,12 @@ constexpr double widest = 10;  // times the tolerance: more is no angle of a gon
 
 using Kind = Partition::Kind;
 
-void require_folds(std::size_t samples, int folds) {
+void require_folds(std::size_t samples, int folds, const std::string& what = "samples") {
   if (folds < 2 || folds > max_folds)
     throw std::invalid_argument("folds: " + std::to_string(folds) + " is not in 2..." + std::to_string(max_folds));
   if (static_cast<std::size_t>(folds) > samples)
-    throw std::invalid_argument("folds: " + std::to_string(folds) + ", more than the " + std::to_string(samples) +
-                                " samples");
+    throw std::invalid_argument("folds: " + std::to_string(folds) + ", more than the " + std::to_string(samples) + " " +
+                                what);
 }
 
 Partition numbered_folds(Kind kind, std::size_t samples, int folds) {
@@ -60,6 +63,32 @@ Partition random_folds(std::size_t samples, int folds, unsigned long seed) {
   std::mt19937_64 engine(seed);
   for (std::size_t left = samples; left > 1; --left)  // not std::shuffle, which differs among libraries
     std::swap(partition.fold[left - 1], partition.fold[engine() % left]);
+  return partition;
+}
+
+std::vector<std::size_t> directions(std::span<const Sample> samples) {
+  constexpr double step = radians(0.1);
+  std::map<std::array<long, 3>, std::size_t> numbers;
+  std::vector<std::size_t> result;
+  for (const Sample& sample : samples) {
+    const auto& [incident, reflected] = sample.geometry;
+    const double delta = std::remainder(reflected.phi - incident.phi, 2 * std::numbers::pi);
+    const std::array steps{std::lround(incident.theta / step), std::lround(reflected.theta / step),
+                           std::lround(delta / step)};
+    const bool back = steps[2] == std::lround(-std::numbers::pi / step);  // −180 is 180 degrees
+    result.push_back(
+        numbers.try_emplace({steps[0], steps[1], back ? -steps[2] : steps[2]}, numbers.size()).first->second);
+  }
+  return result;
+}
+
+Partition folds_by_direction(std::span<const Sample> samples, int folds, std::optional<unsigned long> seed) {
+  std::vector<std::size_t> direction = directions(samples);
+  const std::size_t count = direction.empty() ? 0 : *std::ranges::max_element(direction) + 1;
+  require_folds(count, folds, count < samples.size() ? "directions of the samples" : "samples");
+  Partition partition = seed ? random_folds(count, folds, *seed) : folds_by_row(count, folds);
+  for (std::size_t& number : direction) number = partition.fold[number];
+  partition.fold = std::move(direction);
   return partition;
 }
 
@@ -107,9 +136,8 @@ LeaveOut leave_out_from(const std::string& name) {
 }
 
 Folds folds(std::span<const Sample> samples, const FoldOptions& options) {
-  Folds result{{options.random ? random_folds(samples.size(), options.folds, options.seed)
-                               : folds_by_row(samples.size(), options.folds)},
-               {}};
+  Folds result{
+      {folds_by_direction(samples, options.folds, options.random ? std::optional(options.seed) : std::nullopt)}, {}};
   std::vector<Partition>& all = result.partitions;
   const LeaveOut what = options.leave_out;
   if (what == LeaveOut::angle || what == LeaveOut::both) all.push_back(folds_by_incident_angle(samples));

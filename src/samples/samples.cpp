@@ -135,15 +135,16 @@ void require_valid(std::span<const Sample> samples) {
   }
 }
 
-Sample at_zero_azimuth(const Sample& sample) {
-  const double phi = sample.geometry.incident.phi;
+Sample turned(const Sample& sample, double angle) {
   Sample result = sample;
-  result.normalized = turned(sample.normalized, -phi);
-  if (has_uncertainty(sample)) result.uncertainty = turned_uncertainty(sample.uncertainty, -phi);
-  result.geometry.incident.phi = 0;
-  result.geometry.reflected.phi -= phi;
+  result.normalized = turned(sample.normalized, angle);
+  if (has_uncertainty(sample)) result.uncertainty = turned_uncertainty(sample.uncertainty, angle);
+  result.geometry.incident.phi += angle;
+  result.geometry.reflected.phi += angle;
   return result;
 }
+
+Sample at_zero_azimuth(const Sample& sample) { return turned(sample, -sample.geometry.incident.phi); }
 
 std::vector<std::size_t> grouped(std::span<const double> values, double tolerance) {
   std::vector<std::size_t> order(values.size()), result(values.size());

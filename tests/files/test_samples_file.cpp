@@ -48,6 +48,20 @@ std::string own(const std::string& row) { return own_header + row + elements; }
 
 // ---- samples --------------------------------------------------------------------------------------------------------
 
+// The light comes from 180 degrees of the laboratory, which is 150 on a sample that was turned by 30.
+TEST(SamplesFile, TurnsBackWhatWasMeasuredOfATurnedSample) {
+  std::string header = own_header;
+  header.insert(header.size() - 1, ",sample_rotation_deg");
+  const std::string row = std::string("532,45,180,30,0,0.3") + elements;
+  std::string turned_row = row;
+  turned_row.insert(turned_row.size() - 1, ",30");
+  const Sample plain = samples_in(own_header + row).front(), back = samples_in(header + turned_row).front();
+  EXPECT_NEAR(degrees(back.geometry.incident.phi), 150, 1e-12);
+  EXPECT_NEAR(degrees(back.geometry.reflected.phi), -30, 1e-12);
+  EXPECT_EQ(back.normalized, turned(plain.normalized, -radians(30)));
+  EXPECT_EQ(back.f11, plain.f11);
+}
+
 TEST(Samples, OfThePublishedLayoutHaveTheSourceWhereANegativePolarAngleSays) {
   const auto samples = samples_in(std::string(published_header) + "0.532,-15,0,80.0258,-156.038,2.62E-01" + elements);
   ASSERT_EQ(samples.size(), 1U);

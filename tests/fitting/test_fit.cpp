@@ -18,6 +18,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/projection.hpp"
 #include "mmbrdf/fitting/weights.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 

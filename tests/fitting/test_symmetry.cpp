@@ -13,6 +13,7 @@
 
 #include "given/disturbed.hpp"
 #include "given/published_samples.hpp"
+#include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
@@ -224,6 +225,34 @@ TEST(PublishedData, OfF11At351NanometresAreNotReciprocal) {
   EXPECT_NEAR(f11.rms, 0.00322, 0.5e-5);
   EXPECT_NEAR(f11.rms_extended, 0.00227, 0.5e-5);
   EXPECT_TRUE(found.one_azimuth);
+}
+
+// Speckle of a known size, three times in each of 200 directions, of a model that the right basis fits and a lower does not.
+TEST(LackOfFit, TellsMisfitFromNoise) {
+  const Basis right{Family::isotropic, {4, 2}}, low{Family::isotropic, {1, 0}};
+  const std::vector<Geometry> places = random_geometries(200, 9, radians(40));
+  const Model model = fit(simulate(material("ptfe-532"), std::array{0.532}, germer2017_grid()), right).model;
+  std::vector<Sample> samples;
+  for (const unsigned long seed : {1, 2, 3})
+    std::ranges::move(simulate(model, std::array{0.532}, places, 0.01, seed), std::back_inserter(samples));
+  for (const LackOfFit& test : lack_of_fit(samples, fit(samples, right))) {
+    EXPECT_GT(test.p, 1e-3) << test.block;
+    EXPECT_TRUE(test.block == "11" || std::abs(test.pure_error - 0.01) < 1e-3) << test.block;
+  }
+  const LackOfFit f11 = lack_of_fit(samples, fit(samples, low)).front();
+  EXPECT_EQ(f11.repeats, 400);
+  EXPECT_LT(f11.p, 1e-6);
+  EXPECT_GT(f11.misfit, 1.2 * f11.pure_error);
+}
+
+TEST(LackOfFit, IsNotTestedWithoutRepeats) {
+  const std::vector<Sample> samples =
+      simulate(material("ptfe-532"), std::array{0.532}, random_geometries(200, 9), 0.01, 1);
+  for (const LackOfFit& test : lack_of_fit(samples, fit(samples))) {
+    EXPECT_EQ(test.repeats, 0);
+    EXPECT_EQ(test.p, 1);
+  }
+  EXPECT_THROW(lack_of_fit(samples, FitResult{}), std::invalid_argument);
 }
 
 }  // namespace mmbrdf

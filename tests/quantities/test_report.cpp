@@ -18,6 +18,7 @@
 #include "mmbrdf/fitting/leverage.hpp"
 #include "mmbrdf/fitting/symmetry.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
@@ -34,7 +35,7 @@ constexpr std::array green{0.532};
 const std::vector<std::string> of_the_model{"title", "warnings", "model", "fit", "realizability", "reflectances"};
 const std::vector<std::string> of_samples{
     "data",  "residuals", "chi_squared", "conventions", "reciprocity", "mirror_symmetry", "dependence_on_phi_i",
-    "noise", "leverage",    "outliers"};
+    "noise", "repeats",   "leverage",    "outliers"};
 
 std::vector<std::string> names(const Json& object) {
   std::vector<std::string> result;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -42,6 +43,32 @@ TEST(Partition, AtRandomIsEvenAndFollowsTheSeed) {
   expect_all_used(one, 100);
   for (std::size_t f = 0; f < 3; ++f)
     EXPECT_NEAR(static_cast<double>(std::count(one.fold.begin(), one.fold.end(), f)), 100 / 3., 1) << f;
+}
+
+// Three rows of each of seven directions: at another wavelength, and of the sample turned about its normal.
+TEST(Partition, ByDirectionKeepsRepeatsTogether) {
+  const std::vector<Sample> once = in_random_directions(7);
+  std::vector<Sample> samples = once;
+  for (const Sample& s : once) {
+    samples.push_back(s);
+    samples.back().wavelength += 0.1;
+  }
+  for (const Sample& s : once) {
+    samples.push_back(s);
+    samples.back().geometry.incident.phi += 1;
+    samples.back().geometry.reflected.phi += 1 - 2 * std::numbers::pi;
+  }
+  EXPECT_EQ(folds_by_direction(once, 3).fold, folds_by_row(7, 3).fold);
+  EXPECT_EQ(folds_by_direction(once, 3, 5).fold, random_folds(7, 3, 5).fold);
+  for (const Partition& partition : {folds_by_direction(samples, 3), folds_by_direction(samples, 3, 5)}) {
+    expect_all_used(partition, 21);
+    for (std::size_t s = 0; s < 7; ++s) {
+      EXPECT_EQ(partition.fold[s + 7], partition.fold[s]) << s;
+      EXPECT_EQ(partition.fold[s + 14], partition.fold[s]) << s;
+    }
+  }
+  EXPECT_EQ(message_of([&] { folds_by_direction(std::vector<Sample>(5, once.front()), 2); }),
+            "folds: 2, more than the 1 directions of the samples");
 }
 
 TEST(Partition, PartsAreTheSamplesOfEachFoldInTheirOrder) {
@@ -86,7 +113,10 @@ TEST(Partition, LeavesOutWhatTheDataAllow) {
   };
   using Kinds = std::vector<std::string>;
   std::vector<Sample> samples(30);
-  for (std::size_t s = 0; s < samples.size(); ++s) samples[s].wavelength = 0.4 + 0.1 * static_cast<double>(s % 2);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    samples[s].wavelength = 0.4 + 0.1 * static_cast<double>(s % 2);
+    samples[s].geometry.reflected.theta = 0.01 * static_cast<double>(s);
+  }
   const Folds one_angle = folds(samples, {});
   EXPECT_EQ(one_angle.partitions.size(), 1U);
   EXPECT_NE(one_angle.note.find("the data have 1, it takes 2 to 100; folds alone decide"), std::string::npos);

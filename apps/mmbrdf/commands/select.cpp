@@ -83,7 +83,8 @@ Run select_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--mapping", o->selection.mapping, disc_mapping_from, "NAME",
              "Hemisphere to disc: lambert or projected [lambert]");
   add_ranges(app, o);
-  add_option(app, "--folds", o->folds.folds, whole_number, "K", "Folds of samples: row number modulo K [3]");
+  add_option(app, "--folds", o->folds.folds, whole_number, "K",
+             "Folds of samples: number of the direction modulo K;\nrows of one direction stay together [3]");
   add_flag(app, "--random-folds", o->folds.random, "Take random folds instead");
   add_option(app, "--seed", o->folds.seed, seed, "SEED", "Of the random folds [1]");
   add_option(app, "--leave-out", o->folds.leave_out, leave_out_from, "WHAT",

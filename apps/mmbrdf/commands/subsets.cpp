@@ -228,7 +228,7 @@ Run subsets_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
   add_option(app, "--k", o->division.parts, whole_number, "K", "Number of parts [3]");
-  add_flag(app, "--random", o->division.random, "Divide by lot; else every K-th sample is of one part");
+  add_flag(app, "--random", o->division.random, "Divide by lot; else every K-th direction is of one part");
   add_option(app, "--splits", o->division.splits, whole_number, "N",
              "Divide by lot as often as this, with seeds S, S+1, ... [1]");
   add_option(app, "--seed", o->division.seed, seed, "S", "Whole number that chooses the lot [0]");

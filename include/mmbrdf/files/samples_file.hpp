@@ -28,7 +28,7 @@ class SampleReader {
   std::string name_;
   CsvReader reader_;
   GeometryColumns geometry_;
-  int m11_ = -1;
+  int m11_ = -1, rotation_;
   std::array<int, 16> elements_, uncertainties_;  // columns; −1: none
   long rows_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Symmetries that data break: reciprocity, handedness, isotropy.
+/// Symmetries that data break: reciprocity, handedness, isotropy; and what repeated samples say of the misfit.
 ///
 /// They are tested by what breaking them explains. The samples of each wavelength are fitted by the modes of the
 /// isotropic family, block by block, and again with more functions; of RSS and RSS' (Σ w r²), q more coefficients that
@@ -35,6 +35,20 @@ struct FTest {
   double f = 0;
   double p = 1;  ///< of an F at least as large
 };
+
+/// Lack of fit of a block against pure error: samples of the same wavelength and geometry scatter about their mean whatever
+/// the model is; what residuals hold beyond that is misfit.
+struct LackOfFit {
+  std::string block;
+  long repeats = 0;       ///< ν, degrees of freedom of the pure error: rows − geometries. 0: nothing is tested
+  double pure_error = 0;  ///< √(SS / ν) of the scatter of repeats about their means
+  double misfit = 0;  ///< √((RSS − SS) / q), q = rows − rank − ν: what pure error would be if the model were right
+  double f = 0;       ///< of the two mean squares
+  double p = 1;       ///< of an F at least as large
+};
+
+/// Of a fit without weights to these samples. Throws std::invalid_argument if it has not one residual for each.
+std::vector<LackOfFit> lack_of_fit(std::span<const Sample> samples, const FitResult& fitted);
 
 struct SymmetryTests {
   /// Each mode that is not its own twin split in two: Z(i,r) and Z(r,i) for 11, 44, u and v, the elements with i first

@@ -31,6 +31,8 @@
 ///                         the sentence that says so
 ///   noise                 row by wavelength whose law is known: wavelength_nm, scale, u_scale, exponent_cos_theta_i,
 ///                         u_exponent_i, exponent_cos_theta_r, u_exponent_r (estimate_noise)
+///   repeats               row by block: block, repeats, pure_error, misfit, F, p (lack_of_fit); where no geometry was
+///                         measured twice, a sentence
 ///   leverage              row by block: block, rank, largest_leverage, sample, at (sample_diagnostics)
 ///   outliers              row by element of a sample, the largest first and at most listed_outliers: sample, element,
 ///                         studentized, wavelength_nm, at

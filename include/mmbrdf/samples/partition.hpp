@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,14 @@ Partition folds_by_row(std::size_t samples, int folds);
 /// As even as can be, by the seed, the same on every machine. Throws as folds_by_row does.
 Partition random_folds(std::size_t samples, int folds, unsigned long seed);
 
+/// The direction of each sample, numbered in the order in which they first come: theta_i, theta_r and phi_r − phi_i to a
+/// tenth of a degree. At another wavelength, or of the sample turned about its normal, it is the same.
+std::vector<std::size_t> directions(std::span<const Sample> samples);
+
+/// The directions dealt as folds_by_row() or, with a seed, random_folds() deal samples. Samples of one direction stay
+/// together: else what is left out is known from its repeats. Throws as these do.
+Partition folds_by_direction(std::span<const Sample> samples, int folds, std::optional<unsigned long> seed = {});
+
 /// One fold for each polar angle of incidence. Angles are one if no gap between them exceeds the tolerance (radians):
 /// files round, and the published grid has 0.001 degrees for 0. Throws std::invalid_argument for fewer than 2 or more
 /// than max_folds angles, for so many that they cannot be told apart, or a negative tolerance.
@@ -43,8 +52,8 @@ enum class LeaveOut { what_can_be, angle, wavelength, both, none };
 LeaveOut leave_out_from(const std::string& name);
 
 struct FoldOptions {
-  int folds = 3;           ///< of samples: folds_by_row
-  bool random = false;     ///< or random_folds
+  int folds = 3;           ///< of samples: folds_by_direction
+  bool random = false;     ///< by lot
   unsigned long seed = 1;  ///< of these
   LeaveOut leave_out = LeaveOut::what_can_be;
 };

@@ -58,6 +58,10 @@ std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<co
 /// geometry, a number that is not finite or an uncertainty below 0.
 void require_valid(std::span<const Sample> samples);
 
+/// What is measured at azimuths that are larger by `angle` (radians) if sample and beams are turned together: matrix and
+/// uncertainties in the xy frame are turned with them, the latter as at_zero_azimuth() says.
+Sample turned(const Sample& sample, double angle);
+
 /// The sample as an isotropic specimen would give it at phi_i = 0: in axes turned with the plane of incidence. Its
 /// uncertainties are turned as if the errors of its elements were uncorrelated, as a sample holds no correlations:
 /// u'² = Σ c² u², c the coefficients of the rotation. Where one that counts is not known, neither is the result.
