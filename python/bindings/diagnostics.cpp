@@ -135,7 +135,7 @@ using Other = std::variant<DatasetPointer, ModelPointer>;
 ModelPointer model_of(const Other& one) {
   if (const auto* model = std::get_if<ModelPointer>(&one)) return *model;
   const std::vector<Sample>& samples = std::get<DatasetPointer>(one)->samples;
-  return std::make_shared<ModelObject>(without_gil([&] { return fit(samples).model; }));
+  return std::make_shared<ModelObject>(without_gil([&] { return fit_sample(samples).model; }));
 }
 
 bool is_samples(const Other& one) { return std::holds_alternative<DatasetPointer>(one); }

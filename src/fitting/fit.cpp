@@ -366,6 +366,11 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
   return result;
 }
 
+FitResult fit_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options) {
+  options.uncertainty = Uncertainty::sample;
+  return fit(samples, basis, options, Weights::speckle);
+}
+
 std::string to_string(Uncertainty uncertainty) { return name_of(uncertainty_names, uncertainty); }
 Uncertainty uncertainty_from(const std::string& name) { return value_of(uncertainty_names, name, "uncertainty"); }
 std::string to_string(Weights weights) { return name_of(weights_names, weights); }

@@ -139,19 +139,21 @@ auto tried(const auto& work) {
   }
 }
 
+/// Of Weights::estimated, else none.
+std::vector<NoiseEstimate> noise_for(std::span<const Sample> samples, const Basis& basis, FitOptions options,
+                                     Weights weights) {
+  if (weights != Weights::estimated) return {};
+  options.uncertainty = Uncertainty::noise;
+  return fit(samples, basis, options, weights).noise;
+}
+
 /// The samples by wavelength, with the laws that the weights stand for.
-std::map<double, Series> series_of(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
-                                   Weights weights) {
+std::map<double, Series> series_of(std::span<const Sample> samples, Weights weights,
+                                   const std::vector<NoiseEstimate>& noise) {
   std::map<double, Series> result;
   const std::vector<double> nodes = wavelengths(samples);
   for (const Sample& sample : samples)
     result[nodes[wavelength_index(nodes, sample.wavelength)]].samples.push_back(sample);
-  std::vector<NoiseEstimate> noise;
-  if (weights == Weights::estimated) {
-    FitOptions plain = options;
-    plain.uncertainty = Uncertainty::noise;
-    noise = fit(samples, basis, plain, weights).noise;
-  }
   for (auto& [wavelength, one] : result) {
     if (weights == Weights::none) one.law = {0, 0, false};
     if (weights != Weights::estimated) continue;
@@ -276,7 +278,8 @@ MixedFit mixed_fit(const std::map<double, Series>& series, const Basis& basis, i
 FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options,
                                     Weights weights) {
   options.minimum_norm = true;
-  std::map<double, Series> series = series_of(samples, basis, options, weights);
+  const std::vector<NoiseEstimate> noise = noise_for(samples, basis, options, weights);
+  std::map<double, Series> series = series_of(samples, weights, noise);
   FitResult result;
   for (const bool scaled : {false, true}) {  // f11 is divided by a reflectance that may be its own
     FitAccumulator accumulator(basis);
@@ -300,6 +303,7 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
     result.model.reflectance.covariance_with_f11.clear();
     break;
   }
+  result.noise = noise;
   result.residuals = residuals(result.model, samples);
   return result;
 }

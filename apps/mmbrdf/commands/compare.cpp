@@ -83,7 +83,7 @@ struct Second {
 Model model_of(const std::string& name, const Options& options) {
   if (!is_samples(name)) return open_model(name);
   try {
-    return fit(samples_at(name, options.wavelengths_nm)).model;
+    return fit_sample(samples_at(name, options.wavelengths_nm)).model;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(name) + ": " + error.what());
   }

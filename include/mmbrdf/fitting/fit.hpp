@@ -198,4 +198,7 @@ class FitAccumulator {
 FitResult fit(std::span<const Sample> samples, const Basis& basis = {}, const FitOptions& options = {},
               Weights weights = Weights::none);
 
+/// As the program and Python fit by default: with the uncertainty of the sample, and weights of the speckle law.
+FitResult fit_sample(std::span<const Sample> samples, const Basis& basis = {}, FitOptions options = {});
+
 }  // namespace mmbrdf
