@@ -13,6 +13,7 @@
 #include "instrument.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
+#include "mmbrdf/mixed/sample_traits.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "pickles.hpp"
 
@@ -174,6 +175,16 @@ void bind_result(py::module_& m) {
           "What there is to be wary of, a sentence each: one plane or side only, chi^2, condition, reflectances above "
           "1,\n"
           "f11 that is not positive. Computed when asked for")
+      .def(
+          "summary",
+          [](const Fitted& f) {
+            std::string text = representation(f);
+            if (f.result.model.posterior)
+              for (const std::string& line : described_sample(*f.result.model.posterior)) text += "\n" + line;
+            for (const std::string& line : fit_warnings(f.result)) text += "\nwarning: " + line;
+            return text;
+          },
+          "What was found, in words: of the fit, of the sample, and what there is to heed.")
       .def_property_readonly("noise", noise_of, "With weights='estimated': the law found at each wavelength, as dicts")
       .def("__repr__", representation)
       .def(py::pickle(&pickled, &unpickled));

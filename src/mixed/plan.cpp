@@ -9,6 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "mixed/directions.hpp"
 #include "mixed/readings.hpp"
 
 // V = (diag 1/v + Σ w² x xᵀ/s²)⁻¹ of the readings at the geometries. One more reading with row x, divided by its noise,
@@ -24,23 +25,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t spread = 1000;  // directions over which blocks are meant
-constexpr double spread_to = radians(70);
-
-double halton(int n, int base) {
-  double result = 0;
-  for (double part = 1.0 / base; n > 0; n /= base, part /= base) result += part * (n % base);
-  return result;
-}
-
-/// Uniform in projected cosine on both sides.
-std::vector<Geometry> spread_directions() {
-  std::vector<Geometry> result;
-  const double top = std::sin(spread_to), turn = 2 * std::numbers::pi;
-  for (int n = 1; result.size() < spread; ++n)
-    result.push_back({{std::asin(top * std::sqrt(halton(n, 2))), turn * halton(n, 5)},
-                      {std::asin(top * std::sqrt(halton(n, 3))), turn * halton(n, 7)}});
-  return result;
-}
 
 std::vector<Block> blocks_of(const VarianceComponents& components) {
   std::vector<Block> result = blocks(Family::isotropic, components.orders);
@@ -160,7 +144,7 @@ MatrixXd hemispherical_row(const MixedColumns& columns, double theta) {
 MatrixXd rows_of(const PlanTarget& target, const MixedColumns& columns) {
   switch (target.kind) {
     case PlanTarget::Kind::block:
-      return columns.isotropic_at(spread_directions());
+      return columns.isotropic_at(spread_directions(spread));
     case PlanTarget::Kind::dhr:
       return hemispherical_row(columns, target.geometry.incident.theta);
     case PlanTarget::Kind::f11:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "mmbrdf/mixed/sample_traits.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "pages/describe.hpp"
@@ -99,6 +100,10 @@ void print_text(const FitReport& report) {
               << '\n';
   }
   std::cout << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
+  if (model.posterior) {
+    std::cout << '\n';
+    for (const std::string& line : described_sample(*model.posterior)) std::cout << line << '\n';
+  }
   for (std::size_t i = 0; i < report.result.noise.size(); ++i) {
     std::cout << (i == 0 ? "\nnoise of elements 14 and 41, relative for f11\n" : "") << noise_line(report.result, i)
               << '\n';
@@ -135,6 +140,7 @@ void print_json(const FitReport& report) {
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);
   json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);
+  if (model.posterior) json["sample"] = described_sample(*model.posterior);
   if (!report.result.noise.empty()) json["noise"] = noise_json(report.result);
   print(json);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What a measurement will tell, before it is made: the covariance of a posterior depends on where is measured, on the
-/// noise and on the variances of the sample, not on the readings (theory 8.7).
+/// noise and on the variances of the sample, not on the readings (theory 8.6).
 #pragma once
 
 #include <cstddef>
