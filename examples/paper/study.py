@@ -101,7 +101,9 @@ def _read(path: Path, wavelengths_nm: tuple[float, ...]):
 
 def fit(data, basis: str, name: str, *, reflectance=None, as_printed: bool = False):
     """A model of orders 7 and 4, as everywhere in the paper."""
-    return mmbrdf.fit(data, basis=basis, orders=(7, 4), reflectance=reflectance, as_printed=as_printed, name=name).model
+    return mmbrdf.fit(
+        data, basis=basis, orders=(7, 4), reflectance=reflectance, as_printed=as_printed, name=name, uncertainty="noise"
+    ).model
 
 
 def rms(residuals: np.ndarray) -> np.ndarray:

@@ -34,7 +34,9 @@ def main(arguments: list[str]) -> None:
 
     # Does a simpler model do? Leave every third sample out and predict it.
     for orders in ((4, 2), (7, 4), (9, 6)):
-        part = mmbrdf.fit(data[np.arange(len(data)) % 3 > 0], orders=orders, minimum_norm=True).model
+        part = mmbrdf.fit(
+            data[np.arange(len(data)) % 3 > 0], orders=orders, minimum_norm=True, uncertainty="noise"
+        ).model
         left_out = mmbrdf.residuals(part, data[::3])[:, 1:, 1:]
         print(f"orders {orders}: rms of what was left out {np.sqrt((left_out**2).mean()):.5f}")
 
