@@ -39,8 +39,8 @@ void find_largest_dhr(F11Diagnostics& result, const Model& model) {
     result.dhr_theta_i = theta;
   }
   if (result.dhr > 1 && knows_uncertainty(model))
-    result.u_dhr = directional_hemispherical_uncertainty(model, prepare_uncertainty(model, result.wavelength),
-                                                         {result.dhr_theta_i, 0});
+    result.u_dhr = standard_uncertainty(
+        directional_hemispherical_budget(uncertain(model, result.wavelength), {result.dhr_theta_i, 0}));
 }
 
 /// What so large a reflectance usually comes from.
