@@ -17,6 +17,7 @@
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
+#include "mmbrdf/uncertainty/reading.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -120,6 +121,48 @@ TEST(RealSamples, AFitPredictsAnotherMeasurementAtLeastAsWellAsLeastSquares) {
   const auto [f11, others] = left(of_sample(published_at(grid, 0.532)).model, published_at(random_set, 0.532));
   EXPECT_LT(f11, 0.00452);     // reached by the reference: .00451
   EXPECT_LT(others, 0.01122);  // .01121; least squares: .01131
+}
+
+TEST(RealSamples, ReadingsOfAnotherMeasurementLieInTheirIntervals) {
+  if (published(random_set).empty()) GTEST_SKIP() << absent(random_set);
+  const std::vector<Sample> others = published_at(random_set, 0.532);
+  const ReadingPrediction readings = predict_readings(of_sample(published_at(grid, 0.532)).model, 0.532);
+  // The noise of the other measurement is its own: it has fewer speckles in its receiver.
+  const double more_noise = 0.0105 * 0.0105 - 0.0058 * 0.0058, more_of_elements = 0.0097 * 0.0097 - 0.0053 * 0.0053;
+  std::map<std::string, double> inside, all;
+  for (const Sample& sample : others) {
+    const auto [value, u] = readings.at_some_azimuth(sample.geometry);
+    const double law = std::cos(sample.geometry.incident.theta) / std::cos(sample.geometry.reflected.theta);
+    for (const auto& [block, elements] : elements_of_blocks)
+      for (const std::size_t e : elements) {
+        const double found = e == 0 ? sample.f11 : sample.normalized.elements[e];
+        const double more = e == 0 ? more_noise * sample.f11 * sample.f11 : more_of_elements;
+        const double total = std::sqrt(u.elements[e] * u.elements[e] + law * more);
+        inside[block] += std::abs(found - value.elements[e]) < 1.96 * total ? 1 : 0;
+        ++all[block];
+      }
+  }
+  for (const auto& [block, count] : all) {
+    EXPECT_GE(inside[block] / count, 0.935) << block;  // 95 to 98 % in the reference
+    EXPECT_LE(inside[block] / count, 0.99) << block;
+  }
+}
+
+TEST(RealSamples, AtItsOwnAzimuthASampleIsKnownBetterThanItsIsotropicMean) {
+  if (published(random_set).empty()) GTEST_SKIP() << absent(random_set);
+  const Model model = of_sample(published_at(grid, 0.532)).model;
+  const std::vector<Sample> others = published_at(random_set, 0.532);
+  const ReadingPrediction readings = predict_readings(model, 0.532);
+  double f11 = 0, elements = 0;
+  for (const Sample& sample : others) {
+    const auto [value, u] = readings.at_its_azimuth(sample.geometry);
+    f11 += std::pow(sample.f11 - value(0, 0), 2) / static_cast<double>(others.size());
+    for (std::size_t e = 1; e < 16; ++e)
+      elements +=
+          std::pow(sample.normalized.elements[e] - value.elements[e], 2) / 15 / static_cast<double>(others.size());
+  }
+  EXPECT_LT(std::sqrt(f11), 0.0044);       // reached by the reference: .00433
+  EXPECT_LT(std::sqrt(elements), 0.0106);  // .01057; the isotropic mean: .01121
 }
 
 TEST(RealSamples, AStraightLineOverFourWavelengthsKeepsItsWord) {
