@@ -32,23 +32,9 @@ py::object symmetries(const Dataset& data, std::pair<int, int> orders, const std
   return record("SymmetryTests", all(tests.reciprocity), all(tests.mirror), all(tests.azimuth), tests.one_azimuth);
 }
 
-/// The weights that fit() found, by the first, unweighted fit.
-std::vector<Mueller> weights_of(const Fitted& fitted, const Dataset& data) {
-  if (fitted.weights == Weights::none) return {};
-  const Model& model = fitted.result.model;
-  FitOptions options;
-  options.powers = model.powers;
-  options.minimum_norm = true;
-  if (model.reflectance.covariance.empty())
-    options.reflectance = ReflectanceTable{model.reflectance.wavelengths, model.reflectance.values};
-  FitResult first = fit(data.samples, fitted.basis, options);
-  first.noise = fitted.result.noise;
-  return fit_weights(data.samples, fitted.basis, first, fitted.weights);
-}
-
 py::object diagnosed(const Fitted& fitted, const Dataset& data) {
   const SampleDiagnostics found =
-      without_gil([&] { return sample_diagnostics(data.samples, fitted.result, weights_of(fitted, data)); });
+      without_gil([&] { return sample_diagnostics(data.samples, fitted.result, fitted.result.sample_weights); });
   const auto leverage = [](const SampleDiagnostics::Leverage& block) {
     return record("Leverage", block.block, block.rank,
                   py::array_t<double>(static_cast<py::ssize_t>(block.values.size()), block.values.data()),

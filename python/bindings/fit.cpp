@@ -72,10 +72,7 @@ DeclaredErrors declared_from(const std::map<std::string, double>& named) {
 FittedPointer fitted(const Dataset& data, const Request& request) {
   return without_gil([&] {
     FitResult result = fit(data.samples, request.basis, request.options, request.weights);
-    if (request.instrument) {
-      add_instrument(result, data.samples, request.basis, request.weights, *request.instrument,
-                     request.instrument->name);
-    }
+    if (request.instrument) add_instrument(result, data.samples, *request.instrument, request.instrument->name);
     return signed_result(std::move(result), request, data.samples.size());
   });
 }
@@ -132,7 +129,8 @@ py::tuple pickled(const Fitted& fitted) {
   return py::make_tuple(py::bytes(to_json(r.model)), tuple_of(r.solutions, solution),
                         bits<Elements>("FitResult", {&r.elements, 1}), bits<Mueller>("FitResult", r.residuals),
                         bits<NoiseEstimate>("FitResult", r.noise), bits<Basis>("FitResult", {&fitted.basis, 1}),
-                        to_string(fitted.weights), r.warnings, static_cast<unsigned>(r.sides));
+                        to_string(fitted.weights), r.warnings, static_cast<unsigned>(r.sides),
+                        bits<Mueller>("FitResult", r.sample_weights));
 }
 
 FittedPointer unpickled(const py::tuple& state) {
@@ -144,7 +142,8 @@ FittedPointer unpickled(const py::tuple& state) {
               .noise = from_bits<NoiseEstimate>("FitResult", state[4]),
               .warnings = state[7].cast<std::vector<std::string>>(),
               .sides = static_cast<Sides>(state[8].cast<unsigned>()),
-              .weights = weights_from(state[6].cast<std::string>())};
+              .weights = weights_from(state[6].cast<std::string>()),
+              .sample_weights = from_bits<Mueller>("FitResult", state[9])};
   for (const py::handle one : state[1]) {
     const auto s = one.cast<py::tuple>();
     r.solutions.push_back({s[0].cast<Values>(), s[1].cast<Values>(), s[2].cast<int>(), s[3].cast<double>(),
@@ -205,9 +204,9 @@ constexpr const char* fit_doc =
     "declared     {'scale': relative, 'source_deg': ..., 'receiver_deg': ...}: standard uncertainties of errors that "
     "all\n"
     "             samples share, with 'sample'; none by default\n"
-    "weights      'none', 'speckle', 'data' (1/u^2 of the samples) or 'estimated'; None: 'speckle' with 'sample', "
-    "'none'\n"
-    "             with 'noise'\n"
+    "weights      'none', 'speckle', 'data' (1/u^2 of the samples) or 'estimated'; None: 'speckle' with 'sample' "
+    "and\n"
+    "             the isotropic basis, else 'none'\n"
     "covariance   'residuals'; 'sandwich', for noise that is not as the weights say; or 'given', with weights='data':\n"
     "             the uncertainties of the samples as they are, where 'residuals' takes from them relative sizes only\n"
     "minimum_norm accept data that do not determine every coefficient (germer2017: always)\n"
@@ -302,7 +301,8 @@ void bind_fit(py::module_& m) {
             basis_from(family, orders, mapping, as_printed), {}, Weights::none, instrument, name, attribution};
         request.options.uncertainty = uncertainty_from(uncertainty);
         request.options.declared = declared_from(declared);
-        const bool of_sample = request.options.uncertainty == Uncertainty::sample;
+        const bool of_sample =
+            request.options.uncertainty == Uncertainty::sample && request.basis.family == Family::isotropic;
         request.weights = weights ? weights_from(*weights) : of_sample ? Weights::speckle : Weights::none;
         request.options.powers = powers;
         if (reflectance) request.options.reflectance = reflectance_table(*reflectance);

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "mixed/readings.hpp"
-#include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -182,8 +181,8 @@ void require_measured_by(std::span<const Sample> samples, const Calibration& ins
                                   " nm, but there are data at " + rounded(nanometres(sample.wavelength), 10) + " nm");
 }
 
-void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Basis& basis, Weights weights,
-                    const Calibration& instrument, const std::string& name) {
+void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Calibration& instrument,
+                    const std::string& name) {
   require_measured_by(samples, instrument, name);
   const Reduction reduction(instrument.polarimeter, instrument.covariance);
   if (fitted.model.posterior) {
@@ -192,8 +191,7 @@ void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Ba
     return;
   }
   require_covariance(fitted);
-  add_common_errors(fitted.model, samples, instrument_errors(reduction, samples),
-                    fit_weights(samples, basis, fitted, weights));
+  add_common_errors(fitted.model, samples, instrument_errors(reduction, samples), fitted.sample_weights);
   fitted.model.provenance["instrument"] = name;
 }
 

@@ -332,6 +332,7 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
     result.noise = std::move(noise);
   }
   result.weights = weights;
+  result.sample_weights = list;
   result.residuals = residuals(result.model, samples);
   if (options.covariance == Covariance::sandwich) {
     list.resize(samples.size(), ones());
@@ -353,7 +354,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
     throw std::invalid_argument("covariance given is that of the samples' own uncertainties: it takes weights data");
   if (options.uncertainty == Uncertainty::noise) return FitAccumulator::of_noise(samples, basis, options, weights);
   std::string reason;
-  if (const std::string without = no_mixed_model(samples, basis, weights); !without.empty())
+  if (const std::string without = no_mixed_model(samples, basis, options.covariance, weights); !without.empty())
     reason = without;
   else
     try {

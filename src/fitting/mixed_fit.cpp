@@ -163,6 +163,19 @@ std::map<double, Series> series_of(std::span<const Sample> samples, Weights weig
   return result;
 }
 
+/// Lists by wavelength as one, in the order of the samples.
+std::vector<Mueller> in_order_of(std::span<const Sample> samples, const std::map<double, std::vector<Mueller>>& lists) {
+  std::vector<double> nodes;
+  for (const auto& [wavelength, list] : lists) nodes.push_back(wavelength);
+  std::vector<std::size_t> next(nodes.size());
+  std::vector<Mueller> result;
+  for (const Sample& sample : samples) {
+    const std::size_t node = wavelength_index(nodes, sample.wavelength);
+    result.push_back(lists.at(nodes[node])[next[node]++]);
+  }
+  return result;
+}
+
 }  // namespace
 
 Orders generous(const Orders& evaluated) {
@@ -222,8 +235,13 @@ std::vector<Mueller> series_weights(const Series& series, const Basis& basis) {
   return squared_weights(samples, basis.mapping, law, first_f11_fit(samples, basis.mapping, law, reflectance));
 }
 
-std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, Weights weights) {
+std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, Covariance covariance,
+                           Weights weights) {
   if (basis.family != Family::isotropic) return "the " + to_string(basis.family) + " basis has no mixed model";
+  if (blocks(basis.family, basis.orders).size() < blocks(basis.family, generous_orders).size())
+    return "orders " + std::to_string(basis.orders.f11) + "," + std::to_string(basis.orders.other) +
+           " leave elements without modes";
+  if (covariance != Covariance::residuals) return "the covariance " + to_string(covariance) + " is one of them";
   if (weights == Weights::data) return "weights of the data have no law";
   for (const double wavelength : wavelengths(samples)) {
     const auto count = std::ranges::count_if(
@@ -280,12 +298,14 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
   options.minimum_norm = true;
   const std::vector<NoiseEstimate> noise = noise_for(samples, basis, options, weights);
   std::map<double, Series> series = series_of(samples, weights, noise);
+  std::map<double, std::vector<Mueller>> weights_of_series;
   FitResult result;
   for (const bool scaled : {false, true}) {  // f11 is divided by a reflectance that may be its own
     FitAccumulator accumulator(basis);
     for (auto& [wavelength, one] : series) {
       if (scaled) one.reflectance = result.model.reflectance.at(wavelength);
-      accumulator.add(one.samples, tried([&, &one = one] { return series_weights(one, basis); }));
+      weights_of_series[wavelength] = tried([&, &one = one] { return series_weights(one, basis); });
+      accumulator.add(one.samples, weights_of_series[wavelength]);
     }
     result = accumulator.solved(options);
     if (!scaled && !result.model.reflectance.values.empty()) continue;
@@ -294,6 +314,7 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
       FittedBlock& fitted = result.model.blocks[b];
       fitted.coefficients = mixed.coefficients[b];
       fitted.covariance.clear();
+      fitted.null_space.clear();  // of least squares: what the data leave open is in the posterior
       for (const Element& element : fitted.block.elements)
         result.elements[element.index()] =
             accumulator.element_fit(element.index(), fitted.coefficients, result.model.reflectance);
@@ -304,6 +325,8 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
     break;
   }
   result.noise = noise;
+  result.weights = weights;
+  result.sample_weights = in_order_of(samples, weights_of_series);
   result.residuals = residuals(result.model, samples);
   return result;
 }

@@ -33,7 +33,7 @@ Gram sums_of(const MixedColumns& columns, std::span<const Sample> samples, const
 Orders generous(const Orders& evaluated);
 
 /// Why there is no mixed model of these; empty if there is.
-std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, Weights weights);
+std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, Covariance covariance, Weights weights);
 
 /// Why one could not be found after all.
 struct MixedFailure : std::runtime_error {

@@ -145,11 +145,11 @@ TEST(CommonErrors, OfAnInstrumentAreAddedToAFitWhichThenNamesIt) {
   const Basis basis{Family::isotropic, {5, 3}};
   const FitResult alone = fit(samples, basis, {}, Weights::speckle);
   FitResult with = alone;
-  add_instrument(with, samples, basis, Weights::speckle, instrument, "instrument.json");
+  add_instrument(with, samples, instrument, "instrument.json");
   EXPECT_EQ(with.model.provenance.at("instrument"), "instrument.json");
   Model expected = alone.model;
   const Reduction reduction(instrument.polarimeter, instrument.covariance);
-  add_common_errors(expected, samples, instrument_errors(reduction, samples), speckle_weights(samples, alone.model));
+  add_common_errors(expected, samples, instrument_errors(reduction, samples), alone.sample_weights);
   for (std::size_t b = 0; b < expected.blocks.size(); ++b) {
     EXPECT_EQ(with.model.blocks[b].covariance, expected.blocks[b].covariance);
     EXPECT_NE(with.model.blocks[b].covariance, alone.model.blocks[b].covariance);
@@ -162,9 +162,7 @@ TEST(CommonErrors, OfAnInstrumentThatIsNotThatOfTheSamplesAreRefused) {
   const Basis basis{Family::isotropic, {3, 2}};
   FitResult fitted = fit(samples, basis);
   const std::vector<double> before = fitted.model.blocks[0].covariance;
-  const auto refusal = [&] {
-    return message_of([&] { add_instrument(fitted, samples, basis, Weights::none, instrument, "i.json"); });
-  };
+  const auto refusal = [&] { return message_of([&] { add_instrument(fitted, samples, instrument, "i.json"); }); };
   instrument.wavelength = 0.633;
   EXPECT_EQ(refusal(), "i.json: of 633 nm, but there are data at 532 nm");
   instrument.covariance = {};

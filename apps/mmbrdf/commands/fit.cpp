@@ -23,25 +23,26 @@ namespace mmbrdf::program {
 
 namespace {
 
-FitOptions of_sample() {
-  FitOptions options;
-  options.uncertainty = Uncertainty::sample;
-  return options;
-}
-
 struct Options {
   std::string data, output, name, attribution, instrument;
   Basis basis;
-  FitOptions fit = of_sample();
+  FitOptions fit;
+  std::optional<Uncertainty> given_uncertainty;
   std::optional<std::vector<double>> wavelengths_nm;
   std::optional<Weights> given_weights;
   Format format = Format::text;
 };
 
+/// Of the sample, unless something else was asked for that is of the noise.
+Uncertainty uncertainty(const Options& options) {
+  const bool of_noise = options.basis.family != Family::isotropic || options.fit.covariance != Covariance::residuals ||
+                        options.given_weights == Weights::data;
+  return options.given_uncertainty.value_or(of_noise ? Uncertainty::noise : Uncertainty::sample);
+}
+
 /// The mixed model estimates a scale of the speckle law; for the noise alone every row counts the same.
 Weights weights(const Options& options) {
-  return options.given_weights.value_or(options.fit.uncertainty == Uncertainty::sample ? Weights::speckle
-                                                                                       : Weights::none);
+  return options.given_weights.value_or(uncertainty(options) == Uncertainty::sample ? Weights::speckle : Weights::none);
 }
 
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
@@ -95,7 +96,7 @@ void note_free_combinations(const FitResult& result) {
 
 /// The mixed model, weights and sandwiches need a first fit, and with it all samples in memory, and so do an instrument's errors.
 bool streams(const Options& options) {
-  return options.fit.uncertainty == Uncertainty::noise && weights(options) == Weights::none &&
+  return uncertainty(options) == Uncertainty::noise && weights(options) == Weights::none &&
          options.fit.covariance == Covariance::residuals && options.instrument.empty();
 }
 
@@ -115,7 +116,7 @@ void add_instrument(FitResult& result, std::span<const Sample> samples, const Op
   const std::string name = base_name(options.instrument);
   heed(judged(instrument), name);
   require_instrument_of(samples, instrument, name);
-  mmbrdf::add_instrument(result, samples, options.basis, weights(options), instrument, name);
+  mmbrdf::add_instrument(result, samples, instrument, name);
 }
 
 /// Some of the samples of a stream at its first wavelength, evenly spread over what there was so far.
@@ -151,7 +152,9 @@ FitResult fitted(const Options& options, long& rows, Spread& some) {
   });
   try {
     if (streams(options)) return accumulator.solve(options.fit);
-    FitResult result = fit(all, options.basis, options.fit, weights(options));
+    FitOptions chosen = options.fit;
+    chosen.uncertainty = uncertainty(options);
+    FitResult result = fit(all, options.basis, chosen, weights(options));
     if (!options.instrument.empty()) add_instrument(result, all, options);
     return result;
   } catch (const std::invalid_argument& error) {
@@ -220,9 +223,9 @@ void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Fit these wavelengths only, in nm");
   add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,NM:R...]",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
-  add_option(app, "--uncertainty", o->fit.uncertainty, uncertainty_from, "NAME",
+  add_option(app, "--uncertainty", o->given_uncertainty, uncertainty_from, "NAME",
              "sample: holds for a real sample, its anisotropy and\nwhat the basis misses included; noise: of the noise "
-             "alone [sample]");
+             "alone\n[sample; noise for other bases, --covariance and\n--weights data]");
   add_option(app, "--declare", o->fit.declared, declared_from, "NAME=U[,NAME=U...]",
              "Errors that all rows share: scale=0.3%, source=0.5deg,\nreceiver=0.5deg (of the arms); standard "
              "uncertainties [none]");

@@ -37,10 +37,10 @@ void add_common_errors(Model& model, std::span<const Sample> samples, std::span<
 void require_measured_by(std::span<const Sample> samples, const Calibration& instrument, const std::string& name);
 
 /// Adds to the covariance of a fit what the instrument that measured all its samples is uncertain by, and records it in
-/// the model: provenance["instrument"] is `name`, what the instrument is called. Samples, basis and weights are those
-/// of the fit. Throws as require_measured_by(), fit_weights() and add_common_errors(), and
-/// std::invalid_argument for a block without degrees of freedom; the fit is then as it was.
-void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Basis& basis, Weights weights,
-                    const Calibration& instrument, const std::string& name);
+/// the model: provenance["instrument"] is `name`, what the instrument is called. The samples are those of the fit. Throws
+/// as require_measured_by() and add_common_errors(), and std::invalid_argument for a block without degrees of freedom;
+/// the fit is then as it was.
+void add_instrument(FitResult& fitted, std::span<const Sample> samples, const Calibration& instrument,
+                    const std::string& name);
 
 }  // namespace mmbrdf

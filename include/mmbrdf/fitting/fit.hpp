@@ -109,10 +109,11 @@ struct FitResult {
   std::array<ElementFit, 16> elements;  ///< in row-major order
   std::vector<Mueller> residuals;  ///< one for each sample, measured − model in the xy frame: f11 in sr⁻¹, others m_ij.
                                    ///< Only from fit(); a FitAccumulator keeps no samples.
-  std::vector<NoiseEstimate> noise;   ///< of Weights::estimated: the law at each fitted wavelength; else empty
-  std::vector<std::string> warnings;  ///< a line each, only from fit(); more in fit_warnings()
-  Sides sides = no_side;              ///< of the plane of incidence on which there are samples
-  Weights weights = Weights::none;    ///< those of fit(); a FitAccumulator knows no name for what it is given
+  std::vector<NoiseEstimate> noise;       ///< of Weights::estimated: the law at each fitted wavelength; else empty
+  std::vector<std::string> warnings;      ///< a line each, only from fit(); more in fit_warnings()
+  Sides sides = no_side;                  ///< of the plane of incidence on which there are samples
+  Weights weights = Weights::none;        ///< those of fit(); a FitAccumulator knows no name for what it is given
+  std::vector<Mueller> sample_weights{};  ///< of each sample, as add() takes them; empty: 1. Only from fit()
 };
 
 /// Root mean square over the 15 normalised elements.
