@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
 #include <stdexcept>
 
 #include "mixed/readings.hpp"
@@ -39,6 +40,16 @@ void require_valid(const BlockPosterior& p, const Block& block, const MixedColum
   require(all_finite(p.hyperparameters) && all_finite(p.mean) && all_finite(p.free_mean) && all_finite(p.shared) &&
               all_finite(p.deviations),
           "numbers " + of + " must be finite");
+}
+
+std::size_t first_coefficients() { return blocks(Family::isotropic, {first_order, 0}).front().modes.size(); }
+
+void require_measurable(const std::vector<ReadingDirections>& readings) {
+  require(!readings.empty(), "a list of directions is empty");
+  for (const auto& [angles, count] : readings)
+    require(count > 0 && all_finite(angles) && std::min(angles[0], angles[2]) >= 0 &&
+                std::max(angles[0], angles[2]) <= std::numbers::pi / 2,
+            "directions must have polar angles of 0 to 90 degrees and be counted");
 }
 
 /// C = S R Rᵀ S: S the standard deviations, the rows of R of norm 1 but for rounding.
@@ -96,6 +107,7 @@ Posterior::State::State(PosteriorData from)
     : data(std::move(from)), blocks(mmbrdf::blocks(Family::isotropic, data.orders)), known(data.wavelengths.size()) {
   require(!data.wavelengths.empty(), "no wavelength");
   require(data.errors.size() >= declared_errors, "number of shared errors");
+  for (const auto& list : data.readings) require_measurable(list);
   for (const auto& [name, size] : data.errors) require(size >= 0 && std::isfinite(size), "size of the error " + name);
   for (const Block& block : blocks) columns.emplace_back(block, data.mapping);
   double before = 0;
@@ -104,6 +116,9 @@ Posterior::State::State(PosteriorData from)
     before = at.wavelength;
     require(at.blocks.size() == blocks.size(), "number of blocks");
     const bool rounded = !at.blocks[0].factor.empty();
+    if (!rounded) require(at.f11.size() == first_coefficients() && all_finite(at.f11), "f11 must be 40 finite numbers");
+    require(std::abs(at.law.incident_exponent) <= 10 && std::abs(at.law.reflected_exponent) <= 10,
+            "exponents of the law must be in -10...10");
     require(rounded || at.readings < data.readings.size(), "list of directions");
     for (std::size_t b = 0; b < blocks.size(); ++b)
       require_valid(at.blocks[b], blocks[b], columns[b], data.errors.size(), rounded);

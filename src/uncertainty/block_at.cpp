@@ -127,6 +127,8 @@ BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, 
     add("projection", std::sqrt(deviation) * (among(behind, model.blocks[b], at.wavelength) -
                                               Eigen::Map<const VectorXd>(here.mean.data(), modes)));
   }
+  if (!result.covariance.allFinite())
+    throw std::invalid_argument("block " + behind.name + " of the posterior is not finite at this wavelength");
   return result;
 }
 

@@ -52,12 +52,12 @@ std::vector<Wanted> wanted_from(const std::string& text) {
     if (parts[0] == "dhr" && parts.size() == 2) {
       for (const double theta : numbers(parts[1]))
         result.push_back(
-            {"u_dhr_" + in_words(theta), {PlanTarget::Kind::dhr, 0, {direction_from_degrees(theta, 0), {}}}});
+            {"dhr_" + in_words(theta), {PlanTarget::Kind::dhr, 0, {direction_from_degrees(theta, 0), {}}}});
     } else if (parts[0] == "f" && (parts.size() == 3 || parts.size() == 4)) {
       const double theta_i = number(parts[1]), theta_r = number(parts[2]),
                    phi = parts.size() == 4 ? number(parts[3]) : 180;
       result.push_back(
-          {"u_f_" + in_words(theta_i) + "_" + in_words(theta_r),
+          {"f_" + in_words(theta_i) + "_" + in_words(theta_r),
            {PlanTarget::Kind::f11, 0, {direction_from_degrees(theta_i, 0), direction_from_degrees(theta_r, phi)}}});
     }
   } catch (const std::invalid_argument& error) {
@@ -72,7 +72,7 @@ std::vector<Wanted> wanted(const Options& options) {
   std::vector<Wanted> result;
   const std::vector<Block> list = blocks(Family::isotropic, {12, 10});
   for (std::size_t b = 0; b < list.size(); ++b) {
-    std::string name = "u_";
+    std::string name;
     for (const char c : list[b].name) name += c == ',' ? '_' : c;
     result.push_back({name, {PlanTarget::Kind::block, b, {}}});
   }
@@ -96,6 +96,8 @@ std::vector<Geometry> read_geometries(const std::string& path) {
 }
 
 VarianceComponents components(const Options& options) {
+  if (options.noise && !(*options.noise >= 1e-6 && *options.noise <= 10))
+    throw WrongUsage("--noise", "must be in 1e-6...10, relative for f11");
   if (options.like.empty()) return default_components(options.noise.value_or(0.007));
   const Model model = open_model(options.like);
   if (!model.posterior)
@@ -143,7 +145,7 @@ Table table_of(const VarianceComponents& components, const std::vector<Design>& 
   Table table{{{"design", "%-60s"}, {"readings", "%8s"}}};
   std::vector<PlanTarget> targets;
   for (const Wanted& one : wanted) {
-    table.columns.push_back({one.name, "%12.2g"});
+    table.columns.push_back({"expected_u_" + one.name, "%13.2g", one.name});
     targets.push_back(one.target);
   }
   for (const Design& design : designs) {
@@ -166,6 +168,7 @@ void plan(const Options& options) {
   const VarianceComponents known = components(options);
   const std::vector<Wanted> all = wanted(options);
   std::vector<Design> list = designs(options);
+  if (options.choose == 0 && !options.candidates.empty()) throw missing("--choose");
   if (options.choose > 0) {
     if (options.candidates.empty()) throw missing("--from");
     const std::vector<Geometry> candidates = read_geometries(options.candidates);
@@ -220,7 +223,8 @@ Run plan_command(CLI::App& app, const CommandLine&) {
   add_text(app, "--like", o->like, "MODEL", "A fit whose variances the sample will have [sintered PTFE]");
   add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM", "Of that fit, in nm [its first]");
   add_option(app, "--noise", o->noise, number, "S", "Of a reading, at normal directions [of the fit; 0.007]");
-  add_texts(app, "--target", o->targets, "TARGET", std::string("What is to be known: ") + target_form);
+  add_texts(app, "--target", o->targets, "TARGET",
+            "What is to be known: dhr:THETA[,THETA...] or\nf:THETA_I:THETA_R[:PHI_R], in degrees");
   add_option(app, "--choose", o->choose, whole_number, "N", "Choose N more readings");
   add_file(app, "--from", o->candidates, "CANDIDATES.csv", "Directions to choose from");
   add_output_file(app, "-o,--output", o->output, "CHOSEN.csv", "Write what is chosen");
