@@ -29,7 +29,8 @@ def differences(folder: Path, directions, **options) -> np.ndarray:
         for name in ["PTFE.data.csv", "PTFE.data.random.csv"]
     ]
     first, second = [model.evaluate(532, *directions) for model in models]
-    return (first - second) / np.hypot(*[model.evaluate_uncertainty(532, *directions) for model in models])
+    u = np.hypot(*[model.evaluate_uncertainty(532, *directions) for model in models])
+    return np.divide(first - second, u, out=np.zeros_like(u), where=u > 0)  # 0 where symmetry leaves no element
 
 
 def main(folder: Path, picture: Path) -> None:
@@ -41,13 +42,17 @@ def main(folder: Path, picture: Path) -> None:
     }
     figure, axes = plt.subplots(2, 4, subplot_kw={"projection": "polar"}, figsize=(8.4, 4.6), layout="constrained")
     for line, (name, z) in zip(axes, rows.items()):
+        within = []
         for axis, element in zip(line, ELEMENTS):
             shown = z[..., int(element[0]) - 1, int(element[1]) - 1]
             weights = np.sin(np.radians(2 * theta))
             inside = np.average(np.abs(shown) < 1.96, weights=weights)
+            within.append(f"f{element} {100 * inside:.0f} %")
+            axis.grid(False)
             mesh = axis.pcolormesh(np.radians(phi), theta, shown, cmap="PuOr", vmin=-6, vmax=6, shading="gouraud")
             axis.set(title=f"$f_{{{element}}}$, {name}\n{inside:.0%} within 1.96 $u$", xticks=[], yticks=[])
             axis.title.set_fontsize(8)
+        print(f"{name}: within 1.96 u {', '.join(within)}")
     figure.colorbar(mesh, ax=axes, shrink=0.7, label="difference / $u$")
     picture.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(picture, dpi=100)

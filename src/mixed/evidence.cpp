@@ -21,6 +21,7 @@ constexpr double least_noise = 1e-8;  // variance, of the mean square of the rea
 constexpr double no_noise = 1e-16;    // and of readings that are all 0
 constexpr double longest_step = 4;    // of one logarithm
 constexpr double enough = 1e-8;       // gain of evidence that a step must promise
+constexpr double near = 1e-3;         // what is promised where slopes decide
 constexpr int most_steps = 100;
 constexpr std::size_t memory = 10;  // steps that a quasi-Newton direction remembers
 
@@ -190,6 +191,8 @@ Estimate estimate(const Gram& gram, const Parts& parts, const Prior& prior, doub
       there = evidence(gram, parts, prior, result.at + part * direction);
       ++result.evaluations;
       if (there.value > here.value + 1e-4 * part * promised) break;
+      // Near the top what is gained drowns in the rounding of the evidence, the slope does not.
+      if (promised < near && std::abs(there.gradient.dot(direction)) < 0.9 * promised) break;
       if (part < 1e-4) return result;
     }
     curvature.learn(part * direction, here.gradient - there.gradient);

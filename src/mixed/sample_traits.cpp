@@ -20,6 +20,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t directions = 300;         // enough for two digits
 constexpr double noticeable = 5e-4;             // of what reciprocity forbids, sr⁻¹
+constexpr double worth_turning = 1.5;           // factor in u(f11)
 constexpr double noticeable_anisotropy = 1e-3;  // sr⁻¹ or without unit
 
 SampleTraits traits_of(const MixedColumns& columns, const BlockPosterior& p) {
@@ -91,6 +92,7 @@ std::string of_turning(const Posterior& posterior, std::size_t wavelength) {
   const PlanTarget f11[] = {{PlanTarget::Kind::block, 0, {}}};
   const double now = expected_uncertainties(components, as_is, f11)[0],
                then = expected_uncertainties(components, turned, f11)[0];
+  if (now < worth_turning * then) return "";
   return "all readings were taken at one azimuth, and the isotropic mean carries the anisotropy; with the sample "
          "turned "
          "by 180 degrees for every second one u(f11) would have been " +

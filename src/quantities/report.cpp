@@ -96,7 +96,7 @@ Json fit_json(const Model& model) {
                     {"coefficients", fitted.coefficients.size()},
                     {"rank", fitted.rank > 0 ? Json(fitted.rank) : Json(nullptr)},
                     {"condition", fitted.condition > 0 ? Json(fitted.condition) : Json(nullptr)},
-                    {"covariance", !fitted.covariance.empty()}});
+                    {"covariance", model.posterior || !fitted.covariance.empty()}});
   return rows;
 }
 

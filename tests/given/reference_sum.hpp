@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "mmbrdf/model/model.hpp"
@@ -39,7 +40,8 @@ inline Mueller sum_in_extended_precision(const Model& model, double wavelength, 
   };
   const auto k_i = k_table(geometry.incident), k_r = k_table(geometry.reflected);
   std::array<Long, 16> sums{};
-  for (const auto& [block, coefficients, covariance, rank, condition, null_space] : model.blocks)
+  for (const FittedBlock& fitted : model.blocks) {
+    const auto& [block, coefficients] = std::tie(fitted.block, fitted.coefficients);
     for (std::size_t q = 0; q < block.modes.size(); ++q) {
       Long coefficient = 0;
       for (int p = 0; p <= model.powers; ++p)
@@ -48,6 +50,7 @@ inline Mueller sum_in_extended_precision(const Model& model, double wavelength, 
         sums[index(4 * term.row + term.column)] +=
             coefficient * term.weight * k_i[index(term.incident)] * k_r[index(term.reflected)];
     }
+  }
   Mueller result;
   const Long f11 = sums[0] * model.reflectance.at(wavelength);
   for (std::size_t e = 0; e < 16; ++e) result.elements[e] = static_cast<double>(e == 0 ? f11 : f11 * sums[e]);

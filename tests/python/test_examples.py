@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tutorials run as they stand, and say what they should."""
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -26,6 +27,7 @@ def test_every_tutorial_is_tested():
         "plaque_correction",
         "fit_your_data",
         "polarimeter",
+        "real_samples",
     }
 
 
@@ -59,3 +61,13 @@ def test_polarimeter(printed):
     assert len(rows) == 5
     for value, u, truth in rows:
         assert abs(value - truth) < 4 * u and u < 0.01 * value
+
+
+def test_real_samples(printed, tmp_path):
+    folder = Path(os.environ.get("MMBRDF_DATA", FOLDER.parents[2] / "shared/data/germer2017"))
+    if not (folder / "PTFE.data.random.csv").exists():
+        pytest.skip("the published data are not present")
+    text = printed("real_samples.py", str(folder), str(tmp_path / "picture.png"))
+    assert (tmp_path / "picture.png").stat().st_size > 50_000
+    noise, sample = ([float(x) for x in re.findall(r"(\d+) %", line)] for line in text.splitlines())
+    assert max(noise) < 75 and min(sample) >= 95

@@ -152,7 +152,7 @@ def test_diagnostics_are_those_of_the_report(ring, told):
         assert [dict(zip(names, one, strict=True)) for one in found] == there[field]
     assert not tests.one_azimuth and mmbrdf.symmetry_tests(ring[ring.phi_i_deg == 0], (3, 2)).one_azimuth
 
-    result = mmbrdf.fit(ring, orders=model.orders, minimum_norm=True)
+    result = mmbrdf.fit(ring, orders=model.orders, minimum_norm=True, uncertainty="noise")
     diagnostics = mmbrdf.sample_diagnostics(result, ring)
     for here, row in zip(diagnostics.leverage, there["leverage"], strict=True):
         assert (here.block, here.rank, here.values[here.largest]) == (

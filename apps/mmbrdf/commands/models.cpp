@@ -52,7 +52,7 @@ Table blocks(const Model& model) {
     table.rows.push_back({fitted.block.name, functions_line(fitted.block), fitted.coefficients.size(),
                           fitted.rank > 0 ? Json(fitted.rank) : Json(),
                           fitted.condition > 0 ? Json(fitted.condition) : Json(), fitted.rank, fitted.condition,
-                          !fitted.covariance.empty()});
+                          model.posterior || !fitted.covariance.empty()});
   return table;
 }
 

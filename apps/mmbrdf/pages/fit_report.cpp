@@ -100,6 +100,8 @@ void print_text(const FitReport& report) {
               << '\n';
   }
   std::cout << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
+  std::cout << format("%-34s ", "uncertainties hold for") << (model.posterior ? "the sample" : "the noise alone")
+            << '\n';
   if (model.posterior) {
     std::cout << '\n';
     for (const std::string& line : described_sample(*model.posterior)) std::cout << line << '\n';
@@ -140,6 +142,7 @@ void print_json(const FitReport& report) {
   json["rms_f11"] = report.result.elements[0].rms;
   json["rms_polarization"] = polarization_rms(report.result);
   json["reflectance_at_normal_incidence"] = normal_reflectance_json(model);
+  json["uncertainty"] = to_string(model.posterior ? Uncertainty::sample : Uncertainty::noise);
   if (model.posterior) json["sample"] = described_sample(*model.posterior);
   if (!report.result.noise.empty()) json["noise"] = noise_json(report.result);
   print(json);
