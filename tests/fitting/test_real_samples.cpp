@@ -250,7 +250,7 @@ TEST(RealSamples, DrawsScatterAsStated) {
   const Geometry g{{radians(40), 0.3}, {radians(20), 2}};
   const auto models = Draws(model, 2000, 1).at(0.532);
   const Mueller u = standard_uncertainty(prepare_uncertainty(model, 0.532).evaluate(g));
-  for (const std::size_t e : {0, 1, 5, 15}) {
+  for (const std::size_t e : {0U, 1U, 5U, 15U}) {
     const auto drawn = values(models, [&](const PreparedModel& m) { return m.evaluate(g).elements[e]; });
     EXPECT_NEAR(distribution(drawn).standard_deviation / u.elements[e], 1, 0.06);  // 4 / √(2 × 2000)
   }
