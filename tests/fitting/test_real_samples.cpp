@@ -83,13 +83,13 @@ std::map<std::string, double> coverage(const Model& a, const Model& b, const std
 TEST(RealSamples, IntervalsOfAFitHoldInAnIndependentMeasurement) {
   if (published(random_set).empty()) GTEST_SKIP() << absent(random_set);
   const std::vector<Sample> first = published_at(grid, 0.532), second = published_at(random_set, 0.532);
-  const auto within_70 = halton_directions(600, 0, 70);
+  const auto within_70 = halton_directions(300, 0, 70);
   for (const auto& [block, percent] : coverage(of_sample(first).model, of_sample(second).model, within_70))
     EXPECT_GE(percent, 95) << block;
   const Model a = of_sample(first, declared).model, b = of_sample(second, declared).model;
   for (const auto& [block, percent] : coverage(a, b, within_70)) EXPECT_GE(percent, 98) << block;
   for (const auto& [low, high] : {std::pair(60, 70), {70, 75}, {75, 82}})
-    for (const auto& [block, percent] : coverage(a, b, halton_directions(300, low, high)))
+    for (const auto& [block, percent] : coverage(a, b, halton_directions(150, low, high)))
       EXPECT_GE(percent, 90 - slack) << block << " from " << low << " to " << high;
 }
 
@@ -99,7 +99,7 @@ TEST(RealSamples, IntervalsOfTheNoiseAloneDoNot) {
   const auto of_noise = [&](const char* file) {
     return fit(published_at(file, 0.532), {}, noise, Weights::speckle).model;
   };
-  for (const auto& [block, percent] : coverage(of_noise(grid), of_noise(random_set), halton_directions(600, 0, 70)))
+  for (const auto& [block, percent] : coverage(of_noise(grid), of_noise(random_set), halton_directions(300, 0, 70)))
     EXPECT_LE(percent, block == "14" ? 100 : 75) << block;
 }
 
@@ -168,7 +168,7 @@ TEST(RealSamples, AtItsOwnAzimuthASampleIsKnownBetterThanItsIsotropicMean) {
 TEST(RealSamples, AStraightLineOverFourWavelengthsKeepsItsWord) {
   if (published(random_set).empty()) GTEST_SKIP() << absent(random_set);
   const ReflectanceTable table{{0.351, 0.532, 0.633, 1.064}, {0.976, 0.984, 0.984, 0.983}};
-  const auto at = halton_directions(400, 0, 70);
+  const auto at = halton_directions(200, 0, 70);
   const std::vector<Sample> all = read_samples(published(grid));
   const Stated other = stated(of_sample(published_at(random_set, 0.532), {}, table).model, 0.532, at);
   for (const auto& [block, percent] : coverage(stated(of_sample(all, {}, table).model, 0.532, at), other))
