@@ -233,7 +233,7 @@ TEST(LackOfFit, TellsMisfitFromNoise) {
   const std::vector<Geometry> places = random_geometries(200, 9, radians(40));
   const Model model = fit(simulate(material("ptfe-532"), std::array{0.532}, germer2017_grid()), right).model;
   std::vector<Sample> samples;
-  for (const unsigned long seed : {1, 2, 3})
+  for (const unsigned long seed : {1UL, 2UL, 3UL})
     std::ranges::move(simulate(model, std::array{0.532}, places, 0.01, seed), std::back_inserter(samples));
   for (const LackOfFit& test : lack_of_fit(samples, fit(samples, right))) {
     EXPECT_GT(test.p, 1e-3) << test.block;

@@ -52,7 +52,7 @@ TEST(Conventions, FindTheFrameOfTheSamples) {
 TEST(Conventions, FindWhatWasExchangedOrReversed) {
   for (const auto& [component, name] : {std::pair(1, "S2"), {2, "S3"}})
     for (const bool scattered : {false, true})
-      EXPECT_EQ(best(measured([&](Sample& s) { reverse(s.normalized, scattered, component); })).read_as,
+      EXPECT_EQ(best(measured([&, which = component](Sample& s) { reverse(s.normalized, scattered, which); })).read_as,
                 name + std::string(scattered ? " of the receiver reversed" : " of the source reversed"));
   EXPECT_EQ(best(measured([](Sample& s) { reverse(s.normalized, true, 3); })).read_as, "S4 of one beam reversed");
   EXPECT_EQ(best(measured([](Sample& s) {
