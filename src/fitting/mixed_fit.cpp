@@ -2,14 +2,10 @@
 #include "fitting/mixed_fit.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <map>
-#include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "basis/rows.hpp"
 #include "basis/spectral.hpp"
@@ -18,6 +14,7 @@
 #include "mmbrdf/samples/comparison.hpp"
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
+#include "numerics/threads.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -93,28 +90,6 @@ struct Fitted {
   FirstPass first;
   std::vector<BlockFit> blocks;
 };
-
-/// Calls work(i) for each i on all cores; throws the first of what they throw.
-void in_any_order(std::size_t count, const auto& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr thrown;
-  std::mutex guard;
-  const auto some = [&] {
-    for (std::size_t i; (i = next++) < count;) try {
-        work(i);
-      } catch (...) {
-        const std::scoped_lock lock(guard);
-        if (!thrown) thrown = std::current_exception();
-      }
-  };
-  {
-    std::vector<std::jthread> others;
-    const std::size_t threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
-    for (std::size_t t = 1; t < threads; ++t) others.emplace_back(some);
-    some();
-  }
-  if (thrown) std::rethrow_exception(thrown);
-}
 
 /// Σ_p λ^p a_p through the coefficients at each wavelength, all with the same weight; power after power.
 std::vector<double> through(const std::map<double, Fitted>& wavelengths, std::size_t block, int powers) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -45,6 +47,33 @@ std::size_t first_found(std::size_t count, int threads, Find find) {
     for (std::size_t before = found; at < before && !found.compare_exchange_weak(before, at);) continue;
   });
   return found;
+}
+
+/// Calls work(i) for each i below count on all cores, in any order; throws the first of what they throw when all have
+/// ended.
+template <class Work>
+void in_any_order(std::size_t count, Work work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr thrown;
+  std::mutex guard;
+  const auto some = [&] {
+    for (std::size_t i = next++; i < count; i = next++) try {
+        work(i);
+      } catch (...) {
+        const std::scoped_lock lock(guard);
+        if (!thrown) thrown = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> others;
+    try {
+      const std::size_t threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(some);
+    } catch (const std::system_error&) {  // no more threads to be had
+    }
+    some();
+  }
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace mmbrdf
