@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "mixed/readings.hpp"
+#include "numerics/eigen_index.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-Index index(std::size_t i) { return static_cast<Index>(i); }
 
 void require(bool holds, const std::string& what) {
   if (!holds) throw std::invalid_argument("posterior: " + what);
@@ -36,6 +35,7 @@ void require_valid(const BlockPosterior& p, const Block& block, const MixedColum
   require(p.shared.size() == errors * modes, "number of effects of shared errors " + of);
   require(p.deviations.size() == (rounded ? modes : 0) && p.factor.size() == (rounded ? modes * (modes + 1) / 2 : 0),
           "number of rounded correlations " + of);
+  require(std::ranges::all_of(p.deviations, [](float d) { return d >= 0; }), "deviations " + of);
   require(p.noise_variance > 0 && std::isfinite(p.noise_variance), "noise variance " + of);
   require(all_finite(p.hyperparameters) && all_finite(p.mean) && all_finite(p.free_mean) && all_finite(p.shared) &&
               all_finite(p.deviations),
