@@ -47,6 +47,9 @@ Weights weights(const Options& options) {
 
 /// Throws std::invalid_argument for options that make no sense whatever the data are.
 void require_valid(const Options& options) {
+  if (!(options.fit.declared == DeclaredErrors{}) && uncertainty(options) == Uncertainty::noise)
+    throw WrongUsage("--declare",
+                     "goes with --uncertainty sample; of the noise alone, give the error with --term later");
   blocks(options.basis.family, options.basis.orders);
   if (options.fit.reflectance) mmbrdf::require_valid(*options.fit.reflectance);
   require_kept(options.data, options.output, "data");

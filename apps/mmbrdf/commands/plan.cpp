@@ -3,6 +3,7 @@
 
 #include "mmbrdf/mixed/plan.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -57,7 +58,7 @@ std::vector<Wanted> wanted_from(const std::string& text) {
       const double theta_i = number(parts[1]), theta_r = number(parts[2]),
                    phi = parts.size() == 4 ? number(parts[3]) : 180;
       result.push_back(
-          {"f_" + in_words(theta_i) + "_" + in_words(theta_r),
+          {"f_" + in_words(theta_i) + "_" + in_words(theta_r) + (parts.size() == 4 ? "_" + in_words(phi) : ""),
            {PlanTarget::Kind::f11, 0, {direction_from_degrees(theta_i, 0), direction_from_degrees(theta_r, phi)}}});
     }
   } catch (const std::invalid_argument& error) {
@@ -105,6 +106,10 @@ VarianceComponents components(const Options& options) {
                              ": says nothing of the sample's variances; fit it with --uncertainty sample");
   const double wavelength =
       options.wavelength_nm ? micrometres(*options.wavelength_nm) : model.posterior->data().wavelengths[0].wavelength;
+  if (std::ranges::none_of(model.posterior->data().wavelengths,
+                           [&](const PosteriorAt& at) { return same_wavelength(at.wavelength, wavelength); }))
+    throw std::runtime_error(options.like + ": was not fitted at " + in_words(*options.wavelength_nm) + " nm, but at " +
+                             nanometre_list(model.validity.wavelengths));
   VarianceComponents result = components_of(*model.posterior, wavelength);
   for (auto& block : result.blocks)
     if (options.noise) block.noise_variance = *options.noise * *options.noise;

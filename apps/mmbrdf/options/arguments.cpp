@@ -162,6 +162,9 @@ DeclaredErrors declared_from(const std::string& text) {
     else
       throw wrong(part, "scale=0.3%, source=0.5deg or receiver=0.5deg");
   }
+  if (declared.scale > 1) throw std::invalid_argument("scale=" + shortest(declared.scale) + " is above 1, or 100 %");
+  if (std::max(declared.source, declared.receiver) > radians(10))
+    throw std::invalid_argument("an arm that is out by more than 10 degrees measures something else");
   return declared;
 }
 

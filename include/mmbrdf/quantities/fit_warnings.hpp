@@ -30,7 +30,8 @@ inline constexpr double high_chi_squared = 2, high_condition = 1e5;
 ///   - the condition of a block exceeds high_condition; not of a mixed model, whose uncertainty says it
 std::vector<std::string> data_warnings(const FitResult& result);
 
-/// Those of the fit itself (FitResult::warnings), data_warnings(), and of the model within the fitted angles, at no more than most_checked of the fitted wavelengths:
+/// Those of the fit itself (FitResult::warnings), data_warnings(), and of the model within the fitted angles, at no more
+/// than most_checked of the fitted wavelengths:
 ///
 ///   - a directional-hemispherical reflectance above 1 by more than its standard uncertainty: energy_line()
 ///   - f11 that is not positive: not_positive_line()

@@ -72,9 +72,9 @@ struct ReportedSamples {
 };
 
 /// Of the model called `name`, at these wavelengths (micrometres); none given: at known_wavelengths(model). Residuals
-/// and noise are those of the model as it is; chi^2, conventions, symmetries, leverage and outliers are of fits of its basis to the
-/// samples, without weights but for chi^2. Throws std::invalid_argument for an invalid model or wavelength, if there is no wavelength
-/// to report on, and for samples as compare(), symmetry_tests() and fit() do.
+/// and noise are those of the model as it is; chi^2, conventions, symmetries, leverage and outliers are of fits of its
+/// basis to the samples, without weights but for chi^2. Throws std::invalid_argument for an invalid model or wavelength,
+/// if there is no wavelength to report on, and for samples as compare(), symmetry_tests() and fit() do.
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths = {},
                         const std::optional<ReportedSamples>& samples = {});
 
