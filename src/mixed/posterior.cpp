@@ -10,6 +10,7 @@
 
 #include "mixed/readings.hpp"
 #include "numerics/eigen_index.hpp"
+#include "numerics/threads.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -134,11 +135,11 @@ MatrixXd Posterior::State::covariance(const PosteriorAt& at, std::size_t block) 
 const std::vector<double>& Posterior::State::covariance(std::size_t wavelength, std::size_t block) const {
   Covariances& at = known[wavelength];
   std::call_once(at.once, [&] {
-    std::vector<std::vector<double>> all;
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
+    std::vector<std::vector<double>> all(blocks.size());
+    in_any_order(blocks.size(), [&](std::size_t b) {
       const MatrixXd matrix = covariance(data.wavelengths[wavelength], b);
-      all.emplace_back(matrix.data(), matrix.data() + matrix.size());
-    }
+      all[b].assign(matrix.data(), matrix.data() + matrix.size());
+    });
     at.of_blocks = std::move(all);
   });
   return at.of_blocks[block];
