@@ -22,9 +22,12 @@ namespace mmbrdf::python {
 /// A model as Python holds it: it never changes, so what has been prepared of it stays right.
 class ModelObject : public std::enable_shared_from_this<ModelObject> {
  public:
-  explicit ModelObject(Model model) : model_(std::move(model)) {}
+  explicit ModelObject(Model model);
 
   const Model& model() const { return model_; }
+
+  /// Largest theta_i, to a step of the grid, up to which samples support all directions that theta_r may have.
+  double theta_of_all() const { return theta_of_all_; }
 
   /// Micrometres: those of the argument, or the model's own for None.
   double wavelength(const std::optional<double>& wavelength_nm) const;
@@ -40,6 +43,7 @@ class ModelObject : public std::enable_shared_from_this<ModelObject> {
 
  private:
   Model model_;
+  double theta_of_all_;
   mutable std::mutex mutex_;
   mutable std::optional<Model> printed_;
   mutable std::map<bool, PreparedModel> prepared_;  // by as_printed

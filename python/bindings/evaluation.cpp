@@ -134,10 +134,14 @@ py::object estimable(const Question& question, int threads) {
   auto* const out = result.mutable_data();
   without_gil([&] {
     question.each(
-        threads, 64, [&](double wavelength) { return prepare_uncertainty(question.model(), wavelength); },
-        [&](const PreparedUncertainty& u, const Some& some) {
+        threads, 64,
+        [&](double wavelength) { return std::pair(prepare_uncertainty(question.model(), wavelength), wavelength); },
+        [&](const auto& at, const Some& some) {
+          const auto& [u, wavelength] = at;
           for (std::size_t i = 0; i < some.geometries.size(); ++i)
-            out[some.position(i)] = u.estimable(some.geometries[i]);
+            out[some.position(i)] =
+                u.estimable(some.geometries[i]) &&
+                !leaves_known_range(outside(question.model().validity, wavelength, some.geometries[i]));
         });
   });
   return unwrapped(result);
@@ -199,7 +203,7 @@ constexpr const char* outside_doc =
 
 constexpr const char* estimable_doc =
     "Whether the data of the fit determine every element there: array of bool. Where they do not, uncertainties are\n"
-    "too small. Arguments as those of evaluate().";
+    "too small. Nothing outside of the fitted range is estimable. Arguments as those of evaluate().";
 
 constexpr const char* draws_doc =
     "What `count` models drawn from the covariance of the fit give (GUM Supplement 1), in sr^-1: array\n"

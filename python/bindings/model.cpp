@@ -189,6 +189,13 @@ void bind_functions(py::module_& m) {
 
 }  // namespace
 
+ModelObject::ModelObject(Model model) : model_(std::move(model)), theta_of_all_(radians(90)) {
+  const Validity& validity = model_.validity;
+  for (const SupportedPairs& one : validity.supported)
+    while (theta_of_all_ > 0 && !one.pairs.reach(theta_of_all_, validity.theta_r_max.value_or(radians(90))))
+      theta_of_all_ -= radians(5);
+}
+
 double ModelObject::wavelength(const std::optional<double>& wavelength_nm) const {
   return wavelength_nm ? micrometres(*wavelength_nm) : only_wavelength(model_);
 }

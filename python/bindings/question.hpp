@@ -21,13 +21,13 @@ class Range {
  public:
   explicit Range(const ModelObject& model)
       : model_(model),
-        theta_i_max_(validity().theta_i_max.value_or(radians(90))),
+        theta_i_max_(std::min(validity().theta_i_max.value_or(radians(90)), model.theta_of_all())),
         theta_r_max_(validity().theta_r_max.value_or(radians(90))) {}
 
   void count(double wavelength, const Geometry& geometry) { count(wavelength, std::span(&geometry, 1)); }
 
   void count(double wavelength, std::span<const Geometry> geometries) {
-    bool beyond = leaves_known_range(outside(validity(), wavelength, {}));
+    bool beyond = leaves_known_range(outside(validity(), wavelength));
     for (const Geometry& g : geometries) beyond |= g.incident.theta > theta_i_max_ || g.reflected.theta > theta_r_max_;
     if (!beyond) return;  // as nearly always
     RangeCount here;

@@ -47,6 +47,8 @@ class Outside(_enum.IntFlag):
     THETA_R = 2
     WAVELENGTH = 4
     UNKNOWN_RANGE = 8
+    DIRECTIONS = 16
+    INTERPOLATED = 32
 
 
 class Geometry(_NamedTuple):

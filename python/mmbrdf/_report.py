@@ -200,7 +200,11 @@ def page(
     facts = json.loads(report_json(model, name or model.name or "the model", chosen, data, data_name))
     title = html.escape(facts.pop("title"))
     warnings = facts.pop("warnings")
-    source = "of the fit and its instrument" if "instrument" in model.provenance else "of the fit alone"
+    alone = "instrument" not in model.provenance
+    if model.provenance.get("uncertainty") == "sample":
+        source = "of the sample" if alone else "of the sample and the instrument"
+    else:
+        source = "of the fit alone" if alone else "of the fit and its instrument"
     parts = [
         f"<h1>{title}</h1>",
         f'<p class="dim">mmbrdf {__version__}; uncertainties are standard (k = 1) and {source}</p>',

@@ -16,6 +16,7 @@
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/text/units.hpp"
+#include "text/base64.hpp"
 #include "text/json_text.hpp"
 #include "text/numbers.hpp"
 
@@ -117,10 +118,19 @@ std::optional<double> read_polar_angle(const Field& field) {
   return radians(value);
 }
 
+SupportedPairs read_supported(const Field& field) {
+  field.require_no_other_than({"wavelength_um", "pairs"});
+  const auto bytes = from_base64(field["pairs"].text());
+  if (!bytes) field["pairs"].refuse("is no base 64");
+  return {field["wavelength_um"].number(), checked(field["pairs"], [&] { return DirectionPairs(*bytes); })};
+}
+
 Validity read_validity(const Field& field) {
-  field.require_no_other_than({"wavelengths_um", "theta_i_max_deg", "theta_r_max_deg"});
+  field.require_no_other_than({"wavelengths_um", "theta_i_max_deg", "theta_r_max_deg", "supported"});
   Validity validity{field["wavelengths_um"].numbers(), read_polar_angle(field["theta_i_max_deg"]),
                     read_polar_angle(field["theta_r_max_deg"])};
+  if (field.has("supported"))
+    for (const Field& one : field["supported"].items()) validity.supported.push_back(read_supported(one));
   double last = 0;
   for (const double wavelength : validity.wavelengths) {
     if (!(wavelength > last)) field["wavelengths_um"].refuse("must be positive and rise");
@@ -226,6 +236,8 @@ ordered_json model_json(const Model& model) {
   root["validity"] = {{"wavelengths_um", model.validity.wavelengths},
                       {"theta_i_max_deg", angle_json(model.validity.theta_i_max)},
                       {"theta_r_max_deg", angle_json(model.validity.theta_r_max)}};
+  for (const auto& [wavelength, pairs] : model.validity.supported)
+    root["validity"]["supported"].push_back({{"wavelength_um", wavelength}, {"pairs", to_base64(pairs.bytes())}});
   if (!model.reflectance.wavelengths.empty()) root["reflectance"] = reflectance_json(model.reflectance);
   root["provenance"] = model.provenance;
   root["blocks"] = ordered_json::array();

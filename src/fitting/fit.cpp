@@ -7,6 +7,7 @@
 #include <string>
 
 #include "basis/spectral.hpp"
+#include "basis/support.hpp"
 #include "fitting/mixed_fit.hpp"
 #include "fitting/row_variance.hpp"
 #include "mmbrdf/fitting/weights.hpp"
@@ -31,8 +32,9 @@ constexpr Named<Covariance> covariance_names[] = {
 
 constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sample"}, {Uncertainty::noise, "noise"}};
 
-constexpr double involved = 1e-6;       // least part of a free combination for which a mode is named
-constexpr std::size_t most_named = 24;  // modes in a message of one line
+constexpr std::size_t most_supports = 16;  // sets of directions in a model: of more wavelengths their union is kept
+constexpr double involved = 1e-6;          // least part of a free combination for which a mode is named
+constexpr std::size_t most_named = 24;     // modes in a message of one line
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
@@ -121,7 +123,9 @@ FitAccumulator::FitAccumulator(const Basis& basis)
 FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
   const auto near = wavelengths_.lower_bound(wavelength - wavelength_resolution);
   if (near != wavelengths_.end() && near->first <= wavelength + wavelength_resolution) return near->second;
+  using Grid = DirectionPairs::Grid;
   AtWavelength& fresh = wavelengths_[wavelength];
+  fresh.measured = DirectionPairs(basis_.family == Family::anisotropic ? Grid::anisotropic : Grid::isotropic);
   for (const int block : block_of_)
     fresh.elements.emplace_back(block < 0 ? 1 : static_cast<int>(blocks_[size(block)].modes.size()));
   return fresh;
@@ -135,6 +139,7 @@ void FitAccumulator::merge(const FitAccumulator& other) {
       ours.elements[e].merge(theirs.elements[e]);
       ours.weight[e] += theirs.weight[e];
     }
+    ours.measured.merge(theirs.measured);
   }
   theta_i_max_ = std::max(theta_i_max_, other.theta_i_max_);
   theta_r_max_ = std::max(theta_r_max_, other.theta_r_max_);
@@ -221,7 +226,9 @@ int FitAccumulator::chosen_powers(const FitOptions& options) const {
 FitResult FitAccumulator::solve(const FitOptions& options) const {
   if (options.covariance == Covariance::sandwich)
     throw std::invalid_argument("a sandwich covariance needs the samples again, and an accumulator keeps none");
-  return solved(options);
+  FitResult result = solved(options);
+  result.model.validity.supported = support();
+  return result;
 }
 
 FitResult FitAccumulator::solved(const FitOptions& options) const {
@@ -299,6 +306,24 @@ void FitAccumulator::require_covered(const ReflectanceTable& table) const {
   for (const auto& [wavelength, at] : wavelengths_) require_reaches(table, wavelength);
 }
 
+std::vector<SupportedPairs> FitAccumulator::support() const {
+  DirectionPairs all = wavelengths_.begin()->second.measured;
+  bool same = true;
+  for (const auto& [wavelength, at] : wavelengths_) {
+    same = same && at.measured == all;
+    all.merge(at.measured);
+  }
+  const int order = std::max({support_order, basis_.orders.f11, basis_.orders.other});
+  std::vector<SupportedPairs> result;
+  if (same || wavelengths_.size() > most_supports)
+    result.push_back({wavelengths_.begin()->first, supported(all, order, basis_.mapping)});
+  else
+    for (const auto& [wavelength, at] : wavelengths_)
+      result.push_back({wavelength, supported(at.measured, order, basis_.mapping)});
+  const auto complete = [&](const SupportedPairs& one) { return one.pairs.reach(theta_i_max_, theta_r_max_); };
+  return std::ranges::all_of(result, complete) ? std::vector<SupportedPairs>{} : result;
+}
+
 ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const double> x,
                                        const ReflectanceTable& reflectance) const {
   ElementFit fit;
@@ -331,6 +356,7 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
     result = accumulator.solved(options);
     result.noise = std::move(noise);
   }
+  result.model.validity.supported = accumulator.support();
   result.weights = weights;
   result.sample_weights = list;
   result.residuals = residuals(result.model, samples);

@@ -44,6 +44,7 @@ FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
     }
     for (const auto& [wavelength, at] : wavelengths_) {
       AtWavelength& to = result.slot(wavelength);
+      to.measured = at.measured;
       to.weight[e] = at.weight[e];
       to.elements[e] = kept.empty() ? at.elements[e].restricted(std::array{std::size_t{0}}).repeated(std::array{0.0})
                                     : at.elements[e].restricted(kept);

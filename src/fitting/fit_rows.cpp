@@ -141,6 +141,7 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const Muelle
     theta_i_max_ = std::max(theta_i_max_, sample.geometry.incident.theta);
     theta_r_max_ = std::max(theta_r_max_, sample.geometry.reflected.theta);
     sides_ = static_cast<Sides>(sides_ | side(sample.geometry));
+    slot(sample.wavelength).measured.add(sample.geometry);
   }
   samples_ += static_cast<long>(samples.size());
 }

@@ -13,6 +13,7 @@
 
 //   the basis: family, both orders, mapping, rotation
 //   samples, largest θi, largest θr, sides,   then for each wavelength, rising: λ,
+//   the bits of where was measured, six bytes in each number,
 //   then for each element, row-major: the sum of its weights, and the state of its triangle
 
 namespace mmbrdf {
@@ -48,6 +49,26 @@ std::vector<double> numbers_of(const Basis& basis) {
           static_cast<double>(basis.rotation)};
 }
 
+constexpr std::size_t bytes_in_number = 6;  // whole numbers below 2⁴⁸ are exact
+
+std::vector<double> numbers_of(const DirectionPairs& pairs) {
+  std::vector<double> result((pairs.bytes().size() + bytes_in_number - 1) / bytes_in_number);
+  for (std::size_t i = 0; i < pairs.bytes().size(); ++i)
+    result[i / bytes_in_number] += std::ldexp(pairs.bytes()[i], static_cast<int>(8 * (i % bytes_in_number)));
+  return result;
+}
+
+/// As many as `like` has, of the same grid.
+DirectionPairs pairs_from(Reader& reader, const DirectionPairs& like) {
+  std::vector<std::uint8_t> bytes(like.bytes().size());
+  for (std::size_t first = 0; first < bytes.size(); first += bytes_in_number) {
+    double rest = reader.next("directions", std::ldexp(1.0, 8 * bytes_in_number) - 1);
+    for (std::size_t i = first; i < std::min(first + bytes_in_number, bytes.size()); ++i, rest = std::floor(rest / 256))
+      bytes[i] = static_cast<std::uint8_t>(std::fmod(rest, 256));
+  }
+  return DirectionPairs(bytes);
+}
+
 }  // namespace
 
 std::vector<double> FitAccumulator::state() const {
@@ -55,6 +76,7 @@ std::vector<double> FitAccumulator::state() const {
   result.insert(result.end(), {static_cast<double>(samples_), theta_i_max_, theta_r_max_, static_cast<double>(sides_)});
   for (const auto& [wavelength, at] : wavelengths_) {
     result.push_back(wavelength);
+    for (const double number : numbers_of(at.measured)) result.push_back(number);
     for (std::size_t e = 0; e < 16; ++e) {
       result.push_back(at.weight[e]);
       const std::vector<double> triangle = at.elements[e].state();
@@ -84,6 +106,7 @@ FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const do
     if (!result.wavelengths_.empty() && wavelength <= result.wavelengths_.rbegin()->first + wavelength_resolution)
       throw std::invalid_argument("a state of a fit whose wavelengths do not rise");
     AtWavelength& at = result.slot(wavelength);
+    at.measured = pairs_from(reader, at.measured);
     for (std::size_t e = 0; e < 16; ++e) {
       at.weight[e] = reader.next("a sum of weights", std::numeric_limits<double>::max());
       const int unknowns = at.elements[e].unknowns();

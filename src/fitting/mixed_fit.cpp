@@ -295,6 +295,7 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
             accumulator.element_fit(element.index(), fitted.coefficients, result.model.reflectance);
     }
     result.model.posterior = mixed.posterior;
+    result.model.validity.supported = accumulator.support();
     result.model.reflectance.covariance.clear();
     result.model.reflectance.covariance_with_f11.clear();
     break;

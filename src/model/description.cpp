@@ -45,7 +45,8 @@ std::string unknown_range_line(const std::string& model, const Validity& validit
 }
 
 std::string outside_line(Outside reasons, const Validity& validity) {
-  return "outside the fitted range (" + to_string(reasons) + "): fitted are " + fitted_range(validity);
+  return "outside the fitted range (" + to_string(reasons) + "): fitted are " + fitted_range(validity) +
+         (reasons & outside_directions ? ", and no samples support all of these directions together" : "");
 }
 
 void RangeCount::add(Outside where) { add({1, leaves_known_range(where) ? 1 : 0, where}); }

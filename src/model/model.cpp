@@ -14,7 +14,8 @@ namespace mmbrdf {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double edge = 1e-9;  // radians and micrometres: angles that went through degrees are still inside
+constexpr double edge = 1e-9;        // radians and micrometres: angles that went through degrees are still inside
+constexpr double resolution = 1e-7;  // of wavelengths in files, micrometres
 
 }  // namespace
 
@@ -73,7 +74,6 @@ void require_valid(const ReflectanceTable& table) {
 }
 
 void require_reaches(const ReflectanceTable& table, double wavelength) {
-  constexpr double resolution = 1e-7;  // of wavelengths in files
   if (!table.values.empty() &&
       (wavelength < table.wavelengths.front() - resolution || wavelength > table.wavelengths.back() + resolution))
     throw std::invalid_argument("the reflectance table does not reach " + shortest(in_nanometres(wavelength)) + " nm");
@@ -87,11 +87,15 @@ std::string to_string(Outside outside) {
   append(outside_theta_i, "theta_i");
   append(outside_theta_r, "theta_r");
   append(outside_wavelength, "wavelength");
+  append(outside_directions, "directions");
+  append(interpolated, "interpolated");
   append(unknown_range, "unknown");
   return result.empty() ? "ok" : result;
 }
 
-bool leaves_known_range(Outside outside) { return (outside & ~static_cast<unsigned>(unknown_range)) != 0; }
+bool leaves_known_range(Outside outside) {
+  return (outside & (outside_theta_i | outside_theta_r | outside_wavelength | outside_directions)) != 0;
+}
 
 namespace {
 
@@ -107,6 +111,11 @@ void require_valid(const Validity& validity) {
     if (theta && !(*theta >= 0 && *theta <= pi / 2 + edge))
       throw std::invalid_argument("validity: polar angle " + shortest(in_degrees(*theta)) +
                                   " degrees is not in [0, 90]");
+  const auto not_rising = [](const SupportedPairs& a, const SupportedPairs& b) {
+    return !(a.wavelength < b.wavelength);
+  };
+  if (std::ranges::adjacent_find(validity.supported, not_rising) != validity.supported.end())
+    throw std::invalid_argument("validity: wavelengths of the supported directions do not rise");
 }
 
 /// The numbers of a block, of which there are `count` coefficients.
@@ -219,14 +228,38 @@ Orders orders(const Model& model) {
   return orders(list);
 }
 
+namespace {
+
+bool supports(const std::vector<SupportedPairs>& list, double wavelength, const Geometry& geometry) {
+  if (list.empty()) return true;
+  const auto above = std::ranges::lower_bound(list, wavelength - resolution, {}, &SupportedPairs::wavelength);
+  const auto below = above == list.end() || (above != list.begin() && above->wavelength > wavelength + resolution)
+                         ? std::prev(above)
+                         : above;
+  return below->pairs.contains(geometry) && (above == list.end() || above->pairs.contains(geometry));
+}
+
+}  // namespace
+
 Outside outside(const Validity& validity, double wavelength, const Geometry& geometry) {
-  unsigned result = inside;
-  if (!validity.theta_i_max || !validity.theta_r_max || validity.wavelengths.empty()) result |= unknown_range;
+  unsigned result = outside(validity, wavelength);
   if (geometry.incident.theta > validity.theta_i_max.value_or(pi / 2) + edge) result |= outside_theta_i;
   if (geometry.reflected.theta > validity.theta_r_max.value_or(pi / 2) + edge) result |= outside_theta_r;
-  if (!validity.wavelengths.empty() &&
-      (wavelength < validity.wavelengths.front() - edge || wavelength > validity.wavelengths.back() + edge))
+  if (!(result & (outside_theta_i | outside_theta_r)) && !supports(validity.supported, wavelength, geometry))
+    result |= outside_directions;
+  return static_cast<Outside>(result);
+}
+
+Outside outside(const Validity& validity, double wavelength) {
+  unsigned result = inside;
+  const std::vector<double>& fitted = validity.wavelengths;
+  if (!validity.theta_i_max || !validity.theta_r_max || fitted.empty()) result |= unknown_range;
+  if (fitted.empty()) return static_cast<Outside>(result);
+  const auto next = std::ranges::lower_bound(fitted, wavelength - resolution);
+  if (wavelength < fitted.front() - edge || wavelength > fitted.back() + edge)
     result |= outside_wavelength;
+  else if (next != fitted.end() && *next > wavelength + resolution)
+    result |= interpolated;
   return static_cast<Outside>(result);
 }
 

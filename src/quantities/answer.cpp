@@ -124,7 +124,7 @@ Answer PreparedAnswers::at(const Geometry& geometry) const {
   a.realizable = a.elements(0, 0) > 0 && realizable(a.elements);
   std::vector<Mueller> drawn_sp;
   if (uncertainty) {
-    a.estimable = uncertainty->estimable(geometry);
+    a.estimable = !leaves_known_range(a.outside) && uncertainty->estimable(geometry);
     if (has_limit(options.terms, geometry)) {
       a.budget = budget(model, *uncertainty, options.terms, geometry, Frame::sp);
       a.uncertainties = standard_uncertainty(change_frame(a.budget->total, geometry, Frame::sp, options.frame));

@@ -97,16 +97,21 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
   const Model& model = result.model;
   const std::vector<double>& wavelengths = model.validity.wavelengths;
   const std::size_t count = std::min(wavelengths.size(), most_checked);
+  double emptiest = 0, share = 0;     // the wavelength of which most is not supported
   F11Diagnostics brightest, darkest;  // the worst of all wavelengths, of which one is told
   for (std::size_t i = 0; i < count; ++i) {
     const double wavelength = wavelengths[i * wavelengths.size() / count];
     const F11Diagnostics found = f11_diagnostics(model, wavelength, fitted_theta_max(model.validity), coarser);
     if (found.dhr - found.u_dhr > brightest.dhr - brightest.u_dhr) brightest = found;
+    const double here = unsupported_share(model.validity, wavelength);
+    if (here > share) emptiest = wavelength;
+    share = std::max(share, here);
     if (found.not_positive_f11 > darkest.not_positive_f11) darkest = found;
   }
   const auto where = [](const F11Diagnostics& found) {
     return "within the fitted angles at " + nanometre_list(std::array{found.wavelength});
   };
+  if (share > 0) add(warnings, unsupported_line(model.validity, emptiest));
   add(warnings, energy_line(brightest, where(brightest)));
   add(warnings, not_positive_line(darkest, where(darkest)));
   if (!samples.empty()) add(warnings, convention_warning(samples, orders(model), model.mapping));

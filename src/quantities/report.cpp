@@ -62,7 +62,7 @@ Warnings range_warnings(const Reported& reported) {
   Warnings warnings;
   if (std::string line = unknown_range_line(reported.name, model.validity); !line.empty()) warnings.push_back(line);
   for (const double wavelength : reported.wavelengths)
-    if (outside(model.validity, wavelength, {}) & outside_wavelength)
+    if (outside(model.validity, wavelength) & outside_wavelength)
       warnings.push_back(nm(wavelength) + " lies outside the fitted range: what is said of it is extrapolated from " +
                          nanometre_list(model.validity.wavelengths));
   if (!knows_uncertainty(model))

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
@@ -41,6 +42,39 @@ void find_largest_dhr(F11Diagnostics& result, const Model& model) {
   if (result.dhr > 1 && knows_uncertainty(model))
     result.u_dhr = standard_uncertainty(
         directional_hemispherical_budget(uncertain(model, result.wavelength), {result.dhr_theta_i, 0}));
+}
+
+/// Parts of a whole, by an angle in degrees.
+struct Missing {
+  double part = 0, whole = 0;
+  double share() const { return whole > 0 ? part / whole : 0; }
+  void add(double weight, bool missing) {
+    whole += weight;
+    part += missing ? weight : 0;
+  }
+};
+using MissingAt = std::map<double, Missing>;
+
+/// Calls `visit` with the nodes within the fitted angles, their weights, and whether no samples support them.
+void visit_nodes(const Validity& validity, double wavelength, const auto& visit) {
+  if (validity.supported.empty()) return;
+  const DirectionPairs& grid = validity.supported.front().pairs;
+  for (std::size_t node = 0; node < grid.nodes(); ++node) {
+    const Geometry g = grid.geometry(node);
+    const Outside where = outside(validity, wavelength, g);
+    if (where & (outside_theta_i | outside_theta_r)) continue;
+    const auto weight = [](const Direction& d) { return std::sin(d.theta) * std::cos(d.theta); };
+    visit(g, weight(g.incident) * weight(g.reflected), (where & outside_directions) != 0);
+  }
+}
+
+/// "theta_i 0 to 30", the part where more than half is missing; empty if that is everywhere or nowhere.
+std::string missing_part(const std::string& name, const MissingAt& at) {
+  const auto lacks = [](const auto& one) { return one.second.share() > 0.5; };
+  const auto first = std::ranges::find_if(at, lacks);
+  if (first == at.end() || std::ranges::all_of(at, lacks)) return "";
+  const auto end = std::find_if_not(first, at.end(), lacks);
+  return name + " " + rounded(first->first, 3) + " to " + rounded(std::prev(end)->first, 3);
 }
 
 /// What so large a reflectance usually comes from.
@@ -88,6 +122,43 @@ ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double
 double fitted_theta_max(const Validity& validity) {
   if (!validity.theta_i_max || !validity.theta_r_max) return radians(90);
   return std::max(*validity.theta_i_max, *validity.theta_r_max);
+}
+
+double unsupported_share(const Validity& validity, double wavelength) {
+  Missing all;
+  visit_nodes(validity, wavelength, [&](const Geometry&, double weight, bool missing) { all.add(weight, missing); });
+  return all.share();
+}
+
+double unsupported_share(const Validity& validity, double wavelength, const Direction& beam) {
+  if (validity.supported.empty()) return 0;
+  Missing all;
+  visit_places(validity.theta_r_max.value_or(radians(90)), 1, [&](const Geometry& g) {
+    if (g.incident.theta > 0) return;
+    const Geometry here{beam, {g.reflected.theta, beam.phi + g.reflected.phi}};
+    all.add(std::sin(g.reflected.theta) * std::cos(g.reflected.theta),
+            (outside(validity, wavelength, here) & outside_directions) != 0);
+  });
+  return all.share();
+}
+
+std::string unsupported_line(const Validity& validity, double wavelength) {
+  Missing all;
+  MissingAt theta_i, theta_r, phi;
+  visit_nodes(validity, wavelength, [&](const Geometry& g, double weight, bool missing) {
+    all.add(weight, missing);
+    theta_i[std::round(degrees(g.incident.theta))].add(weight, missing);
+    theta_r[std::round(degrees(g.reflected.theta))].add(weight, missing);
+    phi[std::round(std::abs(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360)))].add(weight, missing);
+  });
+  if (!(all.share() > much_unsupported)) return "";
+  std::string parts;
+  for (const std::string& part :
+       {missing_part("phi_r - phi_i", phi), missing_part("theta_i", theta_i), missing_part("theta_r", theta_r)})
+    if (!part.empty()) parts += (parts.empty() ? ", most at " : ", at ") + part;
+  return "no samples support " + rounded(100 * all.share(), 2) +
+         " % of the pairs of directions within the fitted angles" + parts + (parts.empty() ? "" : " degrees") +
+         ": what is said there is an extrapolation";
 }
 
 std::string not_positive_line(const F11Diagnostics& found, const std::string& where) {

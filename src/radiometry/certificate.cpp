@@ -31,7 +31,7 @@ std::string at(const CertifiedReflectance& one) {
 
 void require_valid(const CertifiedReflectance& one, const Validity& validity) {
   require_wavelength(one.wavelength);
-  if (leaves_known_range(outside({validity.wavelengths, {}, {}}, one.wavelength, {})))
+  if (leaves_known_range(outside(validity, one.wavelength)))
     throw std::invalid_argument("the model was not fitted at " + shortest(in_nanometres(one.wavelength)) +
                                 " nm, where the certificate has a value");
   if (!(one.value > 0 && one.value <= largest_reflectance))

@@ -149,7 +149,7 @@ constexpr const char* footer =
     "A scan of theta_r without --reflected runs in the plane of incidence: forward (phi_r = phi_i + 180) for\n"
     "theta_r > 0, back towards the source for theta_r < 0.\n"
     "\n"
-    "Uncertainties are those of the fit, in first order, and of the terms. With --monte-carlo those of ratios and\n"
+    "Uncertainties are those of the model, in first order, and of the terms. With --monte-carlo those of ratios and\n"
     "eigenvalues are from N draws of the coefficients and of the terms, with a 95 % interval, NAME_low to NAME_high.\n"
     "\n";
 

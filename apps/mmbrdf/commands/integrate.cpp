@@ -13,6 +13,7 @@
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "options/arguments.hpp"
@@ -59,6 +60,8 @@ struct Options {
   bool strict = false;
 };
 
+constexpr int few_nodes = 2;  // of a rule whose nodes lie all over the apertures
+
 /// What belongs to one wavelength.
 struct AtWavelength {
   const Model& model;
@@ -75,13 +78,22 @@ void add_uncertainty(IntegratedRow& row, ExpandedUncertainty u) {
   row.budgets.push_back(std::move(u));
 }
 
+/// Of a beam from the source or to the receiver; much of the hemisphere around it must be supported.
+Outside outside_hemisphere(const AtWavelength& at, const Direction& beam, bool source) {
+  const Validity& validity = at.model.validity;
+  unsigned result = outside(validity, at.wavelength, source ? Geometry{beam, {}} : Geometry{{}, beam});
+  result &= ~static_cast<unsigned>(outside_directions);
+  if (unsupported_share(validity, at.wavelength, beam) > much_unsupported) result |= outside_directions;
+  return static_cast<Outside>(result);
+}
+
 /// Of dhr and hdr.
 IntegratedRow hemispherical_row(const AtWavelength& at, Integral quantity, double theta_deg, const Polarization& p) {
   const Direction beam = direction_from({theta_deg, 0}, "--theta");
   const bool dhr = quantity == Integral::dhr, unpolarized = p.light == Stokes{1, 0, 0, 0};
   IntegratedRow row;
   row.theta_deg = theta_deg;
-  row.outside = outside(at.model.validity, at.wavelength, dhr ? Geometry{beam, {}} : Geometry{{}, beam});
+  row.outside = outside_hemisphere(at, beam, dhr);
   if (unpolarized) {  // the closed forms
     row.values = {directional_hemispherical_reflectance(at.model, at.wavelength, beam)};
   } else {
@@ -96,7 +108,9 @@ IntegratedRow hemispherical_row(const AtWavelength& at, Integral quantity, doubl
 
 IntegratedRow bihemispherical_row(const AtWavelength& at) {
   IntegratedRow row;
-  row.outside = outside(at.model.validity, at.wavelength, {});
+  row.outside = outside(at.model.validity, at.wavelength);
+  if (unsupported_share(at.model.validity, at.wavelength) > much_unsupported)
+    row.outside = static_cast<Outside>(row.outside | outside_directions);
   row.values = {bihemispherical_reflectance(at.model, at.wavelength)};
   if (at.uncertain) add_uncertainty(row, expanded(bihemispherical_budget(*at.uncertain)));
   return row;
@@ -117,6 +131,19 @@ double factor_of(Integral quantity, const Aperture& receiver) {
   }
 }
 
+/// Of two apertures, whose largest polar angles make up `extreme`.
+Outside outside_apertures(const Validity& validity, double wavelength, const Aperture& source, const Aperture& receiver,
+                          const Geometry& extreme) {
+  unsigned result = outside(validity, wavelength, extreme) & ~static_cast<unsigned>(outside_directions);
+  double all = 0, missing = 0;
+  for (const auto& [geometry, weight] : mean_rule(source, receiver, few_nodes)) {
+    all += std::abs(weight);
+    if (outside(validity, wavelength, geometry) & outside_directions) missing += std::abs(weight);
+  }
+  if (missing > much_unsupported * all) result |= outside_directions;
+  return static_cast<Outside>(result);
+}
+
 IntegratedRow average_row(const AtWavelength& at, Integral quantity, const Sides& sides, const Options& options) {
   const Aperture source = aperture_of(sides.source, source_phi_deg);
   const Aperture receiver = aperture_of(sides.receiver, receiver_phi_deg);
@@ -134,7 +161,7 @@ IntegratedRow average_row(const AtWavelength& at, Integral quantity, const Sides
     warn(message);
   }
   IntegratedRow row;
-  row.outside = outside(at.model.validity, at.wavelength, {{theta_i, 0}, {theta_r, 0}});
+  row.outside = outside_apertures(at.model.validity, at.wavelength, source, receiver, {{theta_i, 0}, {theta_r, 0}});
   row.quadrature_error = factor * mean.error;
   row.geometries = mean.geometries;
   const std::size_t elements = quantity == Integral::mueller ? 16 : 1;
@@ -206,6 +233,7 @@ Integrated integrated(const Model& model, Integral quantity, const Options& opti
   result.model = base_name(options.model);
   result.quantity = quantity;
   result.uncertain = uncertain_of(model);
+  result.not_in_it = missing_from_uncertainty(model);
   for (const TypeBTerm& term : terms_from(options.terms)) result.terms.push_back(term.name);
   result.polarization = options.polarization.value_or(Polarization{}).text;
   if (options.geometry) {
@@ -243,9 +271,8 @@ bool determined(const Model& model, Integral quantity, const Options& options) {
   const double wavelength = wavelengths_of(model, options).front();  // the rank of a fit is one for all
   if (!knows_uncertainty(model)) return true;
   const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength);
-  constexpr int few = 2;  // a rule whose nodes lie all over the apertures
   return std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
-    const std::vector<WeightedGeometry> nodes = mean_rule(pair.first, pair.second, few);
+    const std::vector<WeightedGeometry> nodes = mean_rule(pair.first, pair.second, few_nodes);
     return std::all_of(nodes.begin(), nodes.end(),
                        [&](const WeightedGeometry& node) { return prepared.estimable(node.geometry); });
   });
@@ -282,7 +309,8 @@ const std::string footer =
         "\n") +
     sides_help +
     "\n"
-    "u_ columns are standard uncertainties of the fit and of the terms, empty where the model has no covariance. The\n"
+    "u_ columns are standard uncertainties of the model and of the terms, empty where the model has no covariance. "
+    "The\n"
     "effect of a term on an integral is the integral of its effect: one error for all directions. A hemisphere\n"
     "always reaches beyond the fitted angles: it is not flagged for that, the share beyond is told. The CSV of dhr, "
     "hdr\n"

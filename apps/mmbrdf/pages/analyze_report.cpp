@@ -21,14 +21,16 @@ namespace {
 std::string validity_words(Outside outside) {
   const std::string name = to_string(outside);
   if (outside == inside) return name + ", inside the fitted range";
-  return leaves_known_range(outside) ? name + ", outside the fitted range: the model extrapolates"
-                                     : name + ", the fitted range is not known";
+  if (leaves_known_range(outside)) return name + ", outside the fitted range: the model extrapolates";
+  return name + (outside == interpolated ? ", between fitted wavelengths" : ", the fitted range is not known");
 }
 
-std::string estimable_words(const std::optional<bool>& estimable) {
-  return !estimable   ? "not known"
-         : *estimable ? "yes, the data of the fit determine every element here"
-                      : "no, the data of the fit leave elements free here: uncertainties are too small";
+std::string estimable_words(const Answer& a) {
+  if (!a.estimable) return "not known";
+  if (*a.estimable) return "yes, the data of the fit determine every element here";
+  return leaves_known_range(a.outside)
+             ? "no, no data of the fit reach here: uncertainties are not verified"
+             : "no, the data of the fit leave elements free here: uncertainties are too small";
 }
 
 std::string realizable_words(const Answer& a) {
@@ -90,9 +92,9 @@ std::vector<Share> shares(const Answer& a) {
 void print_budget(const Answer& a) {
   const std::vector<Share> rows = shares(a);
   const Share& total = rows.back();
-  std::cout << "\nterm                     u(f11)    share   u(depol.)    share\n";
+  std::cout << "\nterm                      u(f11)    share   u(depol.)    share\n";
   for (const Share& c : rows) {
-    std::cout << format("%-20.20s ", std::string(c.term).c_str()) << with_share(c.f11, total.f11);
+    std::cout << format("%-21.21s ", std::string(c.term).c_str()) << with_share(c.f11, total.f11);
     if (c.depolarization) std::cout << "  " << with_share(*c.depolarization, *total.depolarization);
     std::cout << '\n';
   }
@@ -159,9 +161,8 @@ std::size_t wavelengths_to_keep(int draws) {
 
 void print_text(const AnalysisReport& r) {
   const Answer& a = r.answer;
-  std::cout << heading(r.place) << "validity: " << validity_words(a.outside)
-            << "\nestimable: " << estimable_words(a.estimable) << "\nrealizable: " << realizable_words(a)
-            << "\nuncertainties: " << uncertainty_words(r) << "\n\n";
+  std::cout << heading(r.place) << "validity: " << validity_words(a.outside) << "\nestimable: " << estimable_words(a)
+            << "\nrealizable: " << realizable_words(a) << "\nuncertainties: " << uncertainty_words(r) << "\n\n";
   const auto u_f11 = a.uncertainties ? std::optional((*a.uncertainties)(0, 0)) : std::nullopt;
   print_quantity({.value = a.elements(0, 0), .uncertainty = u_f11}, "f11", "sr^-1", a);
   for (const Answered& q : a.quantities) print_quantity(q, q.quantity->name, q.quantity->unit, a);

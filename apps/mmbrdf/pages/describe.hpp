@@ -33,6 +33,8 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model);
 
 /// What the uncertainties of a model hold: "the fit, its instrument and its certificate"
 std::string uncertain_of(const Model& model);
+/// "scale, angles and sample are not in it": what uncertainties of that leave out, as far as is known. Empty for nothing.
+std::string missing_from_uncertainty(const Model& model);
 
 /// 0 for what is 0 but for rounding, and not -0.0000000000.
 double without_rounding(double x);

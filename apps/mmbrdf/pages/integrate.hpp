@@ -43,6 +43,7 @@ struct Integrated {
   std::vector<IntegratedRow> rows;
   bool several_wavelengths = false;
   std::string uncertain;           // what the uncertainties are of: uncertain_of()
+  std::string not_in_it;           // missing_from_uncertainty()
   std::vector<std::string> terms;  // and of these
 };
 

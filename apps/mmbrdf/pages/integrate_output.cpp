@@ -158,8 +158,8 @@ std::string matrices(const Integrated& result) {
 std::string uncertainty_line(const Integrated& result) {
   const std::string start = "u: standard uncertainty of " + result.uncertain;
   if (!result.terms.empty()) return start + " and of " + joined(result.terms) + "\n";
-  return start + (result.uncertain == "the fit" ? " alone; " : "; ") +
-         (result.uncertain.ends_with("certificate") ? "" : "scale, ") + "angles and sample are not in it\n";
+  return start + (result.uncertain == "the fit" ? " alone" : "") +
+         (result.not_in_it.empty() ? "" : "; " + result.not_in_it) + "\n";
 }
 
 std::string text_of(const Integrated& result) {

@@ -159,6 +159,7 @@ class FitAccumulator {
   struct AtWavelength {
     std::vector<LeastSquares> elements;  // 16, in row-major order, over the modes of the element's block
     std::array<double, 16> weight{};     // Σ w
+    DirectionPairs measured;
   };
 
   struct Design;   // modes of elements: fit_rows.cpp
@@ -170,6 +171,7 @@ class FitAccumulator {
                             Weights weights);
   static FitResult of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options, Weights weights);
   FitResult solved(const FitOptions& options) const;
+  std::vector<SupportedPairs> support() const;
   Solution block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance, double rank_tolerance,
                           SvdCache& known) const;
   void add_own_reflectance_covariance(FitResult& result, const FitOptions& options, SvdCache& known,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mmbrdf/basis/modes.hpp"
+#include "mmbrdf/geometry/direction_pairs.hpp"
 #include "mmbrdf/geometry/geometry.hpp"
 #include "mmbrdf/mixed/posterior.hpp"
 
@@ -33,11 +34,20 @@ void require_valid(const ReflectanceTable& table);
 /// Throws std::invalid_argument for a wavelength (micrometres) beyond the ends of a table, to 1e-7; an empty one has none.
 void require_reaches(const ReflectanceTable& table, double wavelength);
 
+/// Pairs of directions of which the samples of a wavelength tell, whatever the part of the hemisphere that they cover.
+struct SupportedPairs {
+  double wavelength = 0;  ///< micrometres
+  DirectionPairs pairs;
+  friend bool operator==(const SupportedPairs&, const SupportedPairs&) = default;
+};
+
 /// Where the data were that a model was fitted to. Published coefficient files do not say it.
 struct Validity {
   std::vector<double> wavelengths;    ///< micrometres, rising; empty: unknown
   std::optional<double> theta_i_max;  ///< largest polar angles in radians; none: unknown
   std::optional<double> theta_r_max;
+  std::vector<SupportedPairs> supported{};  ///< of rising wavelengths, between which both count and beyond which the
+                                            ///< nearest; one holds for all. Empty: all within the angles
 };
 
 /// Reasons for which a result lies outside the fitted range; a bit each.
@@ -46,13 +56,15 @@ enum Outside : unsigned {
   outside_theta_i = 1,
   outside_theta_r = 2,
   outside_wavelength = 4,
-  unknown_range = 8,  ///< it is not known whether an angle or the wavelength is inside
+  unknown_range = 8,        ///< it is not known whether an angle or the wavelength is inside
+  outside_directions = 16,  ///< no samples support these directions together
+  interpolated = 32,        ///< not outside: between two fitted wavelengths
 };
 
 /// "ok", or the reasons joined by "+": "theta_i+wavelength"; "unknown" for unknown_range.
 std::string to_string(Outside outside);
 
-/// Whether an angle or the wavelength is outside, and not only unknown.
+/// Whether an angle, the directions or the wavelength is outside, and not only unknown or between.
 bool leaves_known_range(Outside outside);
 
 /// Modes that were fitted together, with their coefficients and what is known about them.
@@ -114,6 +126,8 @@ Orders orders(const Model& model);
 
 /// Which of the fitted ranges the question leaves. Angles and wavelengths at the edge are inside (to 1e-9).
 Outside outside(const Validity& validity, double wavelength, const Geometry& geometry);
+/// Of the wavelength alone.
+Outside outside(const Validity& validity, double wavelength);
 
 /// Models that need no wavelength: with highest power 0, and no reflectance table or one with a single node. Returns
 /// their wavelength, or 1 if that is unknown. Throws std::invalid_argument, with the fitted wavelengths, for others.

@@ -33,6 +33,7 @@ std::vector<std::string> data_warnings(const FitResult& result);
 /// Those of the fit itself (FitResult::warnings), data_warnings(), and of the model within the fitted angles, at no more
 /// than most_checked of the fitted wavelengths:
 ///
+///   - pairs of directions that no samples support: unsupported_line()
 ///   - a directional-hemispherical reflectance above 1 by more than its standard uncertainty: energy_line()
 ///   - f11 that is not positive: not_positive_line()
 ///

@@ -43,6 +43,15 @@ double fitted_theta_max(const Validity& validity);
 std::string not_positive_line(const F11Diagnostics& found, const std::string& where);
 std::string energy_line(const F11Diagnostics& found, const std::string& where);
 
+/// Share of the pairs of directions within the fitted polar angles that no samples support at a wavelength, by their
+/// projected solid angles. And a sentence on it where it is more than a twentieth, with the part where most are missing.
+double unsupported_share(const Validity& validity, double wavelength);
+std::string unsupported_line(const Validity& validity, double wavelength);
+
+/// Of a hemisphere around a beam, source or receiver, the same: the directions of the other one.
+double unsupported_share(const Validity& validity, double wavelength, const Direction& beam);
+inline constexpr double much_unsupported = 0.05;
+
 /// How a geometry is called in sentences: "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees".
 std::string place_line(const Geometry& geometry);
 
