@@ -41,9 +41,9 @@ class PlannedBlock {
       : components_(components), columns_(blocks_of(components)[block], components.mapping) {
     const auto& [hyperparameters, noise] = components.blocks[block];
     const Prior prior = prior_of(columns_);
-    if (hyperparameters.size() != prior.names.size())
+    if (static_cast<Index>(hyperparameters.size()) != prior.mean.size())
       throw std::invalid_argument("block " + columns_.isotropic().name + ": " + std::to_string(hyperparameters.size()) +
-                                  " hyperparameters, expected " + std::to_string(prior.names.size()));
+                                  " hyperparameters, expected " + std::to_string(prior.mean.size()));
     noise_ = noise;
     const VectorXd v = prior.variances(Eigen::Map<const VectorXd>(hyperparameters.data(), prior.mean.size()));
     Gram gram(columns_.size(), 0);

@@ -31,7 +31,7 @@ void require_valid(const BlockPosterior& p, const Block& block, const MixedColum
                    bool rounded) {
   const std::string of = "of block " + block.name;
   const std::size_t modes = block.modes.size(), free = static_cast<std::size_t>(columns.size()) - modes;
-  require(p.hyperparameters.size() == prior_of(columns).names.size(), "number of hyperparameters " + of);
+  require(p.hyperparameters.size() == hyperparameter_names(block).size(), "number of hyperparameters " + of);
   require(p.mean.size() == modes && p.free_mean.size() == free, "number of means " + of);
   require(p.shared.size() == errors * modes, "number of effects of shared errors " + of);
   require(p.deviations.size() == (rounded ? modes : 0) && p.factor.size() == (rounded ? modes * (modes + 1) / 2 : 0),
@@ -82,10 +82,6 @@ std::vector<SharedError> shared_errors(const DeclaredErrors& declared) {
   return {{"declared scale", declared.scale},
           {"declared source arm", declared.source},
           {"declared receiver arm", declared.receiver}};
-}
-
-std::vector<std::string> hyperparameter_names(const Block& block) {
-  return prior_of(MixedColumns(block, DiscMapping::lambert)).names;
 }
 
 struct Posterior::State {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "mmbrdf/mixed/posterior.hpp"
+
 namespace mmbrdf {
 namespace {
 
@@ -29,12 +31,24 @@ constexpr int flat_order = 2;
 constexpr double flat_variance = 100;
 constexpr double least_logarithm = -40, largest_logarithm = 10;
 
+std::vector<Hyperprior> hyperpriors_of(const Block& block) {
+  std::vector<Hyperprior> result(common.begin(), common.end());
+  result.push_back(feeds_f11(block) ? nonreciprocal : calibration);  // both are the last
+  return result;
+}
+
 Index position(const FreeMode& mode) {
   if (mode.kind == FreeMode::Kind::harmonic) return harmonic + mode.harmonic - 1;
   return mode.kind == FreeMode::Kind::odd ? odd : last;
 }
 
 }  // namespace
+
+std::vector<std::string> hyperparameter_names(const Block& block) {
+  std::vector<std::string> result;
+  for (const Hyperprior& one : hyperpriors_of(block)) result.emplace_back(one.name);
+  return result;
+}
 
 VectorXd Prior::variances(const VectorXd& hyperparameters) const {
   return (constant + design * hyperparameters)
@@ -46,19 +60,13 @@ VectorXd Prior::variances(const VectorXd& hyperparameters) const {
 }
 
 Prior prior_of(const MixedColumns& columns) {
-  std::vector<Hyperprior> list(common.begin(), common.end());
-  list.push_back(feeds_f11(columns.isotropic()) ? nonreciprocal : calibration);  // both are the last
+  const std::vector<Hyperprior> list = hyperpriors_of(columns.isotropic());
   const auto count = static_cast<Index>(list.size());
-  Prior prior{{},
-              Eigen::MatrixXd::Zero(columns.size(), count),
-              VectorXd::Zero(columns.size()),
-              VectorXd(count),
+  Prior prior{Eigen::MatrixXd::Zero(columns.size(), count), VectorXd::Zero(columns.size()), VectorXd(count),
               VectorXd(count)};
   for (Index h = 0; h < count; ++h) {
-    const auto& [name, mean, deviation] = list[static_cast<std::size_t>(h)];
-    prior.names.emplace_back(name);
-    prior.mean(h) = mean;
-    prior.deviation(h) = deviation;
+    prior.mean(h) = list[static_cast<std::size_t>(h)].mean;
+    prior.deviation(h) = list[static_cast<std::size_t>(h)].deviation;
   }
   Index j = 0;
   for (const Mode& mode : columns.isotropic().modes) {

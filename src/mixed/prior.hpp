@@ -15,8 +15,7 @@
 namespace mmbrdf {
 
 struct Prior {
-  std::vector<std::string> names;   ///< of the hyperparameters: iso, slope, q1, q2, q3, free_slope, odd, …
-  Eigen::MatrixXd design;           ///< d ln v / d hyperparameter, columns × hyperparameters
+  Eigen::MatrixXd design;           ///< d ln v / d hyperparameter, columns × hyperparameters; names: posterior.hpp
   Eigen::VectorXd constant;         ///< the rest of ln v
   Eigen::VectorXd mean, deviation;  ///< of the hyperparameters
 
