@@ -63,9 +63,10 @@ py::object evaluate(const Question& question, Frame frame, int threads, const st
   return result;
 }
 
-/// f(prepared uncertainty, prepared model, geometry) at each position.
+/// f(covariance) at each position.
 template <std::size_t n, class F>
-py::object from_uncertainty(const Question& question, int threads, std::vector<py::ssize_t> core, F f) {
+py::object from_covariances(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms, int threads,
+                            std::vector<py::ssize_t> core, F f) {
   struct Prepared {
     PreparedUncertainty uncertainty;
     PreparedModel model;
@@ -81,8 +82,11 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
         },
         [&](const Prepared& p, const Some& some) {
           range.count(p.model.wavelength(), some.geometries);
+          std::vector<MuellerCovariance> covariances(some.geometries.size());
+          if (terms.empty()) p.uncertainty.evaluate(some.geometries, frame, covariances);
           for (std::size_t i = 0; i < some.geometries.size(); ++i) {
-            const std::array<double, n> values = f(p.uncertainty, p.model, some.geometries[i]);
+            if (!terms.empty()) covariances[i] = budget(p.model, p.uncertainty, terms, some.geometries[i], frame).total;
+            const std::array<double, n> values = f(covariances[i]);
             std::copy(values.begin(), values.end(), out + n * some.position(i));
           }
         });
@@ -91,25 +95,15 @@ py::object from_uncertainty(const Question& question, int threads, std::vector<p
   return result;
 }
 
-MuellerCovariance covariance_at(const PreparedUncertainty& uncertainty, const PreparedModel& model,
-                                const Geometry& geometry, Frame frame, const std::vector<TypeBTerm>& terms) {
-  return terms.empty() ? uncertainty.evaluate(geometry, frame)
-                       : budget(model, uncertainty, terms, geometry, frame).total;
-}
-
 py::object evaluate_uncertainty(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms,
                                 int threads) {
-  return from_uncertainty<16>(question, threads, {4, 4},
-                              [&](const PreparedUncertainty& u, const PreparedModel& model, const Geometry& g) {
-                                return standard_uncertainty(covariance_at(u, model, g, frame, terms)).elements;
-                              });
+  return from_covariances<16>(question, frame, terms, threads, {4, 4},
+                              [](const MuellerCovariance& c) { return standard_uncertainty(c).elements; });
 }
 
 py::object covariance(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms, int threads) {
-  return from_uncertainty<256>(question, threads, {16, 16},
-                               [&](const PreparedUncertainty& u, const PreparedModel& model, const Geometry& g) {
-                                 return covariance_at(u, model, g, frame, terms).values;
-                               });
+  return from_covariances<256>(question, frame, terms, threads, {16, 16},
+                               [](const MuellerCovariance& c) { return c.values; });
 }
 
 py::object outside_of(const Question& question) {

@@ -14,6 +14,8 @@ struct GramKernel {
   /// The inverse of a symmetric positive definite matrix, of which the lower triangle counts, in its place, both
   /// triangles; returns ln det, NaN for a matrix that is not positive definite.
   double (*invert)(double* a, long n);
+  /// y = x a, x and y of `rows` × n, a of n × n, all column by column.
+  void (*multiply)(double* y, const double* x, const double* a, long rows, long n);
 };
 
 /// The best that runs here.
@@ -25,5 +27,11 @@ inline void add_gram(Eigen::MatrixXd& g, const Eigen::MatrixXd& x, Eigen::Index 
 }
 /// a becomes its inverse; returns ln det a, NaN if a is not positive definite.
 inline double invert(Eigen::MatrixXd& a) { return gram_kernel().invert(a.data(), a.rows()); }
+/// x a, a square.
+inline Eigen::MatrixXd product(const Eigen::MatrixXd& x, const Eigen::MatrixXd& a) {
+  Eigen::MatrixXd y(x.rows(), a.cols());
+  gram_kernel().multiply(y.data(), x.data(), a.data(), x.rows(), a.cols());
+  return y;
+}
 
 }  // namespace mmbrdf

@@ -70,6 +70,11 @@ double invert(double* a, long n) {
   return log_determinant;
 }
 
+void multiply(double* y, const double* x, const double* a, long rows, long n) {
+  using Columns = Eigen::Map<const Eigen::MatrixXd>;
+  Eigen::Map<Eigen::MatrixXd>(y, rows, n).noalias() = Columns(x, rows, n) * Columns(a, n, n);
+}
+
 bool runs_here() {
 #ifdef __AVX2__
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -81,6 +86,6 @@ bool runs_here() {
 }  // namespace
 
 extern const GramKernel gram;
-const GramKernel gram{runs_here, add, invert};
+const GramKernel gram{runs_here, add, invert, multiply};
 
 }  // namespace mmbrdf::MMBRDF_ISA

@@ -50,13 +50,14 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   const Index modes = index(fitted.block.modes.size()), size = index(fitted.coefficients.size());
   const std::vector<double> powers = powers_of(wavelength, model.powers);
   const MatrixXd fold = repetition(modes, powers);
-  BlockAt result{fitted.block.elements, Rows(fitted.block.modes, model.family), {}, {}, {}, {}};
+  BlockAt result{fitted.block.elements, Rows(fitted.block.modes, model.family), {}, {}, {}, {}, {}};
   if (feeds_f11(fitted.block)) result.reflectance = model.reflectance.at(wavelength);
   result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
   result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
   if (!result.coefficients.allFinite() || !result.covariance.allFinite())
     throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
   require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
+  result.of_fit = result.covariance;
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = Eigen::Map<const VectorXd>(powers.data(), index(powers.size())).norm();
   return result;
@@ -105,6 +106,7 @@ BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, 
                  Rows(behind.modes, Family::isotropic),
                  among(behind, model.blocks[b], wavelength),
                  MatrixXd::Zero(size, size),
+                 MatrixXd::Zero(size, size),
                  {},
                  MatrixXd(modes, 0)};
   if (feeds_f11(behind)) result.reflectance = model.reflectance.at(wavelength);
@@ -118,7 +120,7 @@ BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, 
   for (const auto& [k, factor, deviation] : nodes_at(data.wavelengths, wavelength)) {
     const PosteriorAt& at = data.wavelengths[k];
     const BlockPosterior& here = at.blocks[b];
-    result.covariance.topLeftCorner(modes, modes) +=
+    result.of_fit.topLeftCorner(modes, modes) +=
         factor * Eigen::Map<const MatrixXd>(posterior.covariance(k, b).data(), modes, modes);
     const Eigen::Map<const Eigen::MatrixXf> shared(here.shared.data(), modes, index(data.errors.size()));
     for (std::size_t e = 0; e < data.errors.size(); ++e)
@@ -127,6 +129,7 @@ BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, 
     add("projection", std::sqrt(deviation) * (among(behind, model.blocks[b], at.wavelength) -
                                               Eigen::Map<const VectorXd>(here.mean.data(), modes)));
   }
+  result.covariance += result.of_fit;
   if (!result.covariance.allFinite())
     throw std::invalid_argument("block " + behind.name + " of the posterior is not finite at this wavelength");
   return result;

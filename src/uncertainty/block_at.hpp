@@ -18,6 +18,7 @@ struct BlockAt {
   Rows rows;
   Eigen::VectorXd coefficients;  // a(λ)
   Eigen::MatrixXd covariance;    // V(λ), of all parameters
+  Eigen::MatrixXd of_fit;        // V(λ) without its parts
   /// Parts of V: effects × effectsᵀ.
   struct Part {
     std::string name;
@@ -28,13 +29,6 @@ struct BlockAt {
   double lengthening = 1;  // of a row over the modes to the row over all powers
   double reflectance = 1;  // R(λ), of block 11
   Eigen::Index first = 0;  // of its parameters among those of all blocks
-
-  /// V without its parts.
-  Eigen::MatrixXd fit() const {
-    Eigen::MatrixXd result = covariance;
-    for (const Part& part : parts) result -= part.effects * part.effects.transpose();
-    return result;
-  }
 
   Eigen::Index modes() const { return coefficients.size(); }
   bool knows_reflectance() const { return covariance.rows() > modes(); }

@@ -138,7 +138,7 @@ std::vector<Mueller> effects(const TypeBTerm& term, const PreparedModel& model,
 
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,
               const Geometry& geometry, Frame frame) {
-  return budget_of(fit.parts(fit.gradient(geometry, frame)), model, terms, geometry, frame);
+  return budget_of(fit.parts(geometry, frame), model, terms, geometry, frame);
 }
 
 Budget budget(const PreparedModel& model, const PreparedUncertainty& fit, std::span<const TypeBTerm> terms,

@@ -14,6 +14,7 @@
 #include "numerics/eigen_index.hpp"
 #include "text/numbers.hpp"
 #include "uncertainty/block_at.hpp"
+#include "uncertainty/normalized_at.hpp"
 
 // Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
@@ -30,6 +31,19 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double estimability_limit = 1e-8;  // theory 4.7
+constexpr std::size_t at_once = 32;          // geometries: their rows stay in the cache
+
+/// Of F_e = f11 m_e, F_11 = f11, from that of f11 and m: dF_e = m_e df11 + f11 dm_e.
+MuellerCovariance of_product(Mueller m, const MuellerCovariance& c) {
+  const double f11 = std::exchange(m(0, 0), 1);
+  MuellerCovariance result;
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t other = 0; other < 16; ++other) {
+      const double direct = e == 0 || other == 0 ? 0 : f11 * f11 * c(e, other);
+      result(e, other) = m.elements[e] * m.elements[other] * c(0, 0) + direct;
+    }
+  return result;
+}
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -50,11 +64,25 @@ struct PreparedUncertainty::Blocks {
   DiscMapping mapping = DiscMapping::lambert;
   bool turns = false;
 
-  std::pair<KTable, KTable> tables(const Geometry& geometry) const {
+  /// As the modes are asked.
+  Geometry turned(const Geometry& geometry) const {
     const auto& [i, r] = geometry;
     const double turn = turns ? i.phi : 0;
-    return {functions_at({i.theta, i.phi - turn}, order, mapping),
-            functions_at({r.theta, r.phi - turn}, order, mapping)};
+    return {{i.theta, i.phi - turn}, {r.theta, r.phi - turn}};
+  }
+
+  std::pair<KTable, KTable> tables(const Geometry& geometry) const {
+    const auto& [i, r] = turned(geometry);
+    return {functions_at(i, order, mapping), functions_at(r, order, mapping)};
+  }
+
+  NormalizedAt normalized(std::span<const Geometry> geometries) const {
+    std::vector<Geometry> asked;
+    for (const Geometry& geometry : geometries) {
+      require_valid(geometry);
+      asked.push_back(turned(geometry));
+    }
+    return normalized_at(list, order, mapping, asked);
   }
 
   /// L and R of M → L M R that brings what the modes give into a frame.
@@ -82,17 +110,6 @@ struct PreparedUncertainty::Slopes {
         slopes[element.index()] = b.slopes(g);
         block[element.index()] = &b;
       }
-  }
-
-  MuellerCovariance covariance() const {
-    MuellerCovariance c;
-    for (std::size_t e = 0; e < 16; ++e) {
-      if (!block[e]) continue;
-      const VectorXd product = block[e]->covariance * slopes[e];
-      for (std::size_t other = 0; other <= e; ++other)
-        if (block[other] == block[e]) c(e, other) = c(other, e) = slopes[other].dot(product);
-    }
-    return c;
   }
 
   /// Adds weight × the slopes of F = f11 m, F_11 = f11: dF_e = m_e df11 + f11 dm_e.
@@ -127,24 +144,40 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
 }
 
 MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
-  const MuellerCovariance c = Slopes(*blocks_, geometry).covariance();
+  const NormalizedAt at = blocks_->normalized({&geometry, 1});
   const auto [left, right] = blocks_->to_frame(geometry, frame);
-  return transformed(c, left, right);
+  return transformed(at.total(0), left, right);
 }
 
 MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame frame) const {
-  const Slopes at(*blocks_, geometry);
-  const MuellerCovariance c = at.covariance();
-  Mueller m = at.m;
-  const double f11 = std::exchange(m(0, 0), 1);
-  MuellerCovariance result;  // F_e = f11 m_e, and F_11 = f11: dF_e = m_e df11 + f11 dm_e
-  for (std::size_t e = 0; e < 16; ++e)
-    for (std::size_t other = 0; other < 16; ++other) {
-      const double direct = e == 0 || other == 0 ? 0 : f11 * f11 * c(e, other);
-      result(e, other) = m.elements[e] * m.elements[other] * c(0, 0) + direct;
+  MuellerCovariance result;
+  evaluate({&geometry, 1}, frame, {&result, 1});
+  return result;
+}
+
+void PreparedUncertainty::evaluate(std::span<const Geometry> geometries, Frame frame,
+                                   std::span<MuellerCovariance> out) const {
+  if (out.size() != geometries.size())
+    throw std::invalid_argument(std::to_string(out.size()) + " covariances for " + std::to_string(geometries.size()) +
+                                " geometries");
+  for (std::size_t first = 0; first < geometries.size(); first += at_once) {
+    const auto some = geometries.subspan(first, std::min(at_once, geometries.size() - first));
+    const NormalizedAt at = blocks_->normalized(some);
+    for (std::size_t g = 0; g < some.size(); ++g) {
+      const auto [left, right] = blocks_->to_frame(some[g], frame);
+      out[first + g] = transformed(of_product(at.m[g], at.total(g)), left, right);
     }
+  }
+}
+
+std::vector<BudgetTerm> PreparedUncertainty::parts(const Geometry& geometry, Frame frame) const {
+  const NormalizedAt at = blocks_->normalized({&geometry, 1});
   const auto [left, right] = blocks_->to_frame(geometry, frame);
-  return transformed(result, left, right);
+  std::vector<BudgetTerm> result;
+  for (const NormalizedAt::Part& part : at.parts)
+    result.push_back({part.name, transformed(of_product(at.m[0], part.covariances[0]), left, right)});
+  result.front().freedom = freedom();
+  return result;
 }
 
 std::size_t PreparedUncertainty::parameters() const { return static_cast<std::size_t>(blocks_->parameters); }
@@ -196,7 +229,7 @@ MuellerCovariance PreparedUncertainty::covariance(const MuellerGradient& a, cons
 
 std::vector<BudgetTerm> PreparedUncertainty::parts(const MuellerGradient& gradient) const {
   const auto slopes = slopes_of(gradient, blocks_->parameters);
-  std::vector<BudgetTerm> result{{blocks_->list.front().parts.empty() ? "fit" : "posterior", {}, freedom()}};
+  std::vector<BudgetTerm> result{{name_of_fit(blocks_->list), {}, freedom()}};
   const auto add = [&](const std::string& name, const MatrixXd& covariance) {
     auto found = std::ranges::find(result, name, &BudgetTerm::name);
     if (found == result.end()) found = result.insert(found, {name, {}});
@@ -204,7 +237,7 @@ std::vector<BudgetTerm> PreparedUncertainty::parts(const MuellerGradient& gradie
   };
   for (const BlockAt& block : blocks_->list) {
     const MatrixXd of_block = slopes.middleCols(block.first, block.covariance.rows());
-    add(result.front().name, of_block * block.fit() * of_block.transpose());
+    add(result.front().name, of_block * block.of_fit * of_block.transpose());
     for (const BlockAt::Part& part : block.parts) {
       const MatrixXd effects = of_block * part.effects;
       add(part.name, effects * effects.transpose());

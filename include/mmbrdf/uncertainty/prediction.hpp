@@ -39,6 +39,9 @@ class PreparedUncertainty {
   /// Throws std::invalid_argument for an invalid geometry.
   MuellerCovariance evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
 
+  /// The same of many geometries, several times faster. Throws std::invalid_argument for lists of different lengths, too.
+  void evaluate(std::span<const Geometry> geometries, Frame frame, std::span<MuellerCovariance> out) const;
+
   /// Covariance of f11 in sr⁻¹ (element 11) and of the other elements divided by it. Throws std::invalid_argument for
   /// an invalid geometry.
   MuellerCovariance normalized(const Geometry& geometry, Frame frame = Frame::xy) const;
@@ -60,6 +63,8 @@ class PreparedUncertainty {
   ///   declared …    errors that all readings share, as they were declared; those of an instrument likewise
   ///   projection    what the evaluated modes miss of the posterior mean: of higher orders, of the wavelength
   std::vector<BudgetTerm> parts(const MuellerGradient& gradient) const;
+  /// parts(gradient(geometry, frame)) but for rounding, and faster.
+  std::vector<BudgetTerm> parts(const Geometry& geometry, Frame frame = Frame::xy) const;
 
   /// Slopes of the mean of F over both hemispheres that gives the bihemispherical reflectance over π: of f11, the other
   /// elements are 0.
