@@ -150,6 +150,15 @@ inline std::vector<double> read_covariance(const Field& field, std::size_t size)
   return square;
 }
 
+/// The lower triangle of a covariance, or variances alone.
+inline std::vector<double> read_variances(const Field& field, std::size_t size) {
+  const std::vector<double> variances = field.numbers();
+  if (variances.size() != size) return read_covariance(field, size);
+  for (std::size_t i = 0; i < size; ++i)
+    if (variances[i] < 0) field.refuse("variance " + std::to_string(i) + " is negative");
+  return variances;
+}
+
 /// Of a square matrix, row by row with the diagonal.
 inline std::vector<double> lower_triangle(const std::vector<double>& square, std::size_t size) {
   std::vector<double> triangle;

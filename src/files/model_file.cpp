@@ -145,7 +145,7 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
   if (table.wavelengths.empty()) field["wavelengths_um"].refuse("must not be empty");
   if (field.has("covariance")) {
     const std::size_t count = table.values.size();
-    table.covariance = read_covariance(field["covariance"], count);
+    table.covariance = read_variances(field["covariance"], count);
     table.covariance_with_f11 = field["covariance_with_f11"].numbers();
     require_count(field["covariance_with_f11"], table.covariance_with_f11.size(), count * f11_coefficients,
                   std::to_string(f11_coefficients) + " for each value");
@@ -196,7 +196,9 @@ void require_finite(const std::vector<double>& values, const std::string& what) 
 ordered_json reflectance_json(const ReflectanceTable& table) {
   ordered_json result = {{"wavelengths_um", table.wavelengths}, {"values", table.values}};
   if (!table.covariance.empty()) {
-    result["covariance"] = lower_triangle(table.covariance, table.values.size());
+    const std::size_t count = table.values.size();
+    result["covariance"] =
+        table.covariance.size() == count ? table.covariance : lower_triangle(table.covariance, count);
     result["covariance_with_f11"] = table.covariance_with_f11;
   }
   return result;

@@ -63,7 +63,7 @@ void require_valid(const ReflectanceTable& table) {
       throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not positive");
   }
   const std::size_t count = table.values.size();
-  if (!table.covariance.empty() && table.covariance.size() != count * count)
+  if (!table.covariance.empty() && table.covariance.size() != count * count && table.covariance.size() != count)
     throw std::invalid_argument("reflectance table: covariance of " + std::to_string(table.covariance.size()) +
                                 " numbers, expected " + std::to_string(count * count));
   if (table.covariance.empty() && !table.covariance_with_f11.empty())

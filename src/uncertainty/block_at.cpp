@@ -32,17 +32,20 @@ MatrixXd free_combinations(const FittedBlock& fitted) {
   return Eigen::Map<const MatrixXd>(fitted.null_space.data(), size, free);
 }
 
+VectorXd weights_at(const ReflectanceTable& table, double wavelength) {
+  const std::vector<double> weights = table.weights(wavelength);
+  return Eigen::Map<const VectorXd>(weights.data(), index(weights.size()));
+}
+
 /// Covariance of a(λ), and of R(λ) behind it where that is block 11 and R has a covariance.
 MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, const ReflectanceTable& table,
                            double wavelength) {
-  const MatrixXd joint = joint_covariance(fitted, table);
-  if (!has_uncertain_reflectance(fitted, table)) return fold.transpose() * joint * fold;
-  const std::vector<double> weights = table.weights(wavelength);
-  MatrixXd both = MatrixXd::Zero(joint.rows(), fold.cols() + 1);
-  both.topLeftCorner(fold.rows(), fold.cols()) = fold;
-  both.rightCols(1).bottomRows(index(weights.size())) =
-      Eigen::Map<const VectorXd>(weights.data(), index(weights.size()));
-  const MatrixXd result = both.transpose() * joint * both;
+  const MatrixXd own = fold.transpose() * own_covariance(fitted) * fold;
+  if (!has_uncertain_reflectance(fitted, table)) return own;
+  const VectorXd weights = weights_at(table, wavelength),
+                 with_own = fold.transpose() * (covariance_with_values(fitted, table) * weights);
+  MatrixXd result(own.rows() + 1, own.cols() + 1);
+  result << own, with_own, with_own.transpose(), variance_of_values(table, weights);
   return (result + result.transpose()) / 2;
 }
 
@@ -90,10 +93,7 @@ VectorXd among(const Block& behind, const FittedBlock& fitted, double wavelength
 
 /// Of the reflectance at a wavelength. Errors of a certificate count as independent of the posterior.
 double table_uncertainty(const ReflectanceTable& table, double wavelength) {
-  const std::vector<double> list = table.weights(wavelength);
-  const Eigen::Map<const VectorXd> weights(list.data(), index(list.size()));
-  const Eigen::Map<const MatrixXd> covariance(table.covariance.data(), weights.size(), weights.size());
-  return std::sqrt(std::max(weights.dot(covariance * weights), 0.0));
+  return std::sqrt(std::max(variance_of_values(table, weights_at(table, wavelength)), 0.0));
 }
 
 BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, double wavelength) {

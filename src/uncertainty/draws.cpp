@@ -20,6 +20,8 @@
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
 //   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
+//   v, B    variances of the values of a table, where they are independent, and their covariance with a: the values are
+//           drawn as √v z, a as B v^-½ z + (V − B v⁻¹ Bᵀ)^½ z', without a matrix of the square of their number
 
 namespace mmbrdf {
 namespace {
@@ -45,8 +47,37 @@ MatrixXd square_root(const MatrixXd& covariance, const std::string& block) {
   require_semidefinite(s, "block " + block, covariance_tolerance);
   return vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal() * vectors.transpose();
 }
-MatrixXd square_root(const FittedBlock& fitted, const ReflectanceTable& table) {
-  return square_root(joint_covariance(fitted, table), fitted.block.name);
+
+MatrixXd with_independent_values(const FittedBlock& fitted, const ReflectanceTable& table, const MatrixXd& z) {
+  const MatrixXd own = own_covariance(fitted);
+  MatrixXd scaled = covariance_with_values(fitted, table), result(z.rows(), z.cols());
+  const Index count = scaled.cols();
+  for (Index k = 0; k < count; ++k) {
+    const double variance = table.covariance[static_cast<std::size_t>(k)],
+                 deviation = std::sqrt(std::max(variance, 0.0));
+    result.row(own.rows() + k) = deviation * z.row(own.rows() + k);
+    if (variance < 0 || (variance == 0 && !scaled.col(k).isZero(0)))
+      throw std::invalid_argument("the covariance of block " + fitted.block.name +
+                                  " is not positive semidefinite: a reflectance has variance " + shortest(variance));
+    if (variance > 0) scaled.col(k) /= deviation;
+  }
+  const auto [vectors, s] = dense::eigensystem(own - scaled * scaled.transpose());
+  require_semidefinite(Eigen::Vector2d(s(0), own.trace()), "block " + fitted.block.name, covariance_tolerance);
+  result.topRows(own.rows()) = scaled * z.bottomRows(count) + vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal() *
+                                                                  (vectors.transpose() * z.topRows(own.rows()));
+  return result;
+}
+
+/// Independent normal numbers, a column for each draw, become deviations of the parameters of a block.
+MatrixXd correlated(const FittedBlock& fitted, const ReflectanceTable& table, const MatrixXd& z) {
+  const MatrixXd own = own_covariance(fitted);
+  if (!has_uncertain_reflectance(fitted, table)) return square_root(own, fitted.block.name) * z;
+  if (has_independent_values(table)) return with_independent_values(fitted, table, z);
+  const Eigen::Map<const MatrixXd> with = covariance_with_values(fitted, table),
+                                   values(table.covariance.data(), with.cols(), with.cols());
+  MatrixXd joint(z.rows(), z.rows());
+  joint << own, with, with.transpose(), values;
+  return square_root(joint, fitted.block.name) * z;
 }
 
 /// The model over the modes behind a posterior, with coefficients of 0: its covariance is another at each wavelength.
@@ -163,7 +194,8 @@ Draws::Coefficients::At Draws::Coefficients::at(double wavelength) const {
 void require_semidefinite(const Model& model) {
   require_valid(model);
   for (const FittedBlock& fitted : model.blocks)
-    if (!fitted.covariance.empty()) square_root(fitted, model.reflectance);
+    if (!fitted.covariance.empty())
+      correlated(fitted, model.reflectance, MatrixXd(means(fitted, model.reflectance).size(), 0));
 }
 
 Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) {
@@ -180,7 +212,7 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
   }
   fill_normal(drawn.blocks, seed);
   for (std::size_t b = 0; b < drawn.blocks.size() && !has_posterior; ++b) {
-    drawn.blocks[b] = square_root(model.blocks[b], model.reflectance) * drawn.blocks[b];
+    drawn.blocks[b] = correlated(model.blocks[b], model.reflectance, drawn.blocks[b]);
     drawn.blocks[b].colwise() += means(model.blocks[b], model.reflectance);
   }
   coefficients_ = std::make_shared<const Coefficients>(std::move(drawn));

@@ -47,6 +47,12 @@ Model any_model(Family family = Family::isotropic, unsigned seed = 1) {
   return model;
 }
 
+/// As a fit that takes the reflectances from its own samples has them.
+Model with_variances_alone(Model model) {
+  model.reflectance.covariance = {4, 9};
+  return model;
+}
+
 void expect_same(const Model& a, const Model& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.family, b.family);
@@ -111,6 +117,7 @@ TEST(Json, OfEveryFamilyIsReadBackToTheSameBits) {
     for (unsigned seed = 0; seed < 5; ++seed) {
       const Model model = any_model(family, seed);
       expect_same(model_from_json(to_json(model), "m.json"), model);
+      expect_same(model_from_json(to_json(with_variances_alone(model)), "m.json"), with_variances_alone(model));
     }
 }
 
@@ -264,6 +271,8 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
       {"\"reflectance\"", "\"reflectence\"", "m.json: reflectence: unknown field"},
       {"\"values\": [0.9]", "\"values\": [0.9], \"covariance\": [1, 2], \"covariance_with_f11\": [0]",
        "m.json: reflectance.covariance: 2 numbers in place of 1"},
+      {"\"values\": [0.9]", "\"values\": [0.9], \"covariance\": [-1], \"covariance_with_f11\": [0]",
+       "m.json: reflectance.covariance: variance 0 is negative"},
       {"\"values\": [0.9]", "\"values\": [0.9], \"covariance\": [1], \"covariance_with_f11\": [0, 1]",
        "m.json: reflectance.covariance_with_f11: 2 numbers in place of 1"},
       {"\"values\": [0.9]", "\"values\": [0.9], \"covariance_with_f11\": [0]",

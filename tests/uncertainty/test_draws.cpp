@@ -38,14 +38,26 @@ double reflectance_of(const PreparedModel& model, const Direction& incident) {
   return sum;
 }
 
+/// Of three wavelengths, with the reflectance of each from the same samples: variances alone, whose matrix is diagonal.
+Model with_reflectances_of_its_own() {
+  const Model truth = random_model(Family::isotropic, {3, 2}, 1, 3);
+  return fit(simulate(truth, std::array{0.4, 0.6, 0.9}, random_geometries(100, 2), 0.01, 4),
+             {Family::isotropic, {3, 2}})
+      .model;
+}
+Model with_a_matrix_of_reflectances() {
+  Model model = with_reflectances_of_its_own();
+  const std::vector<double> v = model.reflectance.covariance;
+  model.reflectance.covariance = {v[0], 0, 0, 0, v[1], 0, 0, 0, v[2]};
+  return model;
+}
+
 // N = 2000 draws: the mean is uncertain by u / √N, and u itself by u / √(2N) = 1.6 %; four times that is allowed.
 TEST(Draws, OfWhatIsLinearHaveTheFirstOrderUncertainty) {
   constexpr int count = 2000;
   const double of_mean = 4 / std::sqrt(count), of_deviation = 4 / std::sqrt(2.0 * count);
-  const Model model = material("ptfe");
-  ASSERT_FALSE(model.reflectance.covariance.empty());  // drawn along; without, u(DHR) would be another
-  const Draws draws(model, count, 1);
-  for (const double wavelength : {0.351, 0.8}) {
+  const auto expect_first_order = [&](const Model& model, double wavelength) {
+    const Draws draws(model, count, 1);
     const PreparedModel exact = prepare(model, wavelength);
     const PreparedUncertainty u = prepare_uncertainty(model, wavelength);
     const auto models = draws.at(wavelength);
@@ -69,6 +81,21 @@ TEST(Draws, OfWhatIsLinearHaveTheFirstOrderUncertainty) {
                                })),
            directional_hemispherical_reflectance(model, wavelength, {0.2, 0}),
            u.directional_hemispherical_reflectance({0.2, 0}));
+  };
+  ASSERT_EQ(with_reflectances_of_its_own().reflectance.covariance.size(), 3U);  // drawn along: else u(DHR) is another
+  for (const double wavelength : {0.4, 0.8}) {
+    expect_first_order(material("ptfe"), wavelength);
+    expect_first_order(with_reflectances_of_its_own(), wavelength);
+    expect_first_order(with_a_matrix_of_reflectances(), wavelength);
+  }
+}
+
+TEST(Draws, RefuseAReflectanceWithoutVarianceThatVariesWithTheCoefficients) {
+  Model model = with_reflectances_of_its_own();
+  for (const double variance : {0.0, -1e-9}) {
+    model.reflectance.covariance[1] = variance;
+    EXPECT_THROW(require_semidefinite(model), std::invalid_argument);
+    EXPECT_THROW(Draws{model}, std::invalid_argument);
   }
 }
 

@@ -221,7 +221,7 @@ TEST(Uncertainty, CountsThatTheReflectanceTableCameFromTheSameData) {
     FitAccumulator accumulator({Family::isotropic, {4, 0}});
     accumulator.add(samples, speckle_weights(samples, truth));
     const Model model = accumulator.solve().model;
-    ASSERT_EQ(model.reflectance.covariance.size(), 9u);
+    ASSERT_EQ(model.reflectance.covariance.size(), 3u);  // variances: of other wavelengths the errors are others
     for (const double wavelength : {0.4, 0.75}) {
       const PreparedUncertainty u = prepare_uncertainty(model, wavelength);
       // between its wavelengths the table is linear, and the truth is not: the noise-free fit has what it misses
@@ -319,6 +319,20 @@ TEST(Uncertainty, OfAFitWithItsOwnReflectanceIsEstimableWhereItIsWithAGivenOne) 
   const PreparedUncertainty u = prepare_uncertainty(own, 0.5), other = prepare_uncertainty(given, 0.5);
   for (const Geometry& g : at_normal) EXPECT_TRUE(u.estimable(g) && other.estimable(g));
   EXPECT_FALSE(u.estimable({{0.8, 0}, {0.5, 1}}));
+}
+
+TEST(Uncertainty, OfReflectancesWithVariancesAloneIsThatOfTheDiagonalMatrix) {
+  const auto samples = simulate(material("ptfe"), std::array{0.4, 0.6, 0.8}, random_geometries(90, 2), 0.01, 1);
+  const Model alone = fit(samples, {Family::isotropic, {3, 1}}).model;
+  Model matrix = alone;
+  const std::vector<double> v = alone.reflectance.covariance;
+  ASSERT_EQ(v.size(), 3U);
+  matrix.reflectance.covariance = {v[0], 0, 0, 0, v[1], 0, 0, 0, v[2]};
+  for (const double wavelength : {0.4, 0.55, 0.9}) {
+    const PreparedUncertainty a = prepare_uncertainty(alone, wavelength), b = prepare_uncertainty(matrix, wavelength);
+    expect_equal(a.evaluate({{0.8, 0}, {0.5, 1}}), b.evaluate({{0.8, 0}, {0.5, 1}}));
+    EXPECT_NEAR(a.directional_hemispherical_reflectance({}) / b.directional_hemispherical_reflectance({}), 1, 1e-12);
+  }
 }
 
 TEST(Uncertainty, OfASandwichWithoutDegreesOfFreedomIsNotKnown) {

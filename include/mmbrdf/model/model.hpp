@@ -19,9 +19,9 @@ namespace mmbrdf {
 /// Directional-hemispherical reflectance by wavelength, linear between the nodes, constant beyond them. It multiplies
 /// f11 of models that were fitted to several wavelengths. Empty: factor 1.
 struct ReflectanceTable {
-  std::vector<double> wavelengths{};          ///< micrometres, rising
-  std::vector<double> values{};               ///< one for each
-  std::vector<double> covariance{};           ///< of the values, square and row-major; empty: they count as exact
+  std::vector<double> wavelengths{};  ///< micrometres, rising
+  std::vector<double> values{};       ///< one for each
+  std::vector<double> covariance{};   ///< of the values: square, row-major; variances alone: independent; empty: exact
   std::vector<double> covariance_with_f11{};  ///< of each value (row) with each coefficient of block 11; empty with it
   double at(double wavelength) const;
   std::vector<double> weights(double wavelength) const;  ///< at(wavelength) = Σ weights × values
