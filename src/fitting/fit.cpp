@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -184,6 +185,8 @@ bool FitAccumulator::takes_own_reflectance(const FitOptions& options) const {
 
 ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdCache& known) const {
   ReflectanceTable table;
+  const std::vector<double> slopes =
+      directional_hemispherical_slopes(blocks_.front(), basis_.family, basis_.mapping, {});
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance, &known);
     if (const std::string free = undetermined(blocks_[0], solution, sides_);
@@ -191,11 +194,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
       require_determined("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
                              "reflectance it is to be divided by; give a reflectance table",
                          free, options);
-    Model f11;
-    f11.family = basis_.family;
-    f11.mapping = basis_.mapping;
-    f11.blocks.push_back({blocks_[0], solution.x, {}, 0, 0});
-    const double dhr = directional_hemispherical_reflectance(f11, wavelength, {0, 0});
+    const double dhr = std::inner_product(slopes.begin(), slopes.end(), solution.x.begin(), 0.0);
     if (!(dhr > 0))
       throw std::invalid_argument("the normal-incidence reflectance at " + nanometres(wavelength) +
                                   " nm comes out as " + shortest(dhr) + "; give a reflectance table");

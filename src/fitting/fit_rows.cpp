@@ -148,18 +148,24 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const Muelle
 
 std::vector<FitAccumulator::Folding::Share> FitAccumulator::Folding::shares(std::span<const Design> designs) const {
   std::vector<Share> result;
-  for (const Design& design : designs)
+  for (const Design& design : designs) {
+    std::multimap<double, std::size_t> open;  // shares by the weight of the first row
     for (std::size_t g = 0; g < groups.size(); ++g)
       for (const std::size_t e : design.elements) {
-        const auto found = std::find_if(result.begin(), result.end(), [&](const Share& share) {
-          return share.design == &design && share.columns.size() < values_at_once &&
-                 have_same_weights(share.columns[0], {e, g});
+        const double key = weight({e, g}, 0);
+        const auto [begin, end] = open.equal_range(key);
+        const auto found = std::find_if(begin, end, [&](const auto& one) {
+          return have_same_weights(result[one.second].columns[0], {e, g});
         });
-        if (found != result.end())
-          found->columns.push_back({e, g});
-        else
+        if (found == end) {
+          open.emplace(key, result.size());
           result.push_back({&design, {{e, g}}, LeastSquares(1)});
+        } else if (result[found->second].columns.push_back({e, g});
+                   result[found->second].columns.size() == values_at_once) {
+          open.erase(found);
+        }
       }
+  }
   for (Share& share : result)
     share.rows = LeastSquares(static_cast<int>(share.design->modes), static_cast<int>(share.columns.size()));
   return result;

@@ -218,13 +218,13 @@ std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, 
            " leave elements without modes";
   if (covariance != Covariance::residuals) return "the covariance " + to_string(covariance) + " is one of them";
   if (weights == Weights::data) return "weights of the data have no law";
-  for (const double wavelength : wavelengths(samples)) {
-    const auto count = std::ranges::count_if(
-        samples, [&](const Sample& sample) { return same_wavelength(sample.wavelength, wavelength); });
-    if (count < least_readings)
-      return std::to_string(count) + " samples at " + shortest(in_nanometres(wavelength)) + " nm, at least " +
+  const std::vector<double> nodes = wavelengths(samples);
+  std::vector<std::ptrdiff_t> counts(nodes.size());
+  for (const Sample& sample : samples) ++counts[wavelength_index(nodes, sample.wavelength)];
+  for (std::size_t node = 0; node < nodes.size(); ++node)
+    if (counts[node] < least_readings)
+      return std::to_string(counts[node]) + " samples at " + shortest(in_nanometres(nodes[node])) + " nm, at least " +
              std::to_string(least_readings) + " are needed";
-  }
   return "";
 }
 

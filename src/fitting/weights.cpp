@@ -27,7 +27,8 @@ Mueller weights_of(const Sample& sample, const NoiseLaw& law, const PreparedMode
 /// `law_at` gives the law at a wavelength.
 std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& model, const auto& law_at) {
   std::vector<Mueller> weights;
-  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength); });
+  const PreparedModel first = prepare(model, 1);
+  AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
   for (const auto& sample : samples) {
     const double wavelength = sample.wavelength;
     try {

@@ -3,7 +3,7 @@
 /// same one.
 #pragma once
 
-#include <deque>
+#include <map>
 
 #include "numerics/dense.hpp"
 
@@ -12,9 +12,11 @@ namespace mmbrdf {
 class SvdCache {
  public:
   const dense::Svd& of(const Eigen::MatrixXd& triangle) {
-    for (const auto& [of, svd] : known_)
-      if (of.rows() == triangle.rows() && of == triangle) return svd;
-    return known_.emplace_back(Known{triangle, dense::full_svd(triangle)}).svd;
+    const double sum = triangle.sum();
+    const auto [begin, end] = known_.equal_range(sum);
+    for (auto at = begin; at != end; ++at)
+      if (const auto& [of, svd] = at->second; of.rows() == triangle.rows() && of == triangle) return svd;
+    return known_.emplace(sum, Known{triangle, dense::full_svd(triangle)})->second.svd;
   }
 
  private:
@@ -22,7 +24,7 @@ class SvdCache {
     Eigen::MatrixXd triangle;
     dense::Svd svd;
   };
-  std::deque<Known> known_;
+  std::multimap<double, Known> known_;  // by the sum of the triangle
 };
 
 }  // namespace mmbrdf

@@ -45,7 +45,8 @@ void require_positive(double f11, const Sample& sample) {
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples) {
   std::vector<Mueller> result;
   result.reserve(samples.size());
-  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength); });
+  const PreparedModel first = prepare(model, 1);
+  AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
   for (const Sample& sample : samples) {
     const Mueller predicted = prepared(sample.wavelength).evaluate(sample.geometry);
     Mueller difference = sample.normalized - normalized(predicted);
@@ -59,7 +60,8 @@ Comparison compare(const Model& model, std::span<const Sample> samples) {
   if (samples.empty()) throw std::invalid_argument("no samples");
   require_valid(samples);
   const std::vector<Mueller> differences = residuals(model, samples);
-  AtWavelengths prepared([&](double wavelength) { return prepare(model, wavelength); });
+  const PreparedModel first = prepare(model, 1);
+  AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
   Comparison result;
   result.samples = static_cast<long>(samples.size());
   for (std::size_t s = 0; s < samples.size(); ++s) {

@@ -82,8 +82,10 @@ Direction random_direction(std::mt19937_64& engine, double theta_max) {
 bool same_wavelength(double a, double b) { return std::abs(a - b) <= wavelength_resolution; }
 
 std::size_t wavelength_index(std::span<const double> wavelengths, double wavelength) {
-  const auto same = [=](double other) { return same_wavelength(wavelength, other); };
-  return static_cast<std::size_t>(std::find_if(wavelengths.begin(), wavelengths.end(), same) - wavelengths.begin());
+  const auto at = std::ranges::partition_point(
+      wavelengths, [=](double other) { return other < wavelength && !same_wavelength(wavelength, other); });
+  const bool there = at != wavelengths.end() && same_wavelength(wavelength, *at);
+  return there ? static_cast<std::size_t>(at - wavelengths.begin()) : wavelengths.size();
 }
 
 std::vector<double> wavelengths(std::span<const Sample> samples) {

@@ -238,6 +238,25 @@ TEST(Fit, NeedsNoMoreMemoryForAHundredTimesTheSamples) {
   EXPECT_EQ(most_held(100), once);
 }
 
+// Nothing has the square of their number, and so nothing takes the cube of the time.
+TEST(Fit, NeedsMemoryInProportionToTheNumberOfWavelengths) {
+  const std::vector<Geometry> geometries = random_geometries(4, 7);
+  const auto most_held = [&](int wavelengths, Uncertainty uncertainty) {
+    std::vector<double> list;
+    for (int w = 0; w < wavelengths; ++w) list.push_back(0.3 + 0.001 * w);
+    const std::vector<Sample> samples = simulate(material("ptfe"), list, geometries, 0.01, 8);
+    const std::size_t at_first = held;
+    peak = held;
+    FitOptions options;
+    options.minimum_norm = true;
+    options.uncertainty = uncertainty;
+    const FitResult result = fit(samples, {Family::isotropic, {0, 0}}, options, Weights::speckle);
+    return static_cast<double>(peak - at_first);
+  };
+  for (const Uncertainty uncertainty : {Uncertainty::noise, Uncertainty::sample})
+    EXPECT_NEAR(most_held(1000, uncertainty) / most_held(500, uncertainty), 2, 0.2);
+}
+
 TEST(Fit, AHundredTimesTheSamplesGiveTheSameModelWithATenthOfTheUncertainty) {
   const std::vector<Sample> samples = samples_of(material("ptfe-532"), 0.01);
   FitAccumulator once{Basis{}}, often{Basis{}};

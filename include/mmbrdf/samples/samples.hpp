@@ -47,7 +47,7 @@ inline constexpr double wavelength_resolution = 1e-7;  ///< micrometres; files g
 /// Whether they differ by no more than that.
 bool same_wavelength(double a, double b);
 
-/// Which of these wavelengths it is, counted from 0; their number if it is none of them.
+/// Which of these rising wavelengths it is, counted from 0; their number if it is none of them.
 std::size_t wavelength_index(std::span<const double> wavelengths, double wavelength);
 
 /// Only the samples at these wavelengths, in the order they had. Throws std::invalid_argument, with the wavelengths
