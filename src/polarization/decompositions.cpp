@@ -286,7 +286,7 @@ double retardance(const Mueller& m) {
 double depolarization_power(const Mueller& m) {
   if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
   const Mueller n = normalized(m);
-  return 1 - std::abs(n(1, 1) + n(2, 2) + n(3, 3)) / 3;
+  return std::max(1 - std::abs(n(1, 1) + n(2, 2) + n(3, 3)) / 3, 0.0);
 }
 
 SymmetricDecomposition symmetric_decomposition(const Mueller& m) {

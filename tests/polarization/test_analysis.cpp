@@ -227,6 +227,28 @@ RC_GTEST_PROP(Invariants, DoNotDependOnTheMagnitude, ()) {
   }
 }
 
+RC_GTEST_PROP(Invariants, OfSubnormalMatricesAreThoseOfLargerOnesToTheSmallestNumber, ()) {
+  constexpr double smallest = std::numeric_limits<double>::denorm_min();
+  RandomMueller source = any_source();
+  const int exponent = -1060 - source.below(15);
+  Mueller small = source.anything(), large;
+  small = source.below(2) ? small : source.realizable();
+  for (std::size_t e = 0; e < 16; ++e) {
+    small.elements[e] = std::ldexp(std::clamp(small.elements[e], -1e3, 1e3), exponent);
+    large.elements[e] = std::ldexp(small.elements[e], -exponent);  // exact
+  }
+  const CloudeDecomposition parts = cloude_decomposition(small), expected = cloude_decomposition(large);
+  for (std::size_t q = 0; q < 4; ++q) {
+    RC_ASSERT(std::abs(parts.weights[q] - std::ldexp(expected.weights[q], exponent)) <= smallest);
+    RC_ASSERT(parts.components[q] == expected.components[q]);
+  }
+  if (small(0, 0) < 0) return;
+  const Projection nearest = nearest_realizable(small), of_large = nearest_realizable(large);
+  for (std::size_t e = 0; e < 16; ++e)
+    RC_ASSERT(std::abs(nearest.matrix.elements[e] - std::ldexp(of_large.matrix.elements[e], exponent)) <= smallest);
+  RC_ASSERT(std::abs(nearest.change - std::ldexp(of_large.change, exponent)) <= smallest);
+}
+
 RC_GTEST_PROP(Purity, OfAJonesMatrixIsOneWithASingleEigenvalue, ()) {
   RandomMueller source = any_source();
   const Mueller m = normalized(source.pure(source.below(RandomMueller::kinds)));

@@ -223,6 +223,17 @@ TEST(DepolarizationPower, IsOneForAPerfectDepolarizerAndZeroForNone) {
   EXPECT_THROW(depolarization_power(Mueller{}), std::invalid_argument);
 }
 
+// What is left beside a diattenuation of 1 - 1e-12 has a trace of up to 3.002.
+TEST(DepolarizationPower, IsBetweenZeroAndOneBesideAnyDiattenuator) {
+  RandomMueller source(3);
+  for (int i = 0; i < 5000; ++i) {
+    const double angle = source.between(0, 2 * pi), length = 1 - std::pow(10, source.between(-14, 0));
+    const Mueller strong = diattenuator(length * std::cos(angle), length * std::sin(angle), 0);
+    const double power = depolarization_power(lu_chipman(source.pure(3) * strong).depolarizer);
+    EXPECT_TRUE(power >= 0 && power <= 1) << power;
+  }
+}
+
 // Matrices with an eigenvalue that is nearly a multiple one, behind strong diattenuators, are why the promise is not
 // 1e-12; some of them are refused.
 TEST(SymmetricDecomposition, FactorsOfTenThousandRandomMatricesMultiplyBack) {

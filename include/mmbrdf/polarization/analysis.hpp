@@ -5,7 +5,8 @@
 /// Every function takes finite matrices of any magnitude and returns finite numbers; elements that are not finite are
 /// refused with std::invalid_argument. "M11 must be positive" below means that std::invalid_argument names it where it
 /// is not. What would be too large for a double, such as an element divided by a far smaller M11, is a number close to
-/// the largest.
+/// the largest; what would need more digits than a double has below 1e-307 is rounded to a multiple of 5e-324, so that
+/// sums and realizability hold to that number, not to a part of M11.
 #pragma once
 
 #include <array>

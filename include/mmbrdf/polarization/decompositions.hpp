@@ -37,8 +37,8 @@ inline constexpr double lu_chipman_error = 1e-12;
 /// 1996). Throws std::invalid_argument unless the matrix is M11 (1, 0; 0, rotation) to 1e-9, M11 > 0.
 double retardance(const Mueller& retarder);
 
-/// 1 − |tr m_Δ| / 3, in [0, 1]: 0 if nothing is depolarized, 1 for a perfect depolarizer (Lu & Chipman 1996).
-/// M11 must be positive.
+/// 1 − |tr m_Δ| / 3, in [0, 1]: 0 if nothing is depolarized, 1 for a perfect depolarizer (Lu & Chipman 1996). 0 too
+/// where |tr m_Δ| is above 3, as digits lost beside a diattenuator of nearly 1 may leave it. M11 must be positive.
 double depolarization_power(const Mueller& depolarizer);
 
 /// M = diattenuator2 · retarder2 · depolarizer · retarder1ᵀ · diattenuator1.
