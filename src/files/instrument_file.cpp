@@ -41,7 +41,10 @@ Stokes read_state(const Field& field) {
 
 std::vector<Stokes> read_states(const Field& field) {
   std::vector<Stokes> states;
-  for (const Field& item : field.items()) states.push_back(read_state(item));
+  const std::vector<Field> items = field.items();
+  if (items.size() > most_states)
+    field.refuse(std::to_string(items.size()) + " states, more than " + std::to_string(most_states));
+  for (const Field& item : items) states.push_back(read_state(item));
   if (states.size() < 4) field.refuse(std::to_string(states.size()) + " states, at least four are needed");
   return states;
 }

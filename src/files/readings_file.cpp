@@ -15,8 +15,6 @@
 namespace mmbrdf {
 namespace {
 
-constexpr std::size_t most_states = 1000;
-
 int column_of(const CsvReader& reader, std::string_view name) { return reader.find({&name, 1}); }
 
 int needed_column(const CsvReader& reader, std::string_view name) {

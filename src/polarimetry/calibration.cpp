@@ -42,7 +42,9 @@ constexpr std::array<const char*, 3> kind_names{"empty", "polarizer", "wafer"};
 void require_valid(const CalibrationOptions& options) {
   for (const auto& [arm, states] :
        {std::pair("generator", options.generator_states), {"analyzer", options.analyzer_states}})
-    if (states < 4) throw std::invalid_argument(std::to_string(states) + " states of the " + arm + ", four are needed");
+    if (states < 4 || states > most_states)
+      throw std::invalid_argument(std::to_string(states) + " states of the " + arm +
+                                  (states < 4 ? ", four are needed" : ", more than " + std::to_string(most_states)));
   if (options.dial_sense != 1 && options.dial_sense != -1)
     throw std::invalid_argument("a dial sense of " + std::to_string(options.dial_sense) + ", not 1 or -1");
   if (!(options.extinction >= 0 && options.extinction < 1))

@@ -176,6 +176,8 @@ namespace {
 /// Of a 4 × states matrix.
 MatrixXd pseudo_inverse(const MatrixXd& states, const char* of) {
   const auto refusal = [&](const std::string& what) { return std::invalid_argument(of + (": " + what)); };
+  if (states.cols() > index(most_states))
+    throw refusal(std::to_string(states.cols()) + " states, at most " + std::to_string(most_states) + " can be used");
   const std::string too_few = std::to_string(states.cols()) + " states, not four independent ones";
   if (!states.allFinite()) throw refusal("a state is not finite");
   if (states.cols() < 4) throw refusal(too_few);

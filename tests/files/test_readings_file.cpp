@@ -4,6 +4,7 @@
 #include "mmbrdf/polarimetry/measurement.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <random>
@@ -268,6 +269,52 @@ TEST(Instrument, ThatCannotBeIsRefusedWithItsField) {
   EXPECT_TRUE(says(complains("\"singular_ratio\"", "\"singular\""), {"i.json: singular: unknown field"}));
   EXPECT_TRUE(says(complains("\"generator\": [", "\"generator\": [[1, 0, 0],"), {"i.json: generator[0]: 3 numbers"}));
   EXPECT_TRUE(says(complains("\"covariance\": [", "\"covariance\": [1, "), {"i.json: covariance: 821 numbers"}));
+}
+
+/// Kilobytes that this process has had at most.
+long most_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+Calibration with_states(std::size_t count) {
+  Calibration c = any_calibration();
+  std::vector<double> azimuths;
+  for (std::size_t k = 0; k < count; ++k) azimuths.push_back(3 * static_cast<double>(k) / static_cast<double>(count));
+  c.polarimeter = ideal_polarimeter(radians(131.8), azimuths);
+  c.generator_condition = condition_number(c.polarimeter.generator);
+  c.analyzer_condition = condition_number(c.polarimeter.analyzer);
+  const std::size_t size = 8 * count;
+  c.covariance.assign(size * size, 1e-9 / 3);
+  for (std::size_t i = 0; i < size; ++i) c.covariance[i * size + i] = 1e-8 / 3;
+  return c;
+}
+
+TEST(Instrument, OfTheMostStatesIsReadAndReducesInFiftyMegabytes) {
+  const std::string text = to_json(with_states(most_states));
+  const long before = most_memory();
+  const Calibration c = calibration_from_json(text, "i.json");
+  const Reduction reduction(c.polarimeter, c.covariance);
+  const Mueller m = reduction.mueller(readings(c.polarimeter, diagonal(1, 0.5, 0.4, 0.3)));
+  EXPECT_NEAR(m(1, 1), 0.5, 1e-12);
+  EXPECT_EQ(reduction.errors(m).size(), 8 * most_states);
+  EXPECT_LT(most_memory() - before, 50'000);
+}
+
+TEST(Instrument, OfMoreStatesIsRefusedByFileReadingsReductionAndCalibration) {
+  const Calibration c = with_states(most_states + 1);
+  EXPECT_EQ(message_of([&] { Reduction{c.polarimeter}; }), "generator: 101 states, at most 100 can be used");
+  std::string text = to_json(any_calibration()), first = "\"generator\": [";
+  for (std::size_t more = 5; more <= most_states; ++more)
+    text.insert(text.find(first) + first.size(), "[1, 0, 0, 0], ");
+  EXPECT_TRUE(says(complaint([&] { calibration_from_json(text, "i.json"); }),
+                   {"i.json: generator: 101 states, more than 100"}));
+  EXPECT_TRUE(says(complaint([&] { parsed_references(references_csv("532,empty,1,0,101,1,1,0,1,1\n")); }),
+                   {"generator_state: 101: states are numbered from 1 to at most 100"}));
+  CalibrationOptions options;
+  options.generator_states = most_states + 1;
+  EXPECT_EQ(message_of([&] { calibrate({}, options); }), "101 states of the generator, more than 100");
 }
 
 TEST(Instrument, ThatCouldNotBeReadBackIsNotWritten) {

@@ -24,6 +24,9 @@ struct Polarimeter {
   std::size_t readings() const { return generator.size() * analyzer.size(); }
 };
 
+/// Of an arm, in readings, instruments and calibrations: the covariance of both arms has (8 × that)² numbers.
+inline constexpr std::size_t most_states = 100;
+
 /// A polarizer along ⊥ and behind it a retarder at each of these azimuths (radians); the analyzer mirrors it:
 /// w = retarder(azimuth) (1, 1, 0, 0), a = ½ (1, 1, 0, 0) retarder(azimuth).
 Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuths);
@@ -54,7 +57,7 @@ class Reduction {
  public:
   /// `covariance` is that of the instrument: of the components of w_1, w_2, …, a_1, a_2, …, row-major; none if it is
   /// not known, or exact. Throws std::invalid_argument for states that are not finite, fewer than four independent
-  /// ones, a covariance of another size, or one that is not symmetric and positive semidefinite (covariance_tolerance).
+  /// ones, more than most_states, a covariance of another size, or one that is not symmetric and positive semidefinite (covariance_tolerance).
   explicit Reduction(const Polarimeter& polarimeter, std::span<const double> covariance = {});
 
   /// Throws std::invalid_argument for another number of readings than the instrument has, or one that is not finite.
