@@ -59,6 +59,7 @@ class Aperture {
   ///   about an axis     `nodes` Gauss–Legendre in 1 − cos α × 4 nodes − 2 equidistant azimuths
   ///   rings and caps    as about an axis, the normal: exact for polynomials of degree 4 nodes − 3 in the disc
   ///                     coordinates of DiscMapping::lambert
+  ///   ellipses          2 nodes × 2 nodes: Gauss–Legendre across the longer axis, Chebyshev along it
   ///   rectangles        2 nodes × 2 nodes Gauss–Legendre in the angles arctan(X tan half_theta), arctan(Y …)
   /// Throws std::invalid_argument unless 1 ≤ nodes ≤ most_nodes.
   std::vector<WeightedDirection> quadrature(int nodes) const;
