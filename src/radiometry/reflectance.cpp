@@ -101,19 +101,43 @@ double hemispherical_directional_reflectance(const Model& model, double waveleng
 
 namespace {
 
-Mueller mean(const PreparedModel& model, const std::vector<WeightedDirection>& source,
-             const std::vector<WeightedDirection>& receiver) {
-  Mueller result;
+/// The mean of a matrix, and of |f11|, whose rounding is in it.
+struct Mean {
+  Mueller mueller;
+  double magnitude = 0;
+};
+
+Mean mean(const PreparedModel& model, const std::vector<WeightedDirection>& source,
+          const std::vector<WeightedDirection>& receiver) {
+  Mean result;
   for (const WeightedDirection& incident : source) {
     const PreparedIncidence prepared = model.at(incident.direction);
     Mueller inner;
+    double magnitude = 0;
     for (const WeightedDirection& reflected : receiver) {
       const Mueller m = prepared.evaluate(reflected.direction);
       for (std::size_t e = 0; e < 16; ++e) inner.elements[e] += reflected.weight * m.elements[e];
+      magnitude += std::abs(reflected.weight * m(0, 0));
     }
-    for (std::size_t e = 0; e < 16; ++e) result.elements[e] += incident.weight * inner.elements[e];
+    for (std::size_t e = 0; e < 16; ++e) result.mueller.elements[e] += incident.weight * inner.elements[e];
+    result.magnitude += std::abs(incident.weight) * magnitude;
   }
   return result;
+}
+
+/// mean_rule(nodes), and what its weights had missed of the closed form of their sum, relative.
+struct Rule {
+  std::vector<WeightedDirection> nodes;
+  double miss = 0;
+};
+
+Rule rule_of(const Aperture& aperture, int nodes) {
+  Rule rule{aperture.quadrature(nodes)};
+  double total = 0;
+  for (const WeightedDirection& node : rule.nodes) total += node.weight;
+  for (WeightedDirection& node : rule.nodes) node.weight /= total;
+  if (const double exact = aperture.projected_solid_angle(); exact > 0) rule.miss = std::abs(total / exact - 1);
+  return rule;
 }
 
 double largest(const Mueller& m) {
@@ -130,13 +154,14 @@ Average average(const PreparedModel& model, const Aperture& source, const Apertu
     throw std::invalid_argument("tolerance " + shortest(options.tolerance) + ": must be at least 1e-13 and below 1");
   Average result{};
   for (int nodes = 2; nodes <= Aperture::most_nodes; nodes += 1 + nodes / 5) {
-    const std::vector<WeightedDirection> incident = source.mean_rule(nodes), reflected = receiver.mean_rule(nodes);
-    const long geometries = static_cast<long>(incident.size()) * static_cast<long>(reflected.size());
+    const Rule incident = rule_of(source, nodes), reflected = rule_of(receiver, nodes);
+    const long geometries = static_cast<long>(incident.nodes.size()) * static_cast<long>(reflected.nodes.size());
     if (nodes > 3 && geometries > options.most_geometries) break;  // two rules at least
-    const Mueller finer = mean(model, incident, reflected);
-    const double size = largest(finer), difference = largest(finer - result.mueller);
-    const bool converged = nodes > 2 && difference <= options.tolerance * size;
-    result = {finer, difference + evaluation_error * size, nodes, geometries, converged};
+    const auto [finer, magnitude] = mean(model, incident.nodes, reflected.nodes);
+    const double difference = largest(finer - result.mueller) + (incident.miss + reflected.miss) * magnitude,
+                 rounding = evaluation_error * magnitude;
+    const bool converged = nodes > 2 && difference <= std::max(options.tolerance * largest(finer), rounding);
+    result = {finer, difference + rounding, nodes, geometries, converged};
     if (converged) break;
   }
   return result;

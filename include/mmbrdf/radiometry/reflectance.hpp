@@ -70,8 +70,9 @@ struct Average {
 
 /// Mean of M over a source and a receiver, weighted with projected solid angle on both sides: the conical-conical BRDF
 /// of Nicodemus et al. 1977, as measured under uniform incident radiance. Matrices are averaged in the xy frame, where
-/// they are smooth. Nodes are increased until two rules in turn agree to the tolerance; the difference, with the error
-/// of evaluation, is the error given for the finer one. `converged` is false where the next rule would have more than
+/// they are smooth. Nodes are increased until two rules in turn agree to the tolerance, or to evaluation_error × the
+/// mean of |f11|, where the mean is 0, and have the projected solid angles of the apertures; the difference, with what is
+/// missed of those and the error of evaluation, is the error given for the finer one. `converged` is false where the next rule would have more than
 /// most_geometries, as it may be for an aperture beside and over the normal with a model of the family germer2017: at
 /// θ_i = 0 that depends on the azimuth from which one comes. Throws std::invalid_argument unless 1e-13 ≤ tolerance < 1.
 Average average(const PreparedModel& model, const Aperture& source, const Aperture& receiver,
