@@ -17,6 +17,11 @@ constexpr double pi = std::numbers::pi;
 constexpr double edge = 1e-9;        // radians and micrometres: angles that went through degrees are still inside
 constexpr double resolution = 1e-7;  // of wavelengths in files, micrometres
 
+/// NaN is larger than anything.
+bool all_within(const std::vector<double>& numbers, double limit) {
+  return std::ranges::all_of(numbers, [limit](double x) { return std::abs(x) <= limit; });
+}
+
 }  // namespace
 
 void require_wavelength(double wavelength) {
@@ -59,8 +64,9 @@ void require_valid(const ReflectanceTable& table) {
     if (i > 0 && table.wavelengths[i] <= table.wavelengths[i - 1])
       throw std::invalid_argument("reflectance table: wavelength " + shortest(in_nanometres(table.wavelengths[i])) +
                                   " nm does not rise");
-    if (!(table.values[i] > 0) || !std::isfinite(table.values[i]))
-      throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not positive");
+    if (!(table.values[i] > 0 && table.values[i] <= largest_coefficient))
+      throw std::invalid_argument("reflectance table: value " + shortest(table.values[i]) + " is not " +
+                                  (table.values[i] > 0 ? "at most " + shortest(largest_coefficient) : "positive"));
   }
   const std::size_t count = table.values.size();
   if (!table.covariance.empty() && table.covariance.size() != count * count && table.covariance.size() != count)
@@ -68,9 +74,10 @@ void require_valid(const ReflectanceTable& table) {
                                 " numbers, expected " + std::to_string(count * count));
   if (table.covariance.empty() && !table.covariance_with_f11.empty())
     throw std::invalid_argument("reflectance table: a covariance with the coefficients, but none of its own");
-  for (const auto& list : {table.covariance, table.covariance_with_f11})
-    if (!std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); }))
-      throw std::invalid_argument("reflectance table: a covariance is not finite");
+  for (const auto* list : {&table.covariance, &table.covariance_with_f11})
+    if (!all_within(*list, largest_variance))
+      throw std::invalid_argument("reflectance table: a covariance is not a number up to " +
+                                  shortest(largest_variance));
 }
 
 void require_reaches(const ReflectanceTable& table, double wavelength) {
@@ -134,9 +141,13 @@ void require_valid(const FittedBlock& fitted, std::size_t count) {
   const std::size_t free = count - static_cast<std::size_t>(fitted.rank);
   if (!fitted.null_space.empty()) require_size(fitted.null_space, free * count, "null space of ");
   if (!fitted.covariance.empty()) require_size(fitted.covariance, count * count, "covariance of ");
-  for (const auto* list : {&fitted.coefficients, &fitted.covariance, &fitted.null_space})
-    if (!std::all_of(list->begin(), list->end(), [](double x) { return std::isfinite(x); }))
-      throw std::invalid_argument(where + "a number is not finite");
+  const auto require_within = [&](const std::vector<double>& list, double limit, const std::string& what) {
+    if (!all_within(list, limit))
+      throw std::invalid_argument(where + what + " is not a number up to " + shortest(limit));
+  };
+  require_within(fitted.coefficients, largest_coefficient, "a coefficient");
+  require_within(fitted.covariance, largest_variance, "a covariance");
+  require_within(fitted.null_space, largest_coefficient, "a part of a free combination");
   for (std::size_t i = 0; i < (fitted.covariance.empty() ? 0 : count); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (fitted.covariance[i * count + j] != fitted.covariance[j * count + i])

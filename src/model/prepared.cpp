@@ -17,6 +17,8 @@ namespace mmbrdf {
 
 namespace {
 
+constexpr double largest_at_a_wavelength = 1e100;  // largest_coefficient × (1 + … + max_wavelength⁹) is less
+
 /// A vector of length 1 to 1e-6 with exactly that length.
 Vector3 normalized(const Vector3& v) {
   const double length = std::hypot(v[0], v[1], v[2]);
@@ -53,10 +55,6 @@ PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wave
   double power = 1;
   for (std::size_t first = 0; first < pattern_->by_powers.size(); first += modes, power *= wavelength)
     for (std::size_t q = 0; q < modes; ++q) coefficients[q] += power * pattern_->by_powers[first + q];
-  for (const double coefficient : coefficients)
-    if (!std::isfinite(coefficient))
-      throw std::invalid_argument("wavelength " + shortest(in_nanometres(wavelength)) +
-                                  " nm: its powers are too large");
   set(std::move(coefficients));
 }
 
@@ -74,9 +72,11 @@ PreparedModel PreparedModel::with(std::span<const double> coefficients, double r
   if (coefficients.size() != pattern_->modes())
     throw std::invalid_argument(std::to_string(coefficients.size()) + " coefficients, expected " +
                                 std::to_string(pattern_->modes()));
-  bool finite = std::isfinite(reflectance);
-  for (const double a : coefficients) finite = finite && std::isfinite(a);
-  if (!finite) throw std::invalid_argument("a coefficient or the reflectance is not finite");
+  bool moderate = std::abs(reflectance) <= largest_at_a_wavelength;
+  for (const double a : coefficients) moderate = moderate && std::abs(a) <= largest_at_a_wavelength;
+  if (!moderate)
+    throw std::invalid_argument("a coefficient or the reflectance is not a number up to " +
+                                shortest(largest_at_a_wavelength));
   PreparedModel result = *this;
   result.reflectance_ = reflectance;
   result.set({coefficients.begin(), coefficients.end()});

@@ -49,6 +49,14 @@ MatrixXd folded_covariance(const FittedBlock& fitted, const MatrixXd& fold, cons
   return (result + result.transpose()) / 2;
 }
 
+/// Variances of products of three such numbers are finite.
+void require_moderate(const BlockAt& block, const std::string& name) {
+  constexpr double powers = 1e5;  // of moderate wavelengths
+  if (!(block.coefficients.array().abs() <= powers * largest_coefficient).all() ||
+      !(block.covariance.array().abs() <= powers * powers * largest_variance).all())
+    throw std::invalid_argument(name + " is too large at this wavelength");
+}
+
 BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelength) {
   const Index modes = index(fitted.block.modes.size()), size = index(fitted.coefficients.size());
   const std::vector<double> powers = powers_of(wavelength, model.powers);
@@ -57,8 +65,7 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   if (feeds_f11(fitted.block)) result.reflectance = model.reflectance.at(wavelength);
   result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
   result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
-  if (!result.coefficients.allFinite() || !result.covariance.allFinite())
-    throw std::invalid_argument("block " + fitted.block.name + " is not finite at this wavelength");
+  require_moderate(result, "block " + fitted.block.name);
   require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
   result.of_fit = result.covariance;
   result.free = fold.transpose() * free_combinations(fitted);
@@ -130,8 +137,7 @@ BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, 
                                               Eigen::Map<const VectorXd>(here.mean.data(), modes)));
   }
   result.covariance += result.of_fit;
-  if (!result.covariance.allFinite())
-    throw std::invalid_argument("block " + behind.name + " of the posterior is not finite at this wavelength");
+  require_moderate(result, "block " + behind.name + " of the posterior");
   return result;
 }
 

@@ -17,7 +17,7 @@ namespace {
 /// A model with everything that a file can hold, and numbers of many sizes.
 Model any_model(Family family = Family::isotropic, unsigned seed = 1) {
   std::mt19937_64 engine(seed);
-  std::lognormal_distribution<double> size(0, 20);
+  std::lognormal_distribution<double> size(0, 15);
   const auto number = [&] { return engine() % 2 ? size(engine) : -size(engine); };
   Model model;
   model.name = "any \"thing\", ±1";

@@ -49,6 +49,7 @@ TEST(ReflectanceTable, ThatIsNoneIsRefused) {
   EXPECT_EQ(refusal({{0.5, 0.5}, {1, 1}}), "reflectance table: wavelength 500 nm does not rise");
   EXPECT_EQ(refusal({{0.5}, {0}}), "reflectance table: value 0 is not positive");
   EXPECT_EQ(refusal({{0.5}, {-1e-9}}), "reflectance table: value -1e-09 is not positive");
+  EXPECT_EQ(refusal({{0.5}, {1.1e40}}), "reflectance table: value 1.1e+40 is not at most 1e+40");
   for (const double bad : {nan_value, infinity}) EXPECT_NE(refusal({{0.5}, {bad}}), "nothing was thrown");
   for (const double bad : {0.0, -0.5, nan_value, infinity}) EXPECT_NE(refusal({{bad}, {1}}), "nothing was thrown");
   EXPECT_EQ(refusal({}), "nothing was thrown");
@@ -193,9 +194,10 @@ TEST(Model, ThatDoesNotFitTogetherIsRefusedWithTheReason) {
   EXPECT_EQ(refusal([](Model& m) { m.blocks[2].covariance.resize(15); }),
             "block 14,41: covariance of 15 numbers, expected 16");
   EXPECT_EQ(refusal([](Model& m) { m.blocks[2].covariance.resize(16); }), "nothing was thrown");
-  for (const double bad : {nan_value, infinity, -infinity}) {
-    EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].coefficients[3] = bad; }), "block 14,41: a number is not finite");
+  for (const double bad : {nan_value, infinity, -infinity, 1.1e80, -1e300}) {
+    EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].coefficients[3] = bad; }),
+              "block 14,41: a coefficient is not a number up to 1e+40");
     EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].covariance.assign(16, bad); }),
-              "block 14,41: a number is not finite");
+              "block 14,41: a covariance is not a number up to 1e+80");
   }
 }

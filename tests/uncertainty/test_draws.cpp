@@ -182,7 +182,7 @@ TEST(Draws, NeedACovarianceACountAndAWavelength) {
   const PreparedModel prepared = prepare(model, 0.532);
   EXPECT_EQ(message_of([&] { prepared.with(std::array{1.0}, 1); }), "1 coefficients, expected 142");
   EXPECT_EQ(message_of([&] { prepared.with(std::vector<double>(142, std::nan("")), 1); }),
-            "a coefficient or the reflectance is not finite");
+            "a coefficient or the reflectance is not a number up to 1e+100");
 }
 
 // JCGM 101, 7.7: of M = 1000 values the symmetric interval goes from number 25 to number 975. The shortest one of

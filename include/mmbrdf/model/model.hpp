@@ -28,7 +28,7 @@ struct ReflectanceTable {
 };
 
 /// Throws std::invalid_argument unless sizes agree, wavelengths rise and are positive, values are positive and
-/// covariances finite.
+/// at most largest_coefficient, covariances at most its square.
 void require_valid(const ReflectanceTable& table);
 
 /// Throws std::invalid_argument for a wavelength (micrometres) beyond the ends of a table, to 1e-7; an empty one has none.
@@ -84,6 +84,10 @@ inline constexpr int max_power = 9;
 
 /// Largest wavelength that a model takes, micrometres: beyond it λ⁹ would end in infinities.
 inline constexpr double max_wavelength = 1e6;
+
+/// Largest magnitude of coefficients and reflectances, and of their covariances. So what is evaluated at any wavelength is
+/// finite in double precision.
+inline constexpr double largest_coefficient = 1e40, largest_variance = 1e80;
 
 /// Throws std::invalid_argument, with the wavelength in nm, unless 0 < wavelength ≤ max_wavelength.
 void require_wavelength(double wavelength);
