@@ -126,6 +126,34 @@ TEST(CommonErrors, MoveTheModelAsAFitToTheChangedSamplesMoves) {
   }
 }
 
+// The blocks of germer2017 too whose coefficients the data, at phi_i = 0 once turned, do not determine.
+TEST(CommonErrors, AreTheSameOfASampleThatIsTurnedAboutItsNormal) {
+  const std::vector<Sample> samples = simulated();
+  SampleChanges changes(samples.size());
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    for (std::size_t e = 0; e < 16; ++e) changes[s].elements[e] = 1e-2 * std::sin(0.7 * static_cast<double>(3 * s + e));
+  std::vector<Sample> elsewhere = samples;
+  SampleChanges moved = changes;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    elsewhere[s].geometry.incident.phi += 0.7;
+    elsewhere[s].geometry.reflected.phi += 0.7;
+    elsewhere[s].normalized = turned(samples[s].normalized, 0.7);
+    moved[s] = turned(changes[s], 0.7);
+  }
+  for (const Family family : {Family::isotropic, Family::germer2017}) {
+    const auto with = [&](const std::vector<Sample>& data, const SampleChanges& errors) {
+      Model model = fit(data, {family, {5, 3}}).model;
+      add_common_errors(model, data, std::array{errors});
+      return model;
+    };
+    const Model a = with(samples, changes), b = with(elsewhere, moved);
+    for (std::size_t block = 0; block < a.blocks.size(); ++block) {
+      const std::vector<double>&v = a.blocks[block].covariance, &w = b.blocks[block].covariance;
+      EXPECT_LT(largest_difference(v, w), 1e-7 * *std::ranges::max_element(v)) << a.blocks[block].block.name;
+    }
+  }
+}
+
 TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
   Model model = material("ptfe");
   const std::vector<Sample> samples = simulated();

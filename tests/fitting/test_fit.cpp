@@ -312,6 +312,30 @@ TEST(Fit, ChiSquaredPerDegreeOfFreedomIsOneWhereTheUncertaintiesAreRight) {
   }
 }
 
+// σ = C √(cos θi / cos θr): the weighted differences from the truth have one variance wherever they are, C² for the
+// elements and for f11, in units of the samples' own. 1800 rows in a part: 4 √(2 / (n)) of it, times 15 for the elements.
+TEST(Fit, SpeckleWeightsLeaveOneVarianceFromTheNormalToTheHorizon) {
+  const Model truth = material("ptfe-532");
+  const std::vector<Sample> samples =
+      simulate(truth, truth.validity.wavelengths, random_geometries(6000, 3, radians(85)), 0.01, 4);
+  const std::vector<Mueller> weights = speckle_weights(samples, truth), differences = residuals(truth, samples);
+  for (const auto& [low, high] : {std::pair(0.0, 40.0), {40.0, 60.0}, {60.0, 90.0}})
+    for (const bool incident : {false, true}) {
+      double f11 = 0, others = 0, count = 0;
+      for (std::size_t s = 0; s < samples.size(); ++s) {
+        const auto& [i, r] = samples[s].geometry;
+        const double theta = degrees(incident ? i.theta : r.theta);
+        if (theta < low || theta >= high) continue;
+        ++count;
+        for (std::size_t e = 0; e < 16; ++e)
+          (e == 0 ? f11 : others) += weights[s].elements[e] * differences[s].elements[e] * differences[s].elements[e];
+      }
+      ASSERT_GT(count, 1000);
+      EXPECT_NEAR(f11 / count / 1e-4, 1, 4 * std::sqrt(2 / count)) << low;
+      EXPECT_NEAR(others / count / 15 / 1e-4, 1, 4 * std::sqrt(2 / (15 * count))) << low;
+    }
+}
+
 // Of one wavelength, and of several that are divided by a reflectance from the same data.
 TEST(Fit, UncertaintiesCountAsGivenOrScaledByTheResiduals) {
   for (const char* name : {"ptfe-532", "ptfe"}) {

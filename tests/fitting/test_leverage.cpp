@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "given/disturbed.hpp"
+#include "mmbrdf/samples/comparison.hpp"
 
 namespace mmbrdf {
 
@@ -33,6 +34,22 @@ TEST(SampleDiagnostics, HaveLeveragesThatAddUpToTheRank) {
     }
   }
   EXPECT_THROW(sample_diagnostics(std::span(samples).first(10), fit(samples)), std::invalid_argument);
+}
+
+// y - ŷ of a fit without the sample is r / (1 - h).
+TEST(SampleDiagnostics, HaveTheLeverageThatASampleHasOnItsOwnValue) {
+  const std::vector<Sample> samples = noisy(exact(60), 0.05, 3);
+  const FitResult all = fit(samples, {Family::isotropic, small_orders});
+  const SampleDiagnostics found = sample_diagnostics(samples, all);
+  for (std::size_t s = 0; s < samples.size(); s += 7) {
+    std::vector<Sample> others = samples;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(s));
+    const FitResult without = fit(others, {Family::isotropic, small_orders});
+    const double missed = residuals(without.model, std::span(samples).subspan(s, 1)).front()(0, 0),
+                 h = found.leverage.front().values[s];
+    EXPECT_GT(h, 0.01);
+    EXPECT_NEAR(all.residuals[s](0, 0) / (1 - h), missed, 1e-10 * std::abs(missed)) << s;
+  }
 }
 
 TEST(SampleDiagnostics, HaveResidualsOfVarianceOneAndFindTheOneThatIsOff) {

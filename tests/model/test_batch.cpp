@@ -264,8 +264,48 @@ TEST(Batch, OfNothingIsNothing) {
 }
 
 // Single precision ends at 3e38.
+// They are taken to have length 1 to 1e-6, and are made so.
+TEST(Batch, OfVectorsOfNearlyUnitLengthIsThatOfTheirDirections) {
+  for (const Family family : every_family)
+    for (const DiscMapping mapping : {DiscMapping::lambert, DiscMapping::projected})
+      for (const Orders& orders : {Orders{7, 4}, Orders{9, 3}}) {
+        const PreparedModel model = prepare(random_model(family, orders, 0, 5, mapping), 0.5);
+        const Columns<double> exact(random_geometries(100, 6));
+        std::vector<Mueller> expected(100), found(100);
+        evaluate(model, exact.geometries(), expected);
+        for (const double length : {1 - 9e-7, 1 + 9e-7}) {
+          Columns<double> scaled = exact;
+          for (std::vector<double>& column : scaled.in)
+            for (double& component : column) component *= length;
+          evaluate(model, scaled.geometries(), found);
+          for (std::size_t q = 0; q < 100; ++q)
+            for (std::size_t e = 0; e < 16; ++e)
+              ASSERT_NEAR(found[q].elements[e], expected[q].elements[e], 1e-12 * std::abs(expected[q](0, 0)));
+        }
+      }
+}
+
+// Squares of such sines are 0, but the azimuth from which one comes is not.
+TEST(Batch, TendsToItsLimitAtTheNormal) {
+  for (const Family family : every_family)
+    for (const Rotation rotation : {Rotation::covariant, Rotation::as_printed}) {
+      if (family != Family::germer2017 && rotation == Rotation::as_printed) continue;
+      Model random = random_model(family, {7, 4}, 0, 5);
+      random.rotation = rotation;
+      const PreparedModel model = prepare(random, 0.5);
+      const Direction reflected{0.7, 2};
+      const Mueller limit = model.evaluate({{1e-9, 0.6}, reflected}),
+                    turned_to = model.evaluate({reflected, {1e-9, 0.6}});
+      for (const double theta : {1e-30, 1e-130, 1e-170, 1e-250})
+        for (std::size_t e = 0; e < 16; ++e) {
+          EXPECT_NEAR(model.evaluate({{theta, 0.6}, reflected}).elements[e], limit.elements[e], 1e-7) << theta;
+          EXPECT_NEAR(model.evaluate({reflected, {theta, 0.6}}).elements[e], turned_to.elements[e], 1e-7) << theta;
+        }
+    }
+}
+
 TEST(Batch, RefusesCoefficientsThatAreTooLargeForSinglePrecision) {
-  const PreparedModel model = prepare(diffuser({1e60}), 0.5);
+  const PreparedModel model = prepare(diffuser({1e39}), 0.5);
   const Columns<float> vectors(random_geometries(1, 1));
   std::vector<float> out(16);
   EXPECT_THROW(evaluate(model, vectors.geometries(), out), std::invalid_argument);

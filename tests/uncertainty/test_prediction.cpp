@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -365,6 +366,28 @@ TEST(Uncertainty, OfWhatTheDataSayNothingAboutIsNotEstimable) {
   EXPECT_FALSE(prepare_uncertainty(model, 0.532).estimable({{0.7, 0}, {0.5, 1}}));
 }
 
+// Theory 4.7: what of the slopes of f11 lies along the combination that is free, over all of them, is at most 1e-8.
+TEST(Uncertainty, IsEstimableUpToTheRoundingOfAFreeCombination) {
+  const Geometry g{{0.8, 0}, {0.5, 1}};
+  Model model;
+  model.blocks.push_back({blocks(Family::isotropic, {2, 0}).front(), {}, {}, 0, 0});
+  FittedBlock& f11 = model.blocks.front();
+  const std::size_t size = f11.block.modes.size();
+  f11.coefficients.assign(size, 1);
+  f11.covariance.assign(size * size, 0);
+  f11.rank = static_cast<int>(size) - 1;
+  f11.null_space.assign(size, 1);
+  const MuellerGradient slopes = prepare_uncertainty(model, 1).gradient(g);
+  std::vector<double> row(slopes.values.begin(), slopes.values.begin() + static_cast<std::ptrdiff_t>(size));
+  const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
+  const double across = std::hypot(row[0], row[1]);
+  for (const auto& [part, expected] : {std::pair(5e-9, true), {2e-8, false}, {1e-6, false}, {0.1, false}}) {
+    for (std::size_t q = 0; q < size; ++q)  // across the slopes, and a part of them
+      f11.null_space[q] = (q == 0 ? row[1] / across : q == 1 ? -row[0] / across : 0) + part * row[q] / length;
+    EXPECT_EQ(prepare_uncertainty(model, 1).estimable(g), expected) << part;
+  }
+}
+
 TEST(Uncertainty, IsFiniteWhereF11IsZeroAndNotHiddenWhereItIsNoNumber) {
   Model model = with_correlated_coefficients(Family::isotropic);
   std::fill(model.blocks[0].coefficients.begin(), model.blocks[0].coefficients.end(), 0.0);
@@ -373,6 +396,38 @@ TEST(Uncertainty, IsFiniteWhereF11IsZeroAndNotHiddenWhereItIsNoNumber) {
   MuellerCovariance undefined;
   undefined(3, 3) = std::nan("");
   EXPECT_TRUE(std::isnan(standard_uncertainty(undefined).elements[3]));
+}
+
+// The largest coefficients, reflectances and variances, at the shortest wavelength and where powers of it are refused.
+TEST(Uncertainty, AndValueOfTheLargestNumbersAreFiniteOrRefused) {
+  for (const Family family : {Family::isotropic, Family::germer2017, Family::anisotropic}) {
+    Model model = with_correlated_coefficients(family);
+    const auto fill = [](std::vector<double>& list, double value) { std::ranges::fill(list, value); };
+    for (FittedBlock& block : model.blocks) {
+      fill(block.coefficients, largest_coefficient);
+      fill(block.covariance, largest_variance);
+    }
+    fill(model.reflectance.values, largest_coefficient);
+    fill(model.reflectance.covariance, largest_variance);
+    fill(model.reflectance.covariance_with_f11, largest_variance);
+    int answered = 0;
+    for (const double wavelength : {1e-3, 0.5, 1.0, 1e3, max_wavelength}) {
+      try {
+        const PreparedModel value = prepare(model, wavelength);
+        const PreparedUncertainty u = prepare_uncertainty(model, wavelength);
+        for (const Geometry& g : random_geometries(20, 1)) {
+          EXPECT_LT(std::abs(value.evaluate(g)(0, 0)), 1e300);
+          for (const double f : value.evaluate(g, Frame::sp).elements) EXPECT_TRUE(std::isfinite(f));
+          for (const double v : u.evaluate(g, Frame::sp).values) EXPECT_TRUE(std::isfinite(v));
+          EXPECT_TRUE(std::isfinite(u.directional_hemispherical_reflectance(g.incident)));
+        }
+        ++answered;
+      } catch (const std::invalid_argument&) {
+      }
+      EXPECT_TRUE(std::isfinite(directional_hemispherical_reflectance(model, wavelength, {})));
+    }
+    EXPECT_GT(answered, 0);
+  }
 }
 
 TEST(Uncertainty, NeedsACovarianceAndAValidQuestion) {
