@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "given/calibrations.hpp"
@@ -227,6 +228,28 @@ TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
     }
   const std::string message = refusal(references, without_film());
   EXPECT_TRUE(message.starts_with("the references leave more than one instrument: nothing ties ")) << message;
+}
+
+// The experimental standard deviation of a mean of n gains: s / √n, s² = Σ (g − 1)² / (n − 1).
+TEST(Calibration, HasTheStandardDeviationOfTheMeanGainAsTheUncertaintyOfItsScale) {
+  const std::vector<Reference> all = Goniometer(quiet(), 3).references(wavelength, 18, 4);
+  for (const int kept : {2, 3, 5}) {
+    int empty = 0;
+    std::vector<double> gains;
+    std::vector<Reference> references =
+        only(all, [&](const Reference& r) { return r.kind != ReferenceKind::empty || empty++ < kept; });
+    for (Reference& r : references) {
+      if (r.kind != ReferenceKind::empty) continue;
+      gains.push_back(1 + 0.02 * std::sin(5.0 * static_cast<double>(gains.size() + 1)));
+      for (double& reading : r.readings) reading *= gains.back();
+    }
+    const auto n = static_cast<double>(gains.size());
+    const double mean = std::accumulate(gains.begin(), gains.end(), 0.0) / n;
+    double squares = 0;
+    for (const double gain : gains) squares += (gain / mean - 1) * (gain / mean - 1);
+    ASSERT_GT(n, 1);
+    EXPECT_NEAR(calibrate(references, with_film()).scale_uncertainty, std::sqrt(squares / (n - 1) / n), 1e-5) << kept;
+  }
 }
 
 // With gains that change by 2 % from one reference to the next, the mean of 18 is known to 0.5 %, and says so.
