@@ -66,7 +66,11 @@ BlockAt block_at(const FittedBlock& fitted, const Model& model, double wavelengt
   result.covariance = folded_covariance(fitted, fold, model.reflectance, wavelength);
   result.coefficients = fold.transpose() * Eigen::Map<const VectorXd>(fitted.coefficients.data(), size);
   require_moderate(result, "block " + fitted.block.name);
-  require_semidefinite(dense::eigenvalues(result.covariance), "block " + fitted.block.name, covariance_tolerance);
+  const double terms = Eigen::Map<const VectorXd>(powers.data(), index(powers.size())).squaredNorm() *
+                       own_covariance(fitted).trace();  // powers of the wavelength may cancel
+  VectorXd eigenvalues = dense::eigenvalues(result.covariance);
+  eigenvalues(eigenvalues.size() - 1) = std::max(eigenvalues(eigenvalues.size() - 1), 1e-6 * terms);
+  require_semidefinite(eigenvalues, "block " + fitted.block.name, covariance_tolerance);
   result.of_fit = result.covariance;
   result.free = fold.transpose() * free_combinations(fitted);
   result.lengthening = Eigen::Map<const VectorXd>(powers.data(), index(powers.size())).norm();
