@@ -46,7 +46,7 @@ Direction direction(const CsvReader& reader, int theta_column, int phi_column) {
   const double theta = reader.number(theta_column), phi = reader.number(phi_column);
   if (std::abs(theta) > 90)
     throw reader.error(reader.columns()[static_cast<std::size_t>(theta_column)] + ": " +
-                       std::string(reader.field(theta_column)) + " degrees; a polar angle is at most 90");
+                       printable(reader.field(theta_column), 40) + " degrees; a polar angle is at most 90");
   return direction_from_degrees(theta, phi);
 }
 
@@ -71,7 +71,7 @@ CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::m
   if (fields_.size() == 1 && fields_[0].find_first_of(";\t") != std::string_view::npos)
     throw error("no commas in the header line " + in_quotes(fields_[0]) + ": values must be separated by commas");
   if (is_number(fields_[0]))
-    throw error("no header line: instead of a column's name there is the number " + std::string(fields_[0]));
+    throw error("no header line: instead of a column's name there is the number " + printable(fields_[0], 40));
   for (const std::string_view field : fields_) {
     if (!field.empty() && std::find(columns_.begin(), columns_.end(), field) != columns_.end())
       throw error("two columns have the name " + in_quotes(field));
@@ -134,8 +134,9 @@ bool CsvReader::read_row() {
 bool CsvReader::next() {
   if (!read_row()) return false;
   if (fields_.size() != columns_.size())
-    throw error(std::to_string(columns_.size()) + " fields (" + columns_.front() + " ... " + columns_.back() +
-                ") are needed, there are " + std::to_string(fields_.size()) + ": " + in_quotes(text_));
+    throw error(std::to_string(columns_.size()) + " fields (" + shown_name(columns_.front()) + " ... " +
+                shown_name(columns_.back()) + ") are needed, there are " + std::to_string(fields_.size()) + ": " +
+                in_quotes(text_));
   return true;
 }
 
@@ -172,7 +173,7 @@ double GeometryColumns::wavelength(const CsvReader& reader) const {
   const double value = reader.number(wavelength_column_) / units_per_micrometre_;
   if (!(value > 0))
     throw reader.error(reader.columns()[static_cast<std::size_t>(wavelength_column_)] + ": " +
-                       std::string(reader.field(wavelength_column_)) + ": a wavelength must be positive");
+                       printable(reader.field(wavelength_column_), 40) + ": a wavelength must be positive");
   return value;
 }
 

@@ -30,7 +30,8 @@ class Field {
   bool has(const std::string& name) const { return object().contains(name); }
 
   Field operator[](const std::string& name) const {
-    const Field child(has(name) ? object().at(name) : value_, file_, (path_.empty() ? "" : path_ + ".") + name);
+    const Field child(has(name) ? object().at(name) : value_, file_,
+                      (path_.empty() ? "" : path_ + ".") + shown_name(name));
     if (!has(name)) child.refuse("missing");
     return child;
   }
@@ -128,6 +129,16 @@ auto checked(const Field& field, Check check) {
     return check();
   } catch (const std::invalid_argument& e) {
     field.refuse(e.what());
+  }
+}
+
+/// Nothing is saved that nobody could read: runs a reader on what is to be saved.
+template <class Read>
+void require_readable(Read read) {
+  try {
+    read();
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(std::string(e.what()) + "; not saved, since it could not be read back");
   }
 }
 

@@ -19,7 +19,7 @@ double measured(const CsvReader& reader, int column) {
   constexpr double beyond_all = 1e100;
   const double value = reader.number(column);
   if (std::abs(value) > beyond_all)
-    throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + std::string(reader.field(column)) +
+    throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + printable(reader.field(column), 40) +
                        " is beyond " + shortest(beyond_all));
   return value;
 }
@@ -74,7 +74,7 @@ int rotation_column(const CsvReader& reader) {
 double uncertainty(const CsvReader& reader, int column) {
   const double value = measured(reader, column);
   if (value < 0)
-    throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + std::string(reader.field(column)) +
+    throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + printable(reader.field(column), 40) +
                        ": an uncertainty must not be negative");
   return value;
 }
@@ -114,7 +114,7 @@ bool SampleReader::next(Sample& sample) {
     sample.uncertainty.elements[e] = uncertainties_[e] < 0 ? 0 : uncertainty(reader_, uncertainties_[e]);
   if (rotation_ >= 0) sample = turned(sample, -radians(measured(reader_, rotation_)));
   if (m11_ >= 0 && reader_.number(m11_) != 1)
-    throw reader_.error("m11: " + std::string(reader_.field(m11_)) +
+    throw reader_.error("m11: " + printable(reader_.field(m11_), 40) +
                         ": must be 1 next to f11, as elements are divided by it");
   return true;
 }

@@ -81,7 +81,8 @@ json parsed_json(std::string_view text, const std::string& name) {
   } catch (const json::parse_error& e) {  // "[…] parse error at line 1, column 5: what is wrong"
     const std::string what = e.what();
     const std::size_t begin = what.find(": ");
-    throw std::runtime_error(name + ":" + line_of(text, e.byte) + ": not JSON: " + what.substr(begin + 2, 200));
+    throw std::runtime_error(name + ":" + line_of(text, e.byte) +
+                             ": not JSON: " + printable(what.substr(begin + 2), 200));
   } catch (const json::out_of_range& e) {  // "[…] number overflow parsing '1e999'"
     const std::string what = e.what();
     const std::size_t begin = what.find('\'') + 1;

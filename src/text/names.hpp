@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "mmbrdf/text/printable.hpp"
+
 namespace mmbrdf {
 
 /// A row of such a table.
@@ -28,7 +30,7 @@ auto value_of(const Names& names, const std::string& text, const char* what) {
     if (name == text) return value;
     known += (known.empty() ? "" : ", ") + std::string(name);
   }
-  throw std::invalid_argument(std::string(what) + " '" + text + "' is not one of " + known);
+  throw std::invalid_argument(std::string(what) + " " + in_quotes(text) + " is not one of " + known);
 }
 
 }  // namespace mmbrdf

@@ -24,20 +24,6 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 40;
-  constexpr std::string_view hexadecimal = "0123456789abcdef";
-  std::string result = "'";
-  for (const char c : text.substr(0, longest)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte < 0x7f)
-      result += c;
-    else
-      (result += "\\x") += {hexadecimal[byte / 16], hexadecimal[byte % 16]};
-  }
-  return result + (text.size() > longest ? "...'" : "'");
-}
-
 double parse_number(std::string_view text) {
   const std::string_view digits = bare(text);
   double value = 0;

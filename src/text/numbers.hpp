@@ -6,15 +6,13 @@
 #include <string>
 #include <string_view>
 
+#include "mmbrdf/text/printable.hpp"
 #include "mmbrdf/text/rounding.hpp"
 
 namespace mmbrdf {
 
 /// Without surrounding blanks and tabs.
 std::string_view trimmed(std::string_view text);
-
-/// In quotes, short enough for a message of one line, with \xNN for bytes that are not printable ASCII.
-std::string in_quotes(std::string_view text);
 
 /// The whole text, but for surrounding blanks and a leading +, as a finite number.
 /// Throws std::invalid_argument with the text for anything else.

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/text/printable.hpp"
 
 namespace mmbrdf::program {
 
@@ -81,7 +82,7 @@ std::vector<std::size_t> read_npy_header(std::istream& in, const std::string& na
   const std::string header = read_bytes(in, name, length);
   const std::string_view type = value_of(header, "descr", name);
   if (!type.starts_with("'<f8'")) {
-    throw failure(name, "numbers of type " + std::string(type.substr(0, type.find(','))) +
+    throw failure(name, "numbers of type " + printable(type.substr(0, type.find(',')), 40) +
                             ", expected '<f8': save array.astype('<f8')");
   }
   if (!value_of(header, "fortran_order", name).starts_with("False"))
