@@ -9,6 +9,7 @@
 #include <cmath>
 #include <ostream>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "text/numbers.hpp"
 
@@ -25,7 +26,7 @@ int needed_column(const CsvReader& reader, std::string_view name) {
 
 /// A field and its value, for messages.
 std::string shown(const CsvReader& reader, int column) {
-  return reader.columns()[static_cast<std::size_t>(column)] + ": " + std::string(reader.field(column));
+  return reader.columns()[static_cast<std::size_t>(column)] + ": " + printable(reader.field(column), 40);
 }
 
 /// One row: the reading of one state.
@@ -98,12 +99,13 @@ struct Collected {
     long line = 0;
   };
   std::vector<Entry> entries;
+  std::unordered_map<std::size_t, long> lines;  ///< of each state that has been read
 
   void add(const CsvReader& reader, const Reading& reading) {
-    for (const Entry& entry : entries)
-      if (entry.reading.generator == reading.generator && entry.reading.analyzer == reading.analyzer)
-        throw reader.error(of(reading.measurement) + "a second reading of " + name(reading) +
-                           ", the first is in line " + std::to_string(entry.line));
+    const auto [there, added] = lines.try_emplace(reading.analyzer * most_states + reading.generator, reader.line());
+    if (!added)
+      throw reader.error(of(reading.measurement) + "a second reading of " + name(reading) + ", the first is in line " +
+                         std::to_string(there->second));
     entries.push_back({reading, reader.line()});
   }
 
@@ -182,13 +184,16 @@ struct CollectedReference {
   Collected readings;
 };
 
-/// The one with this number; a new one behind the others if there is none.
-CollectedReference& numbered(std::vector<CollectedReference>& all, long number, const Reference& reference) {
-  const auto is_it = [&](const CollectedReference& r) { return r.readings.entries[0].reading.measurement == number; };
-  if (!all.empty() && is_it(all.back())) return all.back();
-  const auto found = std::find_if(all.begin(), all.end(), is_it);
-  return found != all.end() ? *found : all.emplace_back(CollectedReference{reference, {}});
-}
+/// References in the order in which they begin, and where the one with a number is.
+struct CollectedReferences {
+  std::vector<CollectedReference> all;
+  std::unordered_map<long, std::size_t> places;
+
+  CollectedReference& numbered(long number, const Reference& reference) {
+    const auto [there, added] = places.try_emplace(number, all.size());
+    return added ? all.emplace_back(CollectedReference{reference, {}}) : all[there->second];
+  }
+};
 
 void require_same(const CsvReader& reader, const CollectedReference& collected, const Reference& row, long number) {
   if (collected.readings.entries.empty()) return;
@@ -219,7 +224,7 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
   CsvReader reader(in, name);
   const ReferenceColumns columns(reader);
   const ReadingColumns readings(reader, saturation);
-  std::vector<CollectedReference> all;
+  CollectedReferences collection;
   ReferenceFile result{0, {0, 0}, {}};
   long first_line = 0, line_of_highest = 0;
   while (reader.next()) {
@@ -234,7 +239,7 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
                          ": a calibration is of one wavelength");
     const Reference row = columns.reference(reader);
     const Reading reading = readings.reading(reader);
-    CollectedReference& collected = numbered(all, reading.measurement, row);
+    CollectedReference& collected = collection.numbered(reading.measurement, row);
     require_same(reader, collected, row, reading.measurement);
     collected.readings.add(reader, reading);
     const StateCounts before = result.states;
@@ -242,8 +247,8 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
     result.states.analyzer = std::max(before.analyzer, reading.analyzer + 1);
     if (result.states != before) line_of_highest = reader.line();
   }
-  if (all.empty()) throw std::runtime_error(name + ": no readings after the header line");
-  for (CollectedReference& collected : all) {
+  if (collection.all.empty()) throw std::runtime_error(name + ": no readings after the header line");
+  for (CollectedReference& collected : collection.all) {
     const long last = collected.readings.entries.back().line;
     collected.reference.readings = collected.readings.ordered(result.states, [&](const std::string& text) {
       return std::runtime_error(name + ":" + std::to_string(last) + ": " + text + "; the highest state is in line " +
