@@ -247,6 +247,7 @@ Calibration load_instrument(const std::string& path) {
 
 void save_instrument(const std::string& path, const Calibration& calibration) {
   const std::string text = to_json(calibration);
+  require_readable([&] { calibration_from_json(text, path); });
   write_file(path, [&](std::ostream& out) { out << text; });
 }
 

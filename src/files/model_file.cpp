@@ -320,7 +320,9 @@ Model load_model(const std::string& path) {
 }
 
 void save_model(const std::string& path, const Model& model) {
-  const std::string text = model_format(path).write(model);
+  const ModelFormat& format = model_format(path);
+  const std::string text = format.write(model);
+  require_readable([&] { format.read(text, path); });
   write_file(path, [&](std::ostream& out) { out << text; });
 }
 

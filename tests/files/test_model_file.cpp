@@ -163,6 +163,17 @@ TEST(Json, SavedIsLoaded) {
   expect_same(load_model(folder / "m.json"), model);
 }
 
+TEST(Json, ThatNobodyCouldReadIsNotSaved) {
+  const Folder folder;
+  put(folder / "m.json", "old");
+  Model model = any_model();
+  model.blocks[1].covariance[0] = -1;
+  EXPECT_TRUE(says(complaint([&] { save_model(folder / "m.json", model); }),
+                   {"m.json: blocks[1].covariance: variance 0 is negative", "not saved"}));
+  EXPECT_EQ(contents(folder / "m.json"), "old");
+  EXPECT_EQ(folder.files(), 1);
+}
+
 TEST(ModelFormat, IsThatOfTheEndingInEitherCase) {
   EXPECT_EQ(model_format("a.csv").ending, ".csv");
   EXPECT_EQ(model_format("A.CSV").ending, ".csv");
@@ -282,6 +293,14 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
       {"\"name\": \"small\"", "\"name\": \"small\", \"name\": \"other\"", "m.json: the field 'name' is there twice"},
   };
   for (const auto& change : cases) EXPECT_TRUE(says(refusal(with(text, change[0], change[1])), {change[2]}));
+}
+
+TEST(Json, WithNamesThatWouldSpoilATerminalIsRefusedInOneLine) {
+  std::string text = to_json(any_model());
+  text.insert(text.find("\"name\""), "\"a\\n\\u001b[31m" + std::string(9000, 'x') + "\": 1, ");
+  const std::string message = complaint([&] { model_from_json(text, "m.json"); });
+  EXPECT_TRUE(says(message, {"m.json: 'a\\x0a\\x1b[31mx", "...': unknown field"}));
+  EXPECT_LT(message.size(), 100u);
 }
 
 TEST(Json, WithABlockTwiceOrOutOfOrderIsRefused) {
