@@ -219,7 +219,7 @@ void in_parts(std::size_t size, int threads, std::size_t least,
   std::size_t next = 1;
   try {
     for (; next < parts; ++next) others.emplace_back(part, next);
-  } catch (const std::system_error&) {  // no more threads to be had: this one does the rest
+  } catch (const std::exception&) {  // no more threads to be had, or no memory for one: this one does the rest
   }
   for (std::size_t p = next; p < parts; ++p) part(p);
   part(0);

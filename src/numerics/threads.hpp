@@ -9,14 +9,25 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace mmbrdf {
 
 /// Starting a thread takes as long as some thousand matrices: fewer are not worth one.
 inline constexpr std::size_t smallest_part = 4096;
+
+/// Starts one more thread; false where no more can be had, or no memory for one: whoever asks then works alone.
+template <class Work>
+bool started(std::vector<std::jthread>& threads, Work work) {
+  try {
+    threads.emplace_back(std::move(work));
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
 
 /// Calls part(first, count) for consecutive parts of a range, the first of them on this thread. part must not throw.
 /// threads 0: as many as there are cores. Throws std::invalid_argument for negative numbers of threads.
@@ -27,12 +38,8 @@ void in_parts(std::size_t count, int threads, Part part) {
   const std::size_t parts = std::clamp<std::size_t>(count / smallest_part, 1, std::max(1u, wanted));
   const std::size_t each = (count / parts + 63) / 64 * 64;  // no two threads write to one cache line
   std::vector<std::jthread> others;
-  if (parts > 1) others.reserve(parts - 1);
   std::size_t first = each;
-  try {
-    for (; first < count; first += each) others.emplace_back([=] { part(first, std::min(each, count - first)); });
-  } catch (const std::system_error&) {  // no more threads to be had: this one does the rest
-  }
+  while (first < count && started(others, [=] { part(first, std::min(each, count - first)); })) first += each;
   part(std::size_t{0}, std::min(each, count));
   if (first < count) part(first, count - first);
 }
@@ -66,11 +73,8 @@ void in_any_order(std::size_t count, Work work) {
   };
   {
     std::vector<std::jthread> others;
-    try {
-      const std::size_t threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
-      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(some);
-    } catch (const std::system_error&) {  // no more threads to be had
-    }
+    const std::size_t threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+    for (std::size_t t = 1; t < threads && started(others, some);) ++t;
     some();
   }
   if (thrown) std::rethrow_exception(thrown);

@@ -9,15 +9,32 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "pages/exact.hpp"
 #include "streams/in_order.hpp"
+
+namespace {
+
+thread_local bool memory_is_out = false;  // for the next allocation
+
+}  // namespace
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (!std::exchange(memory_is_out, false))
+    if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace mmbrdf::program {
 namespace {
@@ -65,13 +82,16 @@ TEST(Digits, OfNumbersThatAreNoneOrNothingAreThoseOfTheStandardLibrary) {
 struct Squares {
   int count = 100, read = 0;
   std::string written{};
-  int refused = -1, broken = -1, full = 1000000;  // a number that cannot be read, computed, written
+  int refused = -1, broken = -1, full = 1000000,
+      no_memory = 1000000;  // a number that cannot be read, computed, written; or
+                            // behind which no thread can be started
 
   void run(int threads) {
     run_in_order<int>({.read =
                            [this](int& number) {
                              if (read == refused) throw std::runtime_error("read");
                              number = read++;
+                             memory_is_out = read == no_memory;
                              return number < count;
                            },
                        .worker =
@@ -166,6 +186,14 @@ TEST(Pieces, AreNotWorkedOnByMoreThreadsThanThereArePiecesButOne) {
                      .write = [](int&) { return true; }},
                     1000);
   EXPECT_LE(readers.size(), 4);
+}
+
+TEST(Pieces, AreWorkedOnByTheThreadsThatThereAreIfThereIsNoMemoryForMore) {
+  for (const int first : {1, 2, 3}) {
+    Squares squares{.no_memory = first};
+    squares.run(8);
+    EXPECT_EQ(squares.written, Squares::list(100));
+  }
 }
 
 TEST(Pieces, EndWhereNoMoreCanBeWritten) {

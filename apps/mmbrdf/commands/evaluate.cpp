@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf evaluate: one geometry from the command line; a file of geometries is evaluate_file.cpp.
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -93,6 +96,15 @@ void print_json(const Evaluation& a) {
 /// At least two: one may wait for a disk while the other works.
 int available_threads() { return std::max(2, static_cast<int>(std::thread::hardware_concurrency())); }
 
+/// A limit of the address space (ulimit -v) must hold the stacks of all threads, and what they work with.
+int most_threads() {
+  rlimit space{}, stack{};
+  if (::getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY) return std::numeric_limits<int>::max();
+  constexpr rlim_t usual = 8 << 20;
+  if (::getrlimit(RLIMIT_STACK, &stack) != 0 || stack.rlim_cur == RLIM_INFINITY) stack.rlim_cur = usual;
+  return static_cast<int>(std::clamp<rlim_t>(space.rlim_cur / 2 / (stack.rlim_cur + usual), 1, 1 << 20));
+}
+
 void evaluate_one(const Options& options) {
   const Model model = model_of(options);
   const double wavelength = wavelength_from(options.wavelength_nm, model);
@@ -122,7 +134,7 @@ void evaluate(const Options& options) {
   if (options.format && binary) throw WrongUsage("--format", "csv does not go with an output in .npy");
   const Model model = model_of_rows(options);
   Evaluated evaluated = evaluated_rows(model, options.frame, options.normalized, binary);
-  evaluated.threads = options.threads > 0 ? options.threads : available_threads();
+  evaluated.threads = std::min(options.threads > 0 ? options.threads : available_threads(), most_threads());
   evaluate_file(model, rows_of(options), evaluated);
 }
 

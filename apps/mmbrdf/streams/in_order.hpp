@@ -9,7 +9,6 @@
 #include <exception>
 #include <functional>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -81,7 +80,7 @@ class Line {
     try {
       others_.emplace_back([this] { work(); });
       --more_threads_;
-    } catch (const std::system_error&) {  // no more threads to be had: those that there are do the work
+    } catch (const std::exception&) {  // no more to be had, or no memory for one: those that there are do the work
       more_threads_ = 0;
     }
   }
