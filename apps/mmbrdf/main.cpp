@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -10,8 +11,10 @@
 #include <string>
 
 #include "command.hpp"
+#include "mmbrdf/files/write_file.hpp"
 #include "options/option.hpp"
 #include "pages/output.hpp"
+#include "streams/progress.hpp"
 
 namespace mmbrdf::program {
 
@@ -56,7 +59,8 @@ constexpr const char* footer =
 int wrong_usage(const CLI::App& app, const std::exception& error) {
   std::string command = "mmbrdf";
   for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
-  std::cerr << "mmbrdf: " << error.what() << "\nsee " << command << " --help\n";
+  say(error.what());
+  std::cerr << "see " << command << " --help\n";
   return 2;
 }
 
@@ -69,6 +73,24 @@ std::vector<std::string> words_to_parse(const CommandLine& line) {
     words.push_back("--help");
   }
   return {words.rbegin(), words.rend()};
+}
+
+extern "C" void leave_nothing_behind(int signal) {
+  remove_temporary_files();
+  end_progress();
+  ::raise(signal);  // which waits for the end of this function, and then does what it does by default
+}
+
+/// For the signals that end a program, but for those that were told to be ignored.
+void clean_up_at_signals() {
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM, SIGPIPE, SIGXCPU, SIGXFSZ, SIGABRT}) {
+    struct sigaction before {
+    }, action{};
+    action.sa_handler = leave_nothing_behind;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      ::sigaction(signal, &action, nullptr);
+  }
 }
 
 int run(int argc, char** argv) {
@@ -135,13 +157,14 @@ std::string CommandLine::text(const std::vector<std::string>& paths) const {
 
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
+  mmbrdf::program::clean_up_at_signals();
   try {
     return mmbrdf::program::run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::cerr << "mmbrdf: out of memory\n";
     return 1;
   } catch (const std::exception& error) {
-    std::cerr << "mmbrdf: " << error.what() << '\n';
+    mmbrdf::program::say(error.what());
     return 1;
   }
 }

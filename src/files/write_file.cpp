@@ -5,10 +5,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <ostream>
 #include <streambuf>
 #include <system_error>
@@ -37,8 +43,15 @@ class Descriptor : public std::streambuf {
   int error() const { return error_; }
 
   void close() {
-    if (number_ >= 0 && ::close(number_) != 0 && error_ == 0) error_ = errno;
+    if (number_ >= 0 && ::close(number_) != 0 && errno != EINTR && error_ == 0) error_ = errno;
     number_ = -1;
+  }
+
+  /// What is written lies on the disk from then on, where the file system has one.
+  void keep() {
+    int result = 0;
+    while ((result = ::fsync(number_)) != 0 && errno == EINTR) continue;
+    if (result != 0 && errno != EINVAL && errno != ENOTSUP && error_ == 0) error_ = errno;
   }
 
  protected:
@@ -62,9 +75,11 @@ class Descriptor : public std::streambuf {
     return error_ == 0 ? size : 0;
   }
 
-  /// To the beginning only, to write again what is known at the end.
+  /// To the beginning only, to write again what is known at the end: not where all that is written goes to the end.
   pos_type seekpos(pos_type position, std::ios_base::openmode) override {
-    if (position != pos_type(0) || sync() != 0 || ::lseek(number_, 0, SEEK_SET) != 0) return pos_type(off_type(-1));
+    const bool fixed = (::fcntl(number_, F_GETFL) & O_APPEND) == 0;
+    if (position != pos_type(0) || sync() != 0 || !fixed || ::lseek(number_, 0, SEEK_SET) != 0)
+      return pos_type(off_type(-1));
     return position;
   }
 
@@ -87,92 +102,204 @@ class Descriptor : public std::streambuf {
 };
 
 /// Writes all of it, and closes. Throws naming `path`.
-void write_all(Descriptor& file, const std::string& path, const std::function<void(std::ostream&)>& write) {
+void write_all(Descriptor& file, const std::string& path, const std::function<void(std::ostream&)>& write, bool keep) {
   std::ostream out(&file);
   write(out);
   out.flush();
+  if (keep && file.error() == 0) file.keep();
   file.close();
   if (file.error() != 0) throw failure(path, file.error());
   if (!out) throw failure(path, "the output is incomplete");
 }
 
-/// A new file under a name that nobody else has. Removed at the end of its life, unless renamed.
-class TemporaryFile {
+/// ".mmbrdf-PROCESS-NUMBER", without memory from the heap: a handler of a signal may need it.
+class TemporaryName {
  public:
-  TemporaryFile(const fs::path& target, const std::string& path) : file_(create(target, path)) {}
-  ~TemporaryFile() {
-    if (!name_.empty()) ::unlink(name_.c_str());
+  explicit TemporaryName(std::uint32_t number) {
+    char* end = std::to_chars(std::copy_n(".mmbrdf-", 8, text_.data()), &text_.back(), ::getpid()).ptr;
+    *end++ = '-';
+    *std::to_chars(end, &text_.back(), number).ptr = '\0';
   }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const char* text() const { return text_.data(); }
 
-  Descriptor& file() { return file_; }
+ private:
+  std::array<char, 40> text_{};
+};
 
-  void rename_to(const fs::path& target, const std::string& path) {
-    if (std::rename(name_.c_str(), target.c_str()) != 0) throw failure(path, errno);
-    name_.clear();
+/// The temporary files that there are, each as its folder's descriptor plus 1 and its number; 0 is a free place. Who
+/// reads a place that changes in the meantime removes nothing of others: all such names are this process's.
+using Place = std::atomic<std::uint64_t>;
+static_assert(Place::is_always_lock_free);
+std::array<Place, 64> temporary_files{};
+
+Place* watch(std::uint64_t entry) {
+  for (Place& place : temporary_files)
+    if (std::uint64_t free = 0; place.compare_exchange_strong(free, entry)) return &place;
+  return nullptr;
+}
+
+std::uint32_t next_number() {
+  static std::atomic<std::uint32_t> count{0};
+  return count++;
+}
+
+/// A file that waits in the folder of the one that it replaces. Unless kept, all is as before at the end.
+class WaitingFile {
+ public:
+  WaitingFile(const fs::path& target, const std::string& path)
+      : path_(path), name_(target.filename().string()), folder_(open_folder(target.parent_path(), path)) {}
+  ~WaitingFile() {
+    if (aside_)
+      rename(aside_->text(), name_.c_str());
+    else if (in_place_)
+      ::unlinkat(folder_, name_.c_str(), 0);
+    if (temporary_) ::unlinkat(folder_, temporary_->text(), 0);
+    if (watched_ != nullptr) *watched_ = 0;
+    ::close(folder_);
+  }
+  WaitingFile(const WaitingFile&) = delete;
+  WaitingFile& operator=(const WaitingFile&) = delete;
+
+  void write(const std::function<void(std::ostream&)>& write) {
+    struct stat old {};
+    const bool exists = ::fstatat(folder_, name_.c_str(), &old, 0) == 0;
+    if (exists && ::faccessat(folder_, name_.c_str(), W_OK, 0) != 0) throw failure(path_, errno);
+    Descriptor file(create());
+    if (exists && ::fchmod(file.number(), old.st_mode & 07777) != 0) throw failure(path_, errno);
+    write_all(file, path_, write, true);
+  }
+
+  /// The old file, if there is one.
+  void set_old_aside() {
+    const TemporaryName aside(next_number());
+    if (rename(name_.c_str(), aside.text()))
+      aside_ = aside;
+    else if (errno != ENOENT)
+      throw failure(path_, errno);
+  }
+
+  void put_in_place() {
+    if (!rename(temporary_->text(), name_.c_str())) throw failure(path_, errno);
+    in_place_ = true;
+    temporary_.reset();
+  }
+
+  /// The old one is gone from now on. A folder that cannot be synchronized is no error: the file is in it.
+  void keep() {
+    if (aside_) ::unlinkat(folder_, aside_->text(), 0);
+    aside_.reset();
+    in_place_ = false;
+    ::fsync(folder_);
   }
 
  private:
+  /// For reading, so that it can be synchronized; but a folder may allow new files only.
+  static int open_folder(const fs::path& folder, const std::string& path) {
+    const std::string name = folder.empty() ? "." : folder.string();
+    int number = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (number < 0 && errno == EACCES) number = ::open(name.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (number < 0 && (errno == ENOENT || errno == ENOTDIR)) throw failure(path, "there is no folder " + name);
+    if (number < 0) throw failure(path, errno);
+    return number;
+  }
+
   /// mkstemp() would do, but for the permissions: 0666 and the umask, as for any new file.
-  int create(const fs::path& target, const std::string& path) {
-    static std::atomic<unsigned> count{0};
+  int create() {
     while (true) {
-      name_ =
-          (target.parent_path() / (".mmbrdf-" + std::to_string(::getpid()) + "-" + std::to_string(count++))).string();
-      const int number = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (number >= 0) return number;
-      if (const int error = errno; error != EEXIST) {
-        name_.clear();
-        throw failure(path, error);
+      const std::uint32_t number = next_number();
+      const TemporaryName name(number);
+      const int file = ::openat(folder_, name.text(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (file >= 0) {
+        temporary_ = name;
+        watched_ = watch(std::uint64_t(folder_ + 1) << 32 | number);
+        return file;
       }
+      if (errno != EEXIST && errno != EINTR) throw failure(path_, errno);
     }
   }
 
-  std::string name_;
-  Descriptor file_;
+  bool rename(const char* from, const char* to) const { return ::renameat(folder_, from, folder_, to) == 0; }
+
+  std::string path_, name_;
+  int folder_;
+  std::optional<TemporaryName> temporary_, aside_;
+  Place* watched_ = nullptr;
+  bool in_place_ = false;
 };
 
-/// Where a chain of symbolic links ends, whether or not something is there.
-fs::path followed(fs::path path) {
+/// A link to what a process holds open, as /dev/stdout leads to one.
+bool is_descriptor(const fs::path& link) {
   std::error_code ignored;
-  for (int links = 0; links < 40 && fs::is_symlink(fs::symlink_status(path, ignored)); ++links) {
-    const fs::path next = fs::read_symlink(path, ignored);
-    path = next.is_absolute() ? next : path.parent_path() / next;
+  const fs::path folder = fs::canonical(link.has_parent_path() ? link.parent_path() : ".", ignored);
+  return folder.string().starts_with("/proc/") && folder.filename() == "fd";
+}
+
+/// Where a chain of symbolic links ends, whether or not something is there. Nothing for what is written to directly.
+std::optional<fs::path> replaced(const std::string& path) {
+  constexpr int most_links = 40;
+  std::error_code ignored;
+  fs::path end = path;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(end, ignored)); ++links) {
+    if (links == most_links) throw failure(path, ELOOP);
+    if (is_descriptor(end)) return std::nullopt;
+    const fs::path next = fs::read_symlink(end, ignored);
+    end = next.is_absolute() ? next : end.parent_path() / next;
   }
-  return path;
+  const fs::file_status status = fs::status(end, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return std::nullopt;
+  return end;
 }
 
-/// What is under /dev and /proc may be a link to a regular file that somebody else holds open, as /dev/stdout is.
-bool is_written_directly(const std::string& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  return fs::exists(status) &&
-         (!fs::is_regular_file(status) || path.starts_with("/dev/") || path.starts_with("/proc/"));
+void write_directly(const NewFile& file) {
+  Descriptor out(::open(file.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (out.number() < 0) throw failure(file.path, errno);
+  write_all(out, file.path, file.write, false);
 }
 
-void write_directly(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-  if (file.number() < 0) throw failure(path, errno);
-  write_all(file, path, write);
-}
+/// No signal ends the process on this thread in the meantime.
+class Undisturbed {
+ public:
+  Undisturbed() {
+    sigset_t all;
+    sigfillset(&all);
+    ::pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~Undisturbed() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  Undisturbed(const Undisturbed&) = delete;
+  Undisturbed& operator=(const Undisturbed&) = delete;
+
+ private:
+  sigset_t before_;
+};
 
 }  // namespace
 
+void write_files(const std::vector<NewFile>& files) {
+  std::vector<std::unique_ptr<WaitingFile>> waiting;
+  for (const NewFile& file : files) {
+    if (file.path.empty()) throw failure("output file", "it has no name");
+    if (const std::optional<fs::path> target = replaced(file.path)) {
+      waiting.push_back(std::make_unique<WaitingFile>(*target, file.path));
+      waiting.back()->write(file.write);
+    } else {
+      write_directly(file);
+    }
+  }
+  const Undisturbed undisturbed;
+  if (waiting.size() > 1)
+    for (const auto& file : waiting) file->set_old_aside();  // so that no new one ever stands beside an old one
+  for (const auto& file : waiting) file->put_in_place();
+  for (const auto& file : waiting) file->keep();
+}
+
 void write_file(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  if (path.empty()) throw failure("output file", "it has no name");
-  if (is_written_directly(path)) return write_directly(path, write);
-  const fs::path target = followed(path);
-  std::error_code ignored;
-  if (const fs::path folder = target.parent_path(); !folder.empty() && !fs::is_directory(folder, ignored))
-    throw failure(path, "there is no folder " + folder.string());
-  struct stat old {};
-  const bool exists = ::stat(target.c_str(), &old) == 0;
-  if (exists && ::access(target.c_str(), W_OK) != 0) throw failure(path, errno);
-  TemporaryFile temporary(target, path);
-  if (exists && ::fchmod(temporary.file().number(), old.st_mode & 07777) != 0) throw failure(path, errno);
-  write_all(temporary.file(), path, write);
-  temporary.rename_to(target, path);
+  write_files({{path, write}});
+}
+
+void remove_temporary_files() noexcept {
+  for (const Place& place : temporary_files)
+    if (const std::uint64_t entry = place; entry != 0)
+      ::unlinkat(static_cast<int>(entry >> 32) - 1, TemporaryName(static_cast<std::uint32_t>(entry)).text(), 0);
 }
 
 }  // namespace mmbrdf

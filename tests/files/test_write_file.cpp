@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <set>
 
 #include "given/files.hpp"
 #include "mmbrdf/files/model_file.hpp"
@@ -140,6 +141,106 @@ TEST(Files, KeepPermissionsAndLinks) {
   EXPECT_EQ(contents(folder / "shared"), "new");
   EXPECT_EQ(contents(folder / "absent"), "new");
   EXPECT_EQ(static_cast<unsigned>(fs::status(folder / "shared").permissions()), 0664U);
+}
+
+TEST(Files, AreReplacedWhereverTheyLie) {
+  const Folder folder;
+  const fs::path shared = fs::path("/dev/shm") / ("mmbrdf-test-" + std::to_string(::getpid()));
+  std::vector<std::string> paths = {"/proc/self/cwd/" + fs::relative(folder / "a").string()};
+  if (::access("/dev/shm", W_OK) == 0) paths.push_back(shared.string());
+  for (const std::string& path : paths) {
+    write_file(path, [](std::ostream& out) { out << "a longer, old text"; });
+    complaint([&] { write_file(path, [](std::ostream&) { throw std::runtime_error(""); }); });
+    EXPECT_EQ(contents(path), "a longer, old text") << path;
+    write_file(path, [](std::ostream& out) { out << "new"; });
+    EXPECT_EQ(contents(path), "new") << path;
+  }
+  fs::remove(shared);
+}
+
+// As the shell's `mmbrdf ... -o /dev/stdout > file`: whoever holds the file goes on with it.
+TEST(Files, ThatAreHeldOpenAreWrittenToUnderTheNamesOfTheirDescriptors) {
+  const Folder folder;
+  const int held = ::open((folder / "a").c_str(), O_WRONLY | O_CREAT, 0600);
+  const auto line = [](std::ostream& out) { out << "line\n"; };
+  write_file("/dev/fd/" + std::to_string(held), line);
+  fs::create_symlink("/proc/self/fd/" + std::to_string(held), folder / "link");
+  write_file(folder / "link", line);
+  EXPECT_EQ(contents(folder / "a"), "line\nline\n");
+  write_file(folder / "link", [](std::ostream& out) {
+    EXPECT_FALSE(out.seekp(0));
+    out.clear();
+  });
+  ::close(held);
+}
+
+TEST(Files, OnALoopOfLinksAreRefused) {
+  const Folder folder;
+  fs::create_symlink("b", folder / "a");
+  fs::create_symlink("a", folder / "b");
+  EXPECT_TRUE(says(complaint([&] { write_file(folder / "a", [](std::ostream&) {}); }),
+                   {"a: cannot be written: Too many levels of symbolic links"}));
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
+  EXPECT_EQ(folder.files(), 2);
+}
+
+TEST(Files, AreReplacedUnderOneNameOfSeveral) {
+  const Folder folder;
+  put(folder / "a", "old");
+  fs::create_hard_link(folder / "a", folder / "other");
+  write_file(folder / "a", [](std::ostream& out) { out << "new"; });
+  EXPECT_EQ(contents(folder / "a"), "new");
+  EXPECT_EQ(contents(folder / "other"), "old");
+}
+
+TEST(Files, ThatBelongTogetherAreReplacedTogether) {
+  const Folder folder;
+  put(folder / "a", "old a");
+  put(folder / "b", "old b");
+  const auto text = [](const std::string& words) { return [words](std::ostream& out) { out << words; }; };
+  const auto fails = [](std::ostream&) { throw std::runtime_error("wrong"); };
+  EXPECT_EQ(complaint([&] { write_files({{folder / "a", text("new a")}, {folder / "b", fails}}); }), "wrong");
+  EXPECT_EQ(contents(folder / "a"), "old a");
+  EXPECT_EQ(contents(folder / "b"), "old b");
+  write_files({{folder / "a", text("new a")}, {folder / "b", text("new b")}, {folder / "c", text("new c")}});
+  EXPECT_EQ(contents(folder / "a") + contents(folder / "b") + contents(folder / "c"), "new anew bnew c");
+  EXPECT_EQ(folder.files(), 3);
+}
+
+TEST(Files, ThatBelongTogetherAreAllPutBackIfOneCannotBePutInPlace) {
+  const Folder folder;
+  put(folder / "a", "old a");
+  std::set<fs::path> before;
+  const auto write = [&](std::ostream& out) {
+    out << "new";
+    for (const auto& file : fs::directory_iterator(folder / "")) before.insert(file);
+  };
+  const auto loses_its_file = [&](std::ostream&) {
+    for (const auto& file : fs::directory_iterator(folder / ""))
+      if (!before.contains(file)) fs::remove(file);
+  };
+  EXPECT_TRUE(says(complaint([&] {
+                     write_files({{folder / "a", write}, {folder / "b", write}, {folder / "c", loses_its_file}});
+                   }),
+                   {"c: cannot be written: No such file"}));
+  EXPECT_EQ(contents(folder / "a"), "old a");
+  EXPECT_EQ(folder.files(), 1);
+}
+
+// What a handler of a signal does: temporary files are gone, all else stays.
+TEST(Files, ThatWaitCanBeRemovedAtOnce) {
+  const Folder folder;
+  put(folder / "a", "old");
+  EXPECT_NE(complaint([&] {
+              write_file(folder / "a", [&](std::ostream& out) {
+                out << "half" << std::flush;
+                EXPECT_EQ(folder.files(), 2);
+                remove_temporary_files();
+                EXPECT_EQ(folder.files(), 1);
+              });
+            }),
+            "");
+  EXPECT_EQ(contents(folder / "a"), "old");
 }
 
 TEST(Files, ThatArePipesAreWrittenToAndStay) {

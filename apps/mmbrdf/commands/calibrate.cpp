@@ -60,7 +60,9 @@ void calibrate_instrument(Options options, const CommandLine& line) {
   result.provenance["references"] = std::to_string(file.references.size());
   result.provenance["command"] = line.text({options.references, options.output});
   result.provenance["software"] = software();
-  if (!options.output.empty()) save_instrument(options.output, result);
+  if (options.output.empty()) return;
+  save_instrument(options.output, result);
+  note_written(options.output);
 }
 
 constexpr const char* calibrate_footer =

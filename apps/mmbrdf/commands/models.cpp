@@ -57,7 +57,7 @@ Table blocks(const Model& model) {
 }
 
 void print_line(const std::string& name, const std::string& value) {
-  std::cout << format("%-12s ", name.substr(0, 100).c_str()) << value << '\n';
+  std::cout << format("%-12s ", printable(name, 100).c_str()) << printable(value, longest_text) << '\n';
 }
 
 void print_text(const Model& model) {

@@ -4,6 +4,7 @@
 
 #include "command.hpp"
 #include "mmbrdf/files/readings_file.hpp"
+#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
@@ -55,8 +56,9 @@ void simulate_raw(const Model& model, double wavelength, std::span<const Geometr
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw std::runtime_error(options.folder + ": cannot be made: " + error.message());
-  write_references((folder / references_file).string(), references);
-  write_raw((folder / raw_file).string(), states, raw);
+  write_files({{(folder / references_file).string(), [&](std::ostream& out) { write_references(out, references); }},
+               {(folder / raw_file).string(), [&](std::ostream& out) { write_raw(out, states, raw); }}});
+  note_written(options.folder);
   const Film& film = goniometer.options().film;
   const std::string text = shortest(film.film_index.real()) + "," + shortest(film.thickness) + "," +
                            shortest(film.substrate_index.real()) + "," + shortest(film.substrate_index.imag());

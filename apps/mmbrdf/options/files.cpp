@@ -132,6 +132,7 @@ void save(const Model& model, const std::string& path) {
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(path + ": " + error.what());
   }
+  note_written(path);
   if (is_built_in(path)) warn("a built-in model has the name " + path + " and comes first; the file is ./" + path);
 }
 
@@ -167,10 +168,12 @@ Option add_output_file(CLI::App& app, const std::string& names, std::string& tar
 bool is_standard_output(const std::string& output) { return output.empty() || output == "-"; }
 
 void write_text(const std::string& output, const std::string& text) {
-  if (is_standard_output(output))
+  if (is_standard_output(output)) {
     std::cout << text;
-  else
+  } else {
     write_file(output, [&](std::ostream& out) { out << text; });
+    note_written(output);
+  }
 }
 
 Option add_model(CLI::App& app, std::string& target, const std::string& name) {

@@ -14,7 +14,7 @@ namespace mmbrdf::program {
 namespace {
 
 void print_line(const std::string& name, const std::string& value) {
-  std::cout << format("%-20s ", name.c_str()) << value << '\n';
+  std::cout << format("%-20s ", printable(name, 100).c_str()) << printable(value, longest_text) << '\n';
 }
 
 /// One state in each row; behind it, if they are known, standard uncertainties. `first` is its first parameter.

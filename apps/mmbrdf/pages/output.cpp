@@ -10,18 +10,31 @@
 
 namespace mmbrdf::program {
 
+namespace {
+
+std::string written;  // "; m.json is written"
+
+}  // namespace
+
 void flush_output() {
   errno = std::cout ? 0 : errno;
   std::cout.flush();
   if (!std::cout) {
     throw std::runtime_error(std::string("standard output: cannot write") +
-                             (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
+                             (errno != 0 ? std::string(": ") + std::strerror(errno) : "") + written);
   }
 }
 
-void warn(const std::string& message) { std::cerr << "mmbrdf: warning: " + message + '\n'; }
+void note_written(const std::string& path) { written += "; " + path + " is written"; }
 
-void note(const std::string& message) { std::cerr << "mmbrdf: note: " + message + '\n'; }
+void say(const std::string& message) {
+  constexpr std::size_t longest = 4000;
+  std::cerr << "mmbrdf: " + printable(message, longest) + '\n';
+}
+
+void warn(const std::string& message) { say("warning: " + message); }
+
+void note(const std::string& message) { say("note: " + message); }
 
 std::string format(const char* pattern, ...) {
   std::array<char, 512> buffer{};

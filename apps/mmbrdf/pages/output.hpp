@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mmbrdf/polarization/mueller.hpp"
+#include "mmbrdf/text/printable.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "pages/exact.hpp"
 
@@ -18,9 +19,16 @@ enum class Format { text, csv, json };
 /// Throws std::runtime_error unless everything sent to standard output so far could be written.
 void flush_output();
 
+/// A file that is written whatever becomes of standard output, which flush_output() then says.
+void note_written(const std::string& path);
+
 /// One line on standard error.
+void say(const std::string& message);
 void warn(const std::string& message);
 void note(const std::string& message);
+
+/// Of a text out of a file, where people read it: printable.hpp.
+inline constexpr std::size_t longest_text = 400;
 
 /// As printf.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);

@@ -16,7 +16,7 @@ std::string padded(const Column& column, const std::string& words) {
 std::string text_of(const Column& column, const Json& value) {
   if (value.is_number_float()) return format(column.format.c_str(), value.get<double>());
   return padded(column, value.is_null()      ? column.missing
-                        : value.is_string()  ? value.get<std::string>()
+                        : value.is_string()  ? printable(value.get_ref<const std::string&>(), longest_text)
                         : value.is_boolean() ? (value.get<bool>() ? "yes" : "no")
                                              : value.dump());
 }

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "streams/evaluate_file.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -14,36 +11,17 @@
 #include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/text/printable.hpp"
 #include "options/files.hpp"
 #include "pages/output.hpp"
 #include "streams/in_order.hpp"
 #include "streams/npy.hpp"
+#include "streams/progress.hpp"
 #include "streams/waiting_input.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-/// Counts rows on standard error, if that is a terminal.
-class Progress {
- public:
-  void add(long rows) {
-    rows_ += rows;
-    if (terminal_ && Clock::now() - shown_ > std::chrono::milliseconds(250)) {
-      shown_ = Clock::now();
-      std::cerr << "\rmmbrdf: " << rows_ << " rows" << std::flush;
-    }
-  }
-  void end() const {
-    if (terminal_) std::cerr << "\r\033[K" << std::flush;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  const bool terminal_ = isatty(STDERR_FILENO) != 0;
-  Clock::time_point shown_ = Clock::now();
-  long rows_ = 0;
-};
 
 double own_wavelength(const Model& model) {
   try {
@@ -60,8 +38,8 @@ std::string header(const GeometrySource& source, const std::string& added) {
     const bool taken = !column.empty() && (added + ",").find("," + column + ",") != std::string::npos;
     const std::string name = (taken ? "input_" : "") + column;
     if (taken && std::find(columns.begin(), columns.end(), name) != columns.end()) {
-      throw source.error(
-          0, "columns " + column + " and " + name + " are there already: " + column + " would be written again");
+      throw source.error(0, "columns " + shown_name(column) + " and " + shown_name(name) +
+                                " are there already: " + shown_name(column) + " would be written again");
     }
     text += (&column == &columns.front() ? "" : ",") + name;
   }
@@ -111,7 +89,7 @@ class FileEvaluator {
   }
 
   void report() const {
-    progress_.end();
+    end_progress();
     report_rows(range_, unknown_, evaluated_.binary ? "" : ": see column validity");
   }
 
