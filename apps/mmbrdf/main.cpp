@@ -161,10 +161,10 @@ int main(int argc, char** argv) {
   try {
     return mmbrdf::program::run(argc, argv);
   } catch (const std::bad_alloc&) {
-    std::cerr << "mmbrdf: out of memory\n";
+    mmbrdf::program::say_failure("out of memory");
     return 1;
   } catch (const std::exception& error) {
-    mmbrdf::program::say(error.what());
+    mmbrdf::program::say_failure(error.what());
     return 1;
   }
 }

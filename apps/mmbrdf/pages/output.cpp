@@ -21,11 +21,13 @@ void flush_output() {
   std::cout.flush();
   if (!std::cout) {
     throw std::runtime_error(std::string("standard output: cannot write") +
-                             (errno != 0 ? std::string(": ") + std::strerror(errno) : "") + written);
+                             (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
   }
 }
 
 void note_written(const std::string& path) { written += "; " + path + " is written"; }
+
+void say_failure(const std::string& message) { say(message + written); }
 
 void say(const std::string& message) {
   constexpr std::size_t longest = 4000;

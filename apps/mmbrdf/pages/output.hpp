@@ -19,11 +19,12 @@ enum class Format { text, csv, json };
 /// Throws std::runtime_error unless everything sent to standard output so far could be written.
 void flush_output();
 
-/// A file that is written whatever becomes of standard output, which flush_output() then says.
+/// A file that is written whatever goes wrong afterwards, which say_failure() then says.
 void note_written(const std::string& path);
 
 /// One line on standard error.
 void say(const std::string& message);
+void say_failure(const std::string& message);
 void warn(const std::string& message);
 void note(const std::string& message);
 
