@@ -57,6 +57,12 @@ How how(const char* call) {
   return ++plan.count == plan.at ? plan.how : How::well;
 }
 
+bool has_memory() {
+  const bool well = how("malloc") == How::well;
+  if (!well) errno = ENOMEM;
+  return well;
+}
+
 using Main = int(int, char**, char**);
 Main* program_main = nullptr;
 
@@ -127,12 +133,10 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
   return how("pthread_create") == How::well ? next(thread, attributes, run, argument) : EAGAIN;
 }
 
-void* malloc(std::size_t size) { return how("malloc") == How::well ? __libc_malloc(size) : nullptr; }
+void* malloc(std::size_t size) { return has_memory() ? __libc_malloc(size) : nullptr; }
 
-void* calloc(std::size_t count, std::size_t size) {
-  return how("malloc") == How::well ? __libc_calloc(count, size) : nullptr;
-}
+void* calloc(std::size_t count, std::size_t size) { return has_memory() ? __libc_calloc(count, size) : nullptr; }
 
-void* realloc(void* old, std::size_t size) { return how("malloc") == How::well ? __libc_realloc(old, size) : nullptr; }
+void* realloc(void* old, std::size_t size) { return has_memory() ? __libc_realloc(old, size) : nullptr; }
 
 }  // extern "C"

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "command.hpp"
-#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "options/files.hpp"
@@ -106,10 +105,7 @@ void analyze_scan(const Options& options) {
   const Answers answers = answers_of(model, options);
   const AddedColumns columns = analyzed_columns(answers, options.strict);
   RangeCount range;
-  if (is_standard_output(options.output))
-    range = write_scan(std::cout, model, options, columns);
-  else
-    write_file(options.output, [&](std::ostream& out) { range = write_scan(out, model, options, columns); });
+  write_output(options.output, [&](std::ostream& out) { range = write_scan(out, model, options, columns); });
   report_rows(range, unknown_range_line(base_name(options.model), model.validity));
 }
 

@@ -72,10 +72,7 @@ void reduce(const Options& options) {
   heed(judged(instrument), base_name(options.instrument));
   const std::vector<Sample> samples = reduced_file(instrument, options);
   check_possible(samples, options);
-  if (is_standard_output(options.output))
-    write_samples(std::cout, samples);
-  else
-    write_samples(options.output, samples);
+  write_output(options.output, [&](std::ostream& out) { write_samples(out, samples); });
 }
 
 constexpr const char* footer =

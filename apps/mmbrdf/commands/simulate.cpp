@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf simulate
 
-#include <iostream>
 #include <memory>
 
 #include "command.hpp"
@@ -89,10 +88,7 @@ void simulate_data(const Options& options) {
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   const std::vector<Sample> samples = simulated(model, wavelengths_of(model, options), options);
-  if (is_standard_output(options.output))
-    write_samples(std::cout, samples);
-  else
-    write_samples(options.output, samples);
+  write_output(options.output, [&](std::ostream& out) { write_samples(out, samples); });
   warn_if_outside(model, samples, base_name(options.model));
 }
 

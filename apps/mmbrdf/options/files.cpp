@@ -167,13 +167,14 @@ Option add_output_file(CLI::App& app, const std::string& names, std::string& tar
 
 bool is_standard_output(const std::string& output) { return output.empty() || output == "-"; }
 
+void write_output(const std::string& output, const std::function<void(std::ostream&)>& write) {
+  if (is_standard_output(output)) return write(std::cout);
+  write_file(output, write);
+  note_written(output);
+}
+
 void write_text(const std::string& output, const std::string& text) {
-  if (is_standard_output(output)) {
-    std::cout << text;
-  } else {
-    write_file(output, [&](std::ostream& out) { out << text; });
-    note_written(output);
-  }
+  write_output(output, [&](std::ostream& out) { out << text; });
 }
 
 Option add_model(CLI::App& app, std::string& target, const std::string& name) {

@@ -64,7 +64,10 @@ Option add_output_file(CLI::App& app, const std::string& names, std::string& tar
 /// "-" is standard output.
 bool is_standard_output(const std::string& output);
 
-/// Text on standard output or in a file, which appears when it is complete.
+/// On standard output or in a file, which appears when it is complete.
+void write_output(const std::string& output, const std::function<void(std::ostream&)>& write);
+
+/// The same of a text.
 void write_text(const std::string& output, const std::string& text);
 
 Option add_model(CLI::App& app, std::string& target, const std::string& name = "MODEL");

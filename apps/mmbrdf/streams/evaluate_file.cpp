@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/text/printable.hpp"
@@ -127,10 +126,7 @@ class FileEvaluator {
 void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated& evaluated, std::istream& in,
                      const std::string& name, const std::function<void()>& end_input = {}) {
   FileEvaluator evaluator(model, what, evaluated, in, name, end_input);
-  if (is_standard_output(what.output))
-    evaluator.write(std::cout);
-  else
-    write_file(what.output, [&](std::ostream& out) { evaluator.write(out); });
+  write_output(what.output, [&](std::ostream& out) { evaluator.write(out); });
   evaluator.report();
 }
 
