@@ -202,7 +202,7 @@ def page(
     warnings = facts.pop("warnings")
     alone = "instrument" not in model.provenance
     if model.provenance.get("uncertainty") == "sample":
-        source = "of the sample" if alone else "of the sample and the instrument"
+        source = "of the sample" if alone else "of the sample and its instrument"
     else:
         source = "of the fit alone" if alone else "of the fit and its instrument"
     parts = [

@@ -96,14 +96,14 @@ TEST(Validity, FlagsEachRangeThatTheQuestionLeaves) {
     EXPECT_EQ(prepare(model, wavelength).outside(geometry), outside(model.validity, wavelength, geometry));
     return to_string(outside(model.validity, wavelength, geometry));
   };
-  EXPECT_EQ(flags(0.4, 0, 0), "ok");
+  EXPECT_EQ(flags(0.4, 0, 0), "interpolated");
   EXPECT_EQ(flags(0.351, 75, 80), "ok");
   EXPECT_EQ(flags(0.532, 75, 80), "ok");
   EXPECT_EQ(flags(0.35, 0, 0), "wavelength");
   EXPECT_EQ(flags(0.533, 0, 0), "wavelength");
-  EXPECT_EQ(flags(0.4, 75.001, 0), "theta_i");
-  EXPECT_EQ(flags(0.4, 0, 80.001), "theta_r");
-  EXPECT_EQ(flags(0.4, 89, 89), "theta_i+theta_r");
+  EXPECT_EQ(flags(0.351, 75.001, 0), "theta_i");
+  EXPECT_EQ(flags(0.532, 0, 80.001), "theta_r");
+  EXPECT_EQ(flags(0.4, 89, 89), "theta_i+theta_r+interpolated");
   EXPECT_EQ(flags(1.064, 89, 89), "theta_i+theta_r+wavelength");
 }
 

@@ -133,7 +133,7 @@ def test_a_model_says_that_its_instrument_is_in_its_uncertainty(chain, program, 
     np.testing.assert_allclose(there.evaluate_uncertainty(*where), here.evaluate_uncertainty(*where), rtol=1e-9)
     here.save(tmp_path / "here.json")
     told = program("analyze", "here.json", "-i", "45,0", "-r", "30,180")
-    assert "standard (k = 1), of the fit and its instrument: --term adds the rest of a budget" in told
+    assert "standard (k = 1), of the sample and its instrument: --term adds the rest of a budget" in told
     alone = mmbrdf.fit(data, orders=(3, 2)).model
     assert "instrument" not in alone.provenance
     from_references = mmbrdf.fit(data, orders=(3, 2), instrument=found).model
@@ -145,7 +145,7 @@ def test_the_page_about_a_model_says_what_its_uncertainty_is_of(chain, tmp_path)
     goniometer, folder, _ = chain
     instrument = mmbrdf.calibrate(folder / "references.csv", film=goniometer.film)
     data = mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle)
-    for options, words in (({}, "of the fit alone"), ({"instrument": instrument}, "of the fit and its instrument")):
+    for options, words in (({}, "of the sample"), ({"instrument": instrument}, "of the sample and its instrument")):
         mmbrdf.report(mmbrdf.fit(data, orders=(3, 2), **options).model, None, tmp_path / "page.html")
         assert f"uncertainties are standard (k = 1) and {words}<" in (tmp_path / "page.html").read_text()
 
