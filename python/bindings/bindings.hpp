@@ -102,6 +102,7 @@ void bind_answer(ModelClass& model);
 void bind_dataset(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_selection(py::module_& m);
+void bind_plan(py::module_& m);
 void bind_diagnostics(py::module_& m);
 void bind_mueller(py::module_& m);
 void bind_analysis(py::module_& m);

@@ -38,6 +38,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_polarimeter(m);
   bind_fit(m);
   bind_selection(m);
+  bind_plan(m);
   bind_diagnostics(m);
   bind_report(m);
 }

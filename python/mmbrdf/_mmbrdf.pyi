@@ -718,6 +718,24 @@ def scattered_S3(mueller: ArrayLike, stokes: ArrayLike) -> float | NDArray[np.fl
 def scattered_S3_gradient(mueller: ArrayLike, stokes: ArrayLike) -> NDArray[np.float64]: ...
 def scattered_S4(mueller: ArrayLike, stokes: ArrayLike) -> float | NDArray[np.float64]: ...
 def scattered_S4_gradient(mueller: ArrayLike, stokes: ArrayLike) -> NDArray[np.float64]: ...
+def plan(
+    designs: dict[str, Sequence[ArrayLike]],
+    *,
+    like: Model | None = None,
+    wavelength_nm: float | None = None,
+    noise: float | None = None,
+    targets: Sequence[str] = (),
+) -> mmbrdf.Plan: ...
+def choose(
+    count: int,
+    candidates: Sequence[ArrayLike],
+    *,
+    design: Sequence[ArrayLike] | None = None,
+    like: Model | None = None,
+    wavelength_nm: float | None = None,
+    noise: float | None = None,
+    targets: Sequence[str] = (),
+) -> NDArray[np.int64]: ...
 def select(
     data: Dataset,
     basis: str = "isotropic",

@@ -123,6 +123,29 @@ class Subsets(_NamedTuple):
         return f"<mmbrdf.Subsets: {splits}, {found}>"
 
 
+class Plan(_NamedTuple):
+    """Expected standard uncertainties before anything is measured: what plan() gives.
+
+    designs   their names; each as it is, and with the sample turned between its readings
+    readings  of each
+    targets   blocks of elements ("11", in sr^-1, "12_13_21_31", …: root mean square over directions up to 70 degrees),
+              then what was asked for: "dhr_45", "f_0_45" in sr^-1
+    u         (designs, targets)
+    """
+
+    designs: tuple[str, ...]
+    readings: tuple[int, ...]
+    targets: tuple[str, ...]
+    u: _Array
+
+    def __repr__(self) -> str:
+        width = max(map(len, self.designs))
+        lines = [" " * width + "".join(f"{target:>13}" for target in self.targets)]
+        for design, row in zip(self.designs, self.u):
+            lines.append(f"{design:{width}}" + "".join(f"{u:13.2g}" for u in row))
+        return "\n".join(lines)
+
+
 class FTest(_NamedTuple):
     """Whether a block of modes explains more without a symmetry.
 

@@ -11,6 +11,7 @@
 
 #include "mixed/directions.hpp"
 #include "mixed/readings.hpp"
+#include "text/numbers.hpp"
 
 // V = (diag 1/v + Σ w² x xᵀ/s²)⁻¹ of the readings at the geometries. One more reading with row x, divided by its noise,
 // makes of it V − V x xᵀV/(1 + xᵀV x). With targets Σ hᵀV h = tr(M V), M = Σ h hᵀ, it lowers them by
@@ -212,6 +213,73 @@ std::vector<double> expected_uncertainties(const VarianceComponents& components,
     result.push_back(std::sqrt(block.variances(rows_of(target, block.columns())).mean()));
   }
   return result;
+}
+
+namespace {
+
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> result;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    result.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return result;
+}
+
+std::string in_words(double degrees) { return rounded(degrees, 6); }
+
+/// The same readings, reading i of them with the sample turned by this part of a turn.
+NamedDesign turned(const NamedDesign& design, const std::string& how, double (*part)(std::size_t)) {
+  NamedDesign result{design.name + ", " + how, design.geometries};
+  for (std::size_t i = 0; i < result.geometries.size(); ++i) {
+    const double turn = 2 * std::numbers::pi * part(i);
+    result.geometries[i].incident.phi += turn;
+    result.geometries[i].reflected.phi += turn;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<NamedTarget> block_targets() {
+  std::vector<NamedTarget> result;
+  const std::vector<Block> list = blocks(Family::isotropic, VarianceComponents{}.orders);
+  for (std::size_t b = 0; b < list.size(); ++b) {
+    std::string name = list[b].name;
+    std::ranges::replace(name, ',', '_');
+    result.push_back({name, {PlanTarget::Kind::block, b, {}}});
+  }
+  return result;
+}
+
+std::vector<NamedTarget> targets_from(const std::string& text) {
+  const std::vector<std::string> parts = parts_of(text, ':');
+  std::vector<NamedTarget> result;
+  if (parts[0] == "dhr" && parts.size() == 2) {
+    for (const std::string& one : parts_of(parts[1], ',')) {
+      const double theta = parse_number(one);
+      result.push_back({"dhr_" + in_words(theta), {PlanTarget::Kind::dhr, 0, {direction_from_degrees(theta, 0), {}}}});
+    }
+  } else if (parts[0] == "f" && (parts.size() == 3 || parts.size() == 4)) {
+    const double theta_i = parse_number(parts[1]), theta_r = parse_number(parts[2]),
+                 phi = parts.size() == 4 ? parse_number(parts[3]) : 180;
+    result.push_back(
+        {"f_" + in_words(theta_i) + "_" + in_words(theta_r) + (parts.size() == 4 ? "_" + in_words(phi) : ""),
+         {PlanTarget::Kind::f11, 0, {direction_from_degrees(theta_i, 0), direction_from_degrees(theta_r, phi)}}});
+  }
+  if (result.empty())
+    throw std::invalid_argument("target " + in_quotes(text) +
+                                ": expected dhr:THETA[,THETA...] or f:THETA_I:THETA_R[:PHI_R], in degrees");
+  return result;
+}
+
+std::vector<NamedDesign> with_turns(const NamedDesign& design) {
+  return {design,
+          turned(design, "every second one with the sample turned by 180 degrees",
+                 [](std::size_t i) { return i % 2 == 0 ? 0 : 0.5; }),
+          turned(design, "sample turned by 222.5 degrees from each to the next",
+                 [](std::size_t i) { return std::fmod(static_cast<double>(i) / std::numbers::phi, 1); })};
 }
 
 std::vector<std::size_t> chosen(const VarianceComponents& components, std::span<const Geometry> design,

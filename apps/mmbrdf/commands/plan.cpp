@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "command.hpp"
@@ -30,55 +29,14 @@ struct Options {
   Format format = Format::text;
 };
 
-/// A target, and what it is called.
-struct Wanted {
-  std::string name;
-  PlanTarget target;
-};
-
-std::string in_words(double degrees) { return format("%g", degrees); }
-
-constexpr const char* target_form = "dhr:THETA[,THETA...] or f:THETA_I:THETA_R[:PHI_R], in degrees";
-
-std::vector<Wanted> wanted_from(const std::string& text) {
-  const auto wrong = [&] { return WrongUsage("--target", "\"" + text + "\": expected " + target_form); };
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(':', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  std::vector<Wanted> result;
-  try {
-    if (parts[0] == "dhr" && parts.size() == 2) {
-      for (const double theta : numbers(parts[1]))
-        result.push_back(
-            {"dhr_" + in_words(theta), {PlanTarget::Kind::dhr, 0, {direction_from_degrees(theta, 0), {}}}});
-    } else if (parts[0] == "f" && (parts.size() == 3 || parts.size() == 4)) {
-      const double theta_i = number(parts[1]), theta_r = number(parts[2]),
-                   phi = parts.size() == 4 ? number(parts[3]) : 180;
-      result.push_back(
-          {"f_" + in_words(theta_i) + "_" + in_words(theta_r) + (parts.size() == 4 ? "_" + in_words(phi) : ""),
-           {PlanTarget::Kind::f11, 0, {direction_from_degrees(theta_i, 0), direction_from_degrees(theta_r, phi)}}});
-    }
-  } catch (const std::invalid_argument& error) {
-    throw WrongUsage("--target", error.what());
-  }
-  if (result.empty()) throw wrong();
-  return result;
-}
-
 /// The blocks in the order of their elements' names, then what was asked for.
-std::vector<Wanted> wanted(const Options& options) {
-  std::vector<Wanted> result;
-  const std::vector<Block> list = blocks(Family::isotropic, {12, 10});
-  for (std::size_t b = 0; b < list.size(); ++b) {
-    std::string name;
-    for (const char c : list[b].name) name += c == ',' ? '_' : c;
-    result.push_back({name, {PlanTarget::Kind::block, b, {}}});
-  }
-  for (const std::string& text : options.targets)
-    for (Wanted& one : wanted_from(text)) result.push_back(std::move(one));
+std::vector<NamedTarget> wanted(const Options& options) {
+  std::vector<NamedTarget> result = block_targets();
+  for (const std::string& text : options.targets) try {
+      for (NamedTarget& one : targets_from(text)) result.push_back(std::move(one));
+    } catch (const std::invalid_argument& error) {
+      throw WrongUsage("--target", error.what());
+    }
   return result;
 }
 
@@ -108,52 +66,30 @@ VarianceComponents components(const Options& options) {
       options.wavelength_nm ? micrometres(*options.wavelength_nm) : model.posterior->data().wavelengths[0].wavelength;
   if (std::ranges::none_of(model.posterior->data().wavelengths,
                            [&](const PosteriorAt& at) { return same_wavelength(at.wavelength, wavelength); }))
-    throw std::runtime_error(options.like + ": was not fitted at " + in_words(*options.wavelength_nm) + " nm, but at " +
-                             nanometre_list(model.validity.wavelengths));
+    throw std::runtime_error(options.like + ": was not fitted at " + format("%g", *options.wavelength_nm) +
+                             " nm, but at " + nanometre_list(model.validity.wavelengths));
   VarianceComponents result = components_of(*model.posterior, wavelength);
   for (auto& block : result.blocks)
     if (options.noise) block.noise_variance = *options.noise * *options.noise;
   return result;
 }
 
-struct Design {
-  std::string name;
-  std::vector<Geometry> geometries;
-};
-
-/// The same readings, reading i of them with the sample turned by this part of a turn.
-Design turned(const Design& design, const std::string& how, double (*part)(std::size_t)) {
-  Design result{design.name + ", " + how, design.geometries};
-  for (std::size_t i = 0; i < result.geometries.size(); ++i) {
-    const double turn = 2 * std::numbers::pi * part(i);
-    result.geometries[i].incident.phi += turn;
-    result.geometries[i].reflected.phi += turn;
-  }
+std::vector<NamedDesign> designs(const Options& options) {
+  std::vector<NamedDesign> result;
+  for (const std::string& path : options.designs)
+    for (NamedDesign& one : with_turns({base_name(path), read_geometries(path)})) result.push_back(std::move(one));
   return result;
 }
 
-std::vector<Design> designs(const Options& options) {
-  std::vector<Design> result;
-  for (const std::string& path : options.designs) {
-    const Design as_is{base_name(path), read_geometries(path)};
-    result.push_back(as_is);
-    result.push_back(turned(as_is, "every second one with the sample turned by 180 degrees",
-                            [](std::size_t i) { return i % 2 == 0 ? 0 : 0.5; }));
-    result.push_back(turned(as_is, "sample turned by 222.5 degrees from each to the next",
-                            [](std::size_t i) { return std::fmod(static_cast<double>(i) / std::numbers::phi, 1); }));
-  }
-  return result;
-}
-
-Table table_of(const VarianceComponents& components, const std::vector<Design>& designs,
-               const std::vector<Wanted>& wanted) {
+Table table_of(const VarianceComponents& components, const std::vector<NamedDesign>& designs,
+               const std::vector<NamedTarget>& wanted) {
   Table table{{{"design", "%-60s"}, {"readings", "%8s"}}};
   std::vector<PlanTarget> targets;
-  for (const Wanted& one : wanted) {
+  for (const NamedTarget& one : wanted) {
     table.columns.push_back({"expected_u_" + one.name, "%13.2g", one.name});
     targets.push_back(one.target);
   }
-  for (const Design& design : designs) {
+  for (const NamedDesign& design : designs) {
     Table::Row row{design.name, design.geometries.size()};
     for (const double u : expected_uncertainties(components, design.geometries, targets)) row.push_back(u);
     table.rows.push_back(row);
@@ -171,18 +107,18 @@ std::string geometries_csv(const std::vector<Geometry>& list) {
 
 void plan(const Options& options) {
   const VarianceComponents known = components(options);
-  const std::vector<Wanted> all = wanted(options);
-  std::vector<Design> list = designs(options);
+  const std::vector<NamedTarget> all = wanted(options);
+  std::vector<NamedDesign> list = designs(options);
   if (options.choose == 0 && !options.candidates.empty()) throw missing("--choose");
   if (options.choose > 0) {
     if (options.candidates.empty()) throw missing("--from");
     const std::vector<Geometry> candidates = read_geometries(options.candidates);
     std::vector<PlanTarget> targets;
-    const bool own = all.size() > blocks(Family::isotropic, {12, 10}).size();
-    for (const Wanted& one : all)
+    const bool own = all.size() > block_targets().size();
+    for (const NamedTarget& one : all)
       if (!own || one.target.kind != PlanTarget::Kind::block) targets.push_back(one.target);
     const std::vector<Geometry> start = list.empty() ? std::vector<Geometry>{} : list.front().geometries;
-    Design more{list.empty() ? "chosen" : list.front().name + " and chosen", start};
+    NamedDesign more{list.empty() ? "chosen" : list.front().name + " and chosen", start};
     std::vector<Geometry> picks;
     for (const std::size_t c : chosen(known, start, targets, candidates, static_cast<std::size_t>(options.choose)))
       picks.push_back(candidates[c]);

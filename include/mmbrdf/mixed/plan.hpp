@@ -45,6 +45,26 @@ struct PlanTarget {
   Geometry geometry{};
 };
 
+/// A target with its name: "11", "12_13_21_31" … of the blocks; "dhr_45", "f_0_45", "f_0_45_90".
+struct NamedTarget {
+  std::string name;
+  PlanTarget target;
+};
+/// All blocks, in canonical order.
+std::vector<NamedTarget> block_targets();
+/// Of "dhr:THETA[,THETA...]" or "f:THETA_I:THETA_R[:PHI_R]", in degrees, phi_r 180 unless it is given. Throws
+/// std::invalid_argument for another text.
+std::vector<NamedTarget> targets_from(const std::string& text);
+
+/// Directions to be measured.
+struct NamedDesign {
+  std::string name;
+  std::vector<Geometry> geometries;
+};
+/// The design as it is, and twice with the sample turned between its readings: every second one by 180 degrees, and each
+/// by 222.5 degrees from the one before.
+std::vector<NamedDesign> with_turns(const NamedDesign& design);
+
 /// Expected standard uncertainties of the targets from readings at these geometries, one for each time that it is there:
 /// of the posterior part; declared errors come on top. Throws std::invalid_argument for components that do not agree
 /// with the blocks, an invalid geometry, or a polar angle of 90 degrees, where the law is infinite.

@@ -14,6 +14,7 @@ scattering is on the right.
 """
 from .curves import in_plane_curves, polar_in_plane, subset_study
 from .maps import depolarization_map, realizability_map
+from .designs import plan
 from .panels import hemisphere, residual_map
 from .spectrum import coefficient_spectrum
 
@@ -22,6 +23,7 @@ __all__ = [
     "depolarization_map",
     "hemisphere",
     "in_plane_curves",
+    "plan",
     "polar_in_plane",
     "realizability_map",
     "residual_map",
