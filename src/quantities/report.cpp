@@ -12,6 +12,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/leverage.hpp"
 #include "mmbrdf/fitting/symmetry.hpp"
+#include "mmbrdf/mixed/sample_traits.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
@@ -97,6 +98,20 @@ Json fit_json(const Model& model) {
                     {"rank", fitted.rank > 0 ? Json(fitted.rank) : Json(nullptr)},
                     {"condition", fitted.condition > 0 ? Json(fitted.condition) : Json(nullptr)},
                     {"covariance", model.posterior || !fitted.covariance.empty()}});
+  return rows;
+}
+
+Json sample_json(const Posterior& posterior) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < posterior.data().wavelengths.size(); ++i)
+    for (const auto& [block, noise, anisotropy, nonreciprocal] : sample_traits(posterior, i))
+      rows.push_back({{"wavelength_nm", nanometres(posterior.data().wavelengths[i].wavelength)},
+                      {"block", block},
+                      {"noise", noise},
+                      {"once_per_turn", anisotropy[0]},
+                      {"twice_per_turn", anisotropy[1]},
+                      {"thrice_per_turn", anisotropy[2]},
+                      {"nonreciprocal", nonreciprocal}});
   return rows;
 }
 
@@ -377,6 +392,7 @@ std::string report_json(const Model& model, const std::string& name, std::span<c
   Json report{{"title", "Report on " + name}, {"warnings", range_warnings(what)}};
   report["model"] = model_json(what);
   report["fit"] = fit_json(model);
+  if (model.posterior) report["sample"] = sample_json(*model.posterior);
   add(report, "realizability", realizability(what));
   report["reflectances"] = reflectances(what);
   if (samples) add_samples(report, model, *samples);

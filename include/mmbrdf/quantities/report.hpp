@@ -10,6 +10,8 @@
 ///   model                 name, basis and fitted range in words, reflectance table if there is one; then what the
 ///                         provenance says, with its own names, or "provenance: name" where one of those is taken
 ///   fit                   row by block: block, coefficients, rank, condition, covariance (true or false: known)
+///   sample                of a posterior, row by wavelength and block: wavelength_nm, block, noise, once_per_turn,
+///                         twice_per_turn, thrice_per_turn, nonreciprocal (sample_traits)
 ///   realizability         row by wavelength and largest polar angle, the fitted one where it is known and 90 degrees:
 ///                         wavelength_nm, theta_max_deg, geometries, unrealizable, smallest_margin, margin_at,
 ///                         f11_not_positive, smallest_f11, largest_dhr, dhr_at_theta_i_deg (model_diagnostics)
