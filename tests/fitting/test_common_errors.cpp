@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/weights.hpp"
@@ -155,14 +156,14 @@ TEST(CommonErrors, AreTheSameOfASampleThatIsTurnedAboutItsNormal) {
 }
 
 TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
-  Model model = material("ptfe");
+  Model model = least_squares("ptfe");
   const std::vector<Sample> samples = simulated();
   EXPECT_THROW(add_common_errors(model, samples, {}), std::invalid_argument);
   EXPECT_EQ(message_of([&] { add_common_errors(model, samples, {}); }), "the model has powers of the wavelength");
   model.powers = 0;
   EXPECT_EQ(message_of([&] { add_common_errors(model, samples, {}); }),
             "the reflectance that f11 is divided by comes from samples of its own");
-  model = material("ptfe-532");
+  model = least_squares("ptfe-532");
   EXPECT_THROW(add_common_errors(model, samples, std::array{SampleChanges(3)}), std::invalid_argument);
   EXPECT_THROW(add_common_errors(model, {}, {}), std::invalid_argument);
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
@@ -20,7 +21,7 @@ MuellerCovariance diagonal(double value) {
 }
 
 TEST(MuellerCovariance, OfAModelIsValidAndSoAreThoseOfRankOneAndNone) {
-  const PreparedUncertainty fit = prepare_uncertainty(material("ptfe-532"), 0.532);
+  const PreparedUncertainty fit = prepare_uncertainty(least_squares("ptfe-532"), 0.532);
   for (const Frame frame : {Frame::xy, Frame::sp}) require_valid(fit.evaluate({{0.7, 0.2}, {0.4, 1}}, frame));
   require_valid(fit.evaluate({}));
   require_valid(diagonal(0));

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 
@@ -17,7 +18,7 @@ const Geometry oblique{{0.8, 0.3}, {0.5, 2.6}};
 const std::vector<TypeBTerm> terms{{"plaque", ErrorOf::scale, 0.003}, {"dial", ErrorOf::calibration, 0.001}};
 
 TEST(Answer, HasTheValueAndTheUncertaintyOfEachQuantity) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const Answer a = Answers(model, {.terms = terms}).at(0.532).at(oblique);
   const PreparedModel prepared = prepare(model, 0.532);
   const Mueller m = prepared.evaluate(oblique, Frame::sp);
@@ -34,7 +35,7 @@ TEST(Answer, HasTheValueAndTheUncertaintyOfEachQuantity) {
 
 // Errors of terms are independent of each other. Of a scale a ratio has no part, not even from rounding.
 TEST(Answer, HasPartsThatAddUpInSquares) {
-  const Answer a = Answers(material("ptfe-532"), {.terms = terms}).at(0.532).at(oblique);
+  const Answer a = Answers(least_squares("ptfe-532"), {.terms = terms}).at(0.532).at(oblique);
   for (const Answered& q : a.quantities) {
     ASSERT_EQ(q.parts.size(), 4U);
     EXPECT_EQ(q.parts.back(), q.uncertainty);
@@ -45,7 +46,7 @@ TEST(Answer, HasPartsThatAddUpInSquares) {
 }
 
 TEST(Answer, TakesTheLightInTheFrameAskedFor) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const Mueller m = prepare(model, 0.532).evaluate(oblique, Frame::sp);
   const Answer sp = Answers(model, {.frame = Frame::sp, .light = Stokes{1, 1, 0, 0}}).at(0.532).at(oblique);
   const Answer xy = Answers(model, {.light = rotator(0.3) * Stokes{1, 1, 0, 0}}).at(0.532).at(oblique);
@@ -58,7 +59,7 @@ TEST(Answer, TakesTheLightInTheFrameAskedFor) {
 }
 
 TEST(Answer, HasIntervalsFromDrawsForWhatIsNotLinear) {
-  const Answers answers(material("ptfe-532"), {.draws = 200, .seed = 3});
+  const Answers answers(least_squares("ptfe-532"), {.draws = 200, .seed = 3});
   const Answer drawn = answers.at(0.532).at(oblique), first = Answers(answers.model()).at(0.532).at(oblique);
   for (std::size_t i = 0; i < drawn.quantities.size(); ++i) {
     const Answered &d = drawn.quantities[i], &f = first.quantities[i];
@@ -72,11 +73,11 @@ TEST(Answer, HasIntervalsFromDrawsForWhatIsNotLinear) {
 
 TEST(Answer, HasNoValueWhereAQuantityHasNoMeaningAndNoUncertaintyWhereItIsNotKnown) {
   const Geometry grazing{{radians(90), 0}, {radians(90), 0}};
-  const Answer a = Answers(material("ptfe-1064")).at(1.064).at(grazing);
+  const Answer a = Answers(least_squares("ptfe-1064")).at(1.064).at(grazing);
   ASSERT_LT(a.elements(0, 0), 0);
   EXPECT_FALSE(a.realizable);
   for (const Answered& q : a.quantities) EXPECT_EQ(q.value.has_value(), q.quantity->first_order) << q.quantity->name;
-  Model silent = material("ptfe-532");
+  Model silent = least_squares("ptfe-532");
   silent.blocks.front().covariance.clear();
   const Answers answers(silent, {.draws = 100});
   EXPECT_EQ(answers.unknown_uncertainty(), "the covariance of block 11 is not known");
@@ -86,7 +87,7 @@ TEST(Answer, HasNoValueWhereAQuantityHasNoMeaningAndNoUncertaintyWhereItIsNotKno
 }
 
 TEST(Answer, HasNoBudgetWhereATermHasNoLimit) {
-  const Answers answers(material("ptfe-532"), {.terms = {{"arm", ErrorOf::theta_r, 1e-3}}});
+  const Answers answers(least_squares("ptfe-532"), {.terms = {{"arm", ErrorOf::theta_r, 1e-3}}});
   EXPECT_TRUE(answers.at(0.532).at(oblique).budget);
   EXPECT_FALSE(answers.at(0.532).at({{0.8, 0}, {radians(90), 0}}).budget);
 }

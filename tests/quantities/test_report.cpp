@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
@@ -66,7 +67,7 @@ bool warns(const Json& report, const std::string& beginning) {
 Model fitted(std::span<const Sample> samples) { return fit(samples, {Family::isotropic, {4, 2}}).model; }
 
 TEST(Report, HasItsFieldsInOrder) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const Json alone = report(model), beside = report(model, measured(model));
   EXPECT_EQ(names(alone), of_the_model);
   EXPECT_EQ(alone["warnings"], Json::array());
@@ -83,7 +84,7 @@ TEST(Report, HasItsFieldsInOrder) {
 }
 
 TEST(Report, SaysOfTheModelWhatItSaysOfItself) {
-  Model model = material("ptfe");
+  Model model = least_squares("ptfe");
   const Json json = report(model, green);
   EXPECT_EQ(json["title"], "Report on it");
   std::vector<std::string> expected{"name", "basis", "fitted range", "reflectance table"};
@@ -97,7 +98,7 @@ TEST(Report, SaysOfTheModelWhatItSaysOfItself) {
 }
 
 TEST(Report, KeepsWhatTheProvenanceSaysUnderANameThatIsTaken) {
-  Model model = material("ptfe-532");
+  Model model = least_squares("ptfe-532");
   model.provenance["name"] = "another";
   const Json told = report(model)["model"];
   EXPECT_EQ(told["name"], "ptfe-532");
@@ -114,7 +115,7 @@ TEST(Report, IsOfTheWavelengthsAndAnglesThatTheModelWasFittedTo) {
 }
 
 TEST(Report, HasTheNumbersOfTheModelToTheLastBit) {
-  const Model model = material("ptfe");
+  const Model model = least_squares("ptfe");
   const Json json = report(model, green);
   const ModelDiagnostics d = model_diagnostics(model, green[0]);
   const Json& horizon = json["realizability"][1];
@@ -195,13 +196,13 @@ TEST(Report, OfAModelAsPrintedHasTheLeverageOfTheRowsThatWereFitted) {
 }
 
 TEST(Report, WarnsOfAModelThatIsNotPhysical) {
-  Model model = material("ptfe-532");
+  Model model = least_squares("ptfe-532");
   for (double& a : model.blocks.back().coefficients) a *= 3;  // of 44
   const Json json = report(model);
   EXPECT_GT(json["realizability"][0]["unrealizable"].get<int>(), 0);
   EXPECT_TRUE(warns(json, json["realizability"][0]["unrealizable"].dump() +
                               " of 27225 matrices within the fitted angles at 532 nm cannot exist"));
-  model = material("ptfe-532");
+  model = least_squares("ptfe-532");
   for (double& a : model.blocks.front().coefficients) a *= 1.1;
   EXPECT_TRUE(warns(report(model), "the directional-hemispherical reflectance reaches 1.08"));
   for (double& a : model.blocks.front().coefficients) a *= -1;
@@ -209,7 +210,7 @@ TEST(Report, WarnsOfAModelThatIsNotPhysical) {
 }
 
 TEST(Report, WarnsOfWhatIsNotKnown) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   EXPECT_TRUE(warns(report(model, std::array{0.6}), "600 nm lies outside the fitted range"));
   Model without = model;
   without.blocks[2].covariance.clear();
@@ -256,7 +257,7 @@ TEST(Report, ListsTheFirstOutliersAndCountsAll) {
 }
 
 TEST(Report, WarnsOfSamplesBeyondTheRangeAndOfFewOfThem) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   std::vector<Sample> samples = simulate(model, green, std::vector{in_degrees(80, 0, 10, 0), in_degrees(30, 0, 20, 9)});
   const Json json = report(model, samples);
   EXPECT_TRUE(warns(json, "1 of 2 samples lies outside the fitted range"));
@@ -272,7 +273,7 @@ TEST(Report, IsOneLineOfUtf8) {
 }
 
 TEST(Report, RefusesWhatThereIsNothingToSayOf) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   EXPECT_EQ(message_of([] {
               report(diffuser({0.3, 0.1}));
             }),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/polarization/covariance.hpp"
@@ -46,7 +47,7 @@ TEST(Significance, OfFitsToTheSameTruthIsThatOfChance) {
 }
 
 TEST(Significance, OfAModelAndItselfIsNone) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   for (const Significance& s : between(model, model, random_geometries(20, 1, radians(70)))) {
     EXPECT_LT(s.largest, 1e-9);
     EXPECT_EQ(s.within, 1);
@@ -54,7 +55,7 @@ TEST(Significance, OfAModelAndItselfIsNone) {
 }
 
 TEST(Significance, IsTheDifferenceOverTheUncertaintiesOfBoth) {
-  const Model first = material("ptfe-532"), second = fitted(1);
+  const Model first = least_squares("ptfe-532"), second = fitted(1);
   const Geometry g{{0.8, 0.1}, {0.5, 2.6}};
   const auto found = between(first, second, {g});
   const Mueller a = prepare(first, 0.532).evaluate(g), b = prepare(second, 0.532).evaluate(g);
@@ -68,16 +69,16 @@ TEST(Significance, IsTheDifferenceOverTheUncertaintiesOfBoth) {
 }
 
 TEST(Significance, NeedsTheUncertaintiesOfBoth) {
-  Model unknown = material("ptfe-532");
+  Model unknown = least_squares("ptfe-532");
   for (FittedBlock& block : unknown.blocks) block.covariance.clear();
-  EXPECT_THROW(between(material("ptfe-532"), unknown, {Geometry{}}), std::invalid_argument);
+  EXPECT_THROW(between(least_squares("ptfe-532"), unknown, {Geometry{}}), std::invalid_argument);
 }
 
 TEST(Significance, IsAskedWhereBothModelsWereFitted) {
-  Model narrow = material("ptfe-532");
+  Model narrow = least_squares("ptfe-532");
   narrow.validity.theta_r_max = radians(50);
   const Geometry in{{0.8, 0}, {0.8, 0}}, out{{0.8, 0}, {1.0, 0}};
-  EXPECT_EQ(common_geometries(narrow, material("ptfe-532"), {in, out}).size(), 1U);
+  EXPECT_EQ(common_geometries(narrow, least_squares("ptfe-532"), {in, out}).size(), 1U);
   EXPECT_EQ(common_geometries(material("ptfe-532"), narrow, {in, out}).size(), 1U);
   narrow.validity = {};
   EXPECT_EQ(common_geometries(narrow, narrow, {in, out}).size(), 2U);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
@@ -21,7 +22,7 @@ const std::vector<CertifiedReflectance> plaque{{0.6, 0.985, 0.003}, {0.443, 0.99
 
 // Reflectances are exact to dhr_error; the covariance adds and takes away terms of one size, so 1e-9 of u remains.
 TEST(Certificate, IsTheReflectanceOfTheModelAndItsUncertainty) {
-  const Model model = certified(material("ptfe"), plaque).model;
+  const Model model = certified(least_squares("ptfe"), plaque).model;
   for (const CertifiedReflectance& one : plaque) {
     const Direction incident{one.theta, 1};
     EXPECT_NEAR(directional_hemispherical_reflectance(model, one.wavelength, incident), one.value, 1e-13);
@@ -32,7 +33,7 @@ TEST(Certificate, IsTheReflectanceOfTheModelAndItsUncertainty) {
 
 // What the fit knows of the ratio of f11 to the reflectance remains, beside the certificate.
 TEST(Certificate, CarriesItsUncertaintyIntoEveryOther) {
-  const Model before = material("ptfe");
+  const Model before = least_squares("ptfe");
   std::vector<CertifiedReflectance> exact = plaque;
   for (CertifiedReflectance& one : exact) one.uncertainty = 0;
   const Model sharp = certified(before, exact).model, model = certified(before, plaque).model;
@@ -47,7 +48,7 @@ TEST(Certificate, CarriesItsUncertaintyIntoEveryOther) {
 }
 
 TEST(Certificate, OfTheReflectanceThatAModelHasChangesNothing) {
-  const Model before = material("ptfe");
+  const Model before = least_squares("ptfe");
   const double c = directional_hemispherical_reflectance(before, 0.532, {radians(8), 0});
   const CertifiedModel same = certified(before, std::vector<CertifiedReflectance>{{0.532, c, 0.001}});
   EXPECT_LT(same.change, 1e-13);
@@ -57,7 +58,7 @@ TEST(Certificate, OfTheReflectanceThatAModelHasChangesNothing) {
 }
 
 TEST(Certificate, LeavesTheOtherElementsOverF11AndTellsHowMuchF11Changes) {
-  const Model before = material("ptfe-532");
+  const Model before = least_squares("ptfe-532");
   const CertifiedModel grey = certified(before, std::vector<CertifiedReflectance>{{0.532, 0.5, 0.005}});
   EXPECT_GT(grey.change, noticeable_change);
   EXPECT_EQ(grey.wavelength, 0.532);
@@ -67,13 +68,13 @@ TEST(Certificate, LeavesTheOtherElementsOverF11AndTellsHowMuchF11Changes) {
 }
 
 TEST(Certificate, NarrowsTheRangeOfTheModelToItsWavelengths) {
-  EXPECT_EQ(certified(material("ptfe"), plaque).model.validity.wavelengths, (std::vector{0.443, 0.532, 0.6}));
+  EXPECT_EQ(certified(least_squares("ptfe"), plaque).model.validity.wavelengths, (std::vector{0.443, 0.532, 0.6}));
   const std::vector<CertifiedReflectance> one{{0.5, 0.98, 0.01}};
-  EXPECT_EQ(certified(material("ptfe"), one).model.validity.wavelengths, (std::vector{0.5}));
+  EXPECT_EQ(certified(least_squares("ptfe"), one).model.validity.wavelengths, (std::vector{0.5}));
 }
 
 TEST(Certificate, IsDrawnFromAsItIsUncertain) {
-  const Model model = certified(material("ptfe"), plaque).model;
+  const Model model = certified(least_squares("ptfe"), plaque).model;
   const Geometry g{{0.8, 0}, {0.5, 2.6}};
   const auto drawn = values(Draws(model, 4000, 1).at(0.443), [&](const PreparedModel& m) { return m.f11(g); });
   EXPECT_NEAR(distribution(drawn).standard_deviation / std::sqrt(prepare_uncertainty(model, 0.443).evaluate(g)(0, 0)),
@@ -88,7 +89,7 @@ TEST(Certificate, OfAModelWithoutACovarianceChangesItsValuesAlone) {
 }
 
 TEST(Certificate, ThatMakesNoSenseIsRefused) {
-  const Model model = material("ptfe");
+  const Model model = least_squares("ptfe");
   const auto what = [&](const std::vector<CertifiedReflectance>& list) {
     return message_of([&] { certified(model, list); });
   };

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "given/least_squares.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
@@ -47,7 +48,7 @@ void expect_equal(const std::vector<Contribution>& budget, double expected) {
 }
 
 TEST(ReflectanceUncertainty, OfTheHemisphereIsThatOfTheSlopesOfTheValues) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const UncertainModel at = uncertain(model, 0.532);
   const Direction direction{radians(60), 0.4};
   for (const Stokes& light : {Stokes{1, 1, 0, 0}, {1, -1, 0, 0}, {2, 0.3, 1.2, -0.8}}) {
@@ -63,7 +64,7 @@ TEST(ReflectanceUncertainty, OfTheHemisphereIsThatOfTheSlopesOfTheValues) {
 }
 
 TEST(ReflectanceUncertainty, OfUnpolarizedLightIsTheClosedForm) {
-  const Model model = material("ptfe");
+  const Model model = least_squares("ptfe");
   const UncertainModel at = uncertain(model, 0.6);
   for (const double theta : {0.0, 0.6, 1.3}) {
     const double closed = at.fit.directional_hemispherical_reflectance({theta, 0});
@@ -73,7 +74,7 @@ TEST(ReflectanceUncertainty, OfUnpolarizedLightIsTheClosedForm) {
 }
 
 TEST(ReflectanceUncertainty, OfAMeanOverAperturesIsThatOfItsSlopes) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const UncertainModel at = uncertain(model, 0.532);
   const Aperture source = Aperture::cone({radians(8), 0}, 0.1);
   const Aperture receiver = Aperture::ring(radians(40), radians(50));
@@ -93,7 +94,7 @@ TEST(ReflectanceUncertainty, OfAMeanOverAperturesIsThatOfItsSlopes) {
 double of_term(const std::vector<Contribution>& budget) { return budget.at(1).uncertainty; }
 
 TEST(ReflectanceUncertainty, OfAScaleIsThatPartOfEachIntegral) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const UncertainModel at = uncertain(model, 0.532, {{"plaque", ErrorOf::scale, 0.003, 12}});
   const Direction direction{radians(60), 0.4};
   const Stokes light{2, 0.3, 1.2, -0.8};
@@ -121,7 +122,7 @@ TEST(ReflectanceUncertainty, OfADetectorAngleIsAQuarterTurnOfTheReflectanceOfADi
 // Turning the receiver about the normal takes nothing out of the hemisphere; neither do errors of the other elements.
 TEST(ReflectanceUncertainty, OfAnAzimuthOrACalibrationIsNoneForUnpolarizedLight) {
   for (const ErrorOf what : {ErrorOf::azimuth, ErrorOf::calibration}) {
-    const UncertainModel at = uncertain(material("ptfe-532"), 0.532, {{"error", what, 0.01}});
+    const UncertainModel at = uncertain(least_squares("ptfe-532"), 0.532, {{"error", what, 0.01}});
     EXPECT_NEAR(of_term(directional_hemispherical_budget(at, {radians(45), 0})), 0, 1e-10);
     EXPECT_NEAR(of_term(bihemispherical_budget(at)), 0, 1e-10);
   }
@@ -130,7 +131,7 @@ TEST(ReflectanceUncertainty, OfAnAzimuthOrACalibrationIsNoneForUnpolarizedLight)
 // u of s light with errors of m12 alone is theirs times the reflectance: one error for all directions, that does not
 // average out.
 TEST(ReflectanceUncertainty, OfACalibrationDoesNotAverageOut) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const UncertainModel at = uncertain(model, 0.532, {{"retarder", ErrorOf::calibration, 0.001}});
   const Direction direction{radians(45), 0};
   expect_equal(of_term(directional_hemispherical_budget(at, direction, {1, 1, 0, 0})),
@@ -148,7 +149,7 @@ double misread(const PreparedModel& model, const Direction& incident, ErrorOf wh
 }
 
 TEST(ReflectanceUncertainty, OfASourceAngleIsTheSlopeOfTheReflectance) {
-  const UncertainModel at = uncertain(material("ptfe-532"), 0.532, {{"arm", ErrorOf::theta_i, 1e-3}});
+  const UncertainModel at = uncertain(least_squares("ptfe-532"), 0.532, {{"arm", ErrorOf::theta_i, 1e-3}});
   const Direction incident{radians(60), 0};
   const double slope =
       (misread(at.model, incident, ErrorOf::theta_i, 1e-3) - misread(at.model, incident, ErrorOf::theta_i, -1e-3)) / 2;
@@ -156,7 +157,7 @@ TEST(ReflectanceUncertainty, OfASourceAngleIsTheSlopeOfTheReflectance) {
 }
 
 TEST(ReflectanceUncertainty, RefusesLightThatCannotExist) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const UncertainModel at = uncertain(model, 0.532);
   EXPECT_THROW(directional_hemispherical_budget(at, {0, 0}, {1, 1, 1, 0}), std::invalid_argument);
   EXPECT_THROW(hemispherical_directional_budget(at, {0, 0}, {0, 0, 0, 0}), std::invalid_argument);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
@@ -22,7 +23,7 @@ namespace {
 const Geometry oblique{{0.8, 0.3}, {0.5, 2.6}};
 
 struct Ptfe {
-  Model model = material("ptfe-532");
+  Model model = least_squares("ptfe-532");
   PreparedModel prepared = prepare(model, 0.532);
   PreparedUncertainty fit = prepare_uncertainty(model, 0.532);
 };
@@ -52,7 +53,7 @@ TEST(Budget, IsTheSumOfItsTermsAndKeepsThem) {
 
 // GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.6).
 TEST(Budget, OfADetectorAngleHasTheTangentOfTheMeasurementEquation) {
-  Model lambertian = material("ptfe-532");
+  Model lambertian = least_squares("ptfe-532");
   for (FittedBlock& block : lambertian.blocks)
     for (double& a : block.coefficients) a = &a == block.coefficients.data() && block.block.name == "11" ? 2 : 0;
   const PreparedModel prepared = prepare(lambertian, 0.532);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
@@ -101,7 +102,7 @@ TEST(Draws, RefuseAReflectanceWithoutVarianceThatVariesWithTheCoefficients) {
 
 // A correlation of 2000 pairs is uncertain by up to 1 / √2000 = 0.022.
 TEST(Draws, HaveTheFirstOrderCorrelations) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const auto models = Draws(model, 2000, 2).at(0.532);
   const MuellerCovariance v = prepare_uncertainty(model, 0.532).evaluate(oblique, Frame::sp);
   const auto element = [&](std::size_t e) {
@@ -115,7 +116,7 @@ TEST(Draws, HaveTheFirstOrderCorrelations) {
 }
 
 TEST(Draws, OfTheSameSeedAreTheSameAndALongerListBeginsWithAShorter) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const auto f11 = [](const PreparedModel& draw) { return draw.f11(oblique); };
   const auto few = values(Draws(model, 5, 7).at(0.532), f11), many = values(Draws(model, 9, 7).at(0.532), f11);
   const auto others = values(Draws(model, 5, 8).at(0.532), f11);
@@ -174,7 +175,7 @@ TEST(Draws, RefuseACovarianceThatIsNotPositiveSemidefinite) {
 }
 
 TEST(Draws, NeedACovarianceACountAndAWavelength) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   EXPECT_EQ(message_of([&] { Draws{in_published_form(model)}; }), "the covariance of block 11 is not known");
   EXPECT_NO_THROW(require_semidefinite(in_published_form(model)));
   EXPECT_EQ(message_of([&] { Draws(model, 1); }), "count = 1, must be in 2...1000000");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 
@@ -50,7 +51,7 @@ TEST(ExpandedUncertainty, OfOneCauseHasItsDegreesOfFreedom) {
 }
 
 TEST(ExpandedUncertainty, OfABudgetHasItsTerms) {
-  const Model model = material("ptfe-532");
+  const Model model = least_squares("ptfe-532");
   const std::vector<TypeBTerm> terms{{"plaque", ErrorOf::scale, 0.003, 8}, {"arm", ErrorOf::theta_r, 0.001}};
   const PreparedModel prepared = prepare(model, 0.532);
   const Budget all = budget(prepared, prepare_uncertainty(model, 0.532), terms, Geometry{{0.7, 0}, {0.4, 1}});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "given/cases.hpp"
+#include "given/least_squares.hpp"
 #include "given/published.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
@@ -282,10 +283,10 @@ TEST(Uncertainty, OfTheSandwichWithItsOwnReflectanceIsRightToo) {
 
 // Theory 5.1: statistical u(DHR(0)) .0004 at 532 nm and .0007 at 1064 nm.
 TEST(Uncertainty, OfTheReflectanceOfPtfeIsThatOfTheTheory) {
-  EXPECT_NEAR(prepare_uncertainty(material("ptfe-532"), 0.532).directional_hemispherical_reflectance({0, 0}), .0004,
-              5e-5);
-  EXPECT_NEAR(prepare_uncertainty(material("ptfe-1064"), 1.064).directional_hemispherical_reflectance({0, 0}), .0007,
-              5e-5);
+  EXPECT_NEAR(prepare_uncertainty(least_squares("ptfe-532"), 0.532).directional_hemispherical_reflectance({0, 0}),
+              .0004, 5e-5);
+  EXPECT_NEAR(prepare_uncertainty(least_squares("ptfe-1064"), 1.064).directional_hemispherical_reflectance({0, 0}),
+              .0007, 5e-5);
 }
 
 // Theory 2.2 and theory 4.7: the data have one plane of incidence, and the published sets at other azimuths say what
@@ -300,7 +301,7 @@ TEST(Uncertainty, OfThePublishedSetsAsPrintedIsNotEstimableAwayFromThePlaneOfThe
   EXPECT_TRUE(covariant.estimable(turned));
   EXPECT_TRUE(as_printed.estimable(in_plane));
   EXPECT_FALSE(as_printed.estimable(turned));
-  EXPECT_TRUE(prepare_uncertainty(material("ptfe"), 0.7).estimable(turned));
+  EXPECT_TRUE(prepare_uncertainty(least_squares("ptfe"), 0.7).estimable(turned));
 }
 
 // The reflectance of a fit divided by its own is 1 without error: zero eigenvalues of the covariance that are no lack
@@ -431,23 +432,23 @@ TEST(Uncertainty, AndValueOfTheLargestNumbersAreFiniteOrRefused) {
 }
 
 TEST(Uncertainty, NeedsACovarianceAndAValidQuestion) {
-  const Model without = in_published_form(material("ptfe-532"));
+  const Model without = in_published_form(least_squares("ptfe-532"));
   EXPECT_EQ(message_of([&] { prepare_uncertainty(without, 0.532); }), "the covariance of block 11 is not known");
-  Model without_one = material("ptfe-532");
+  Model without_one = least_squares("ptfe-532");
   EXPECT_TRUE(knows_uncertainty(without_one));
   without_one.blocks[2].covariance.clear();
   EXPECT_FALSE(knows_uncertainty(without_one));
   EXPECT_EQ(message_of([&] { prepare_uncertainty(without_one, 0.532); }), "the covariance of block 14,41 is not known");
-  Model unknown_rank = material("ptfe-532");
+  Model unknown_rank = least_squares("ptfe-532");
   unknown_rank.blocks[1].rank = 0;
   EXPECT_FALSE(prepare_uncertainty(unknown_rank, 0.532).estimable({{0.7, 0}, {0.5, 1}}));
-  Model no_covariance = material("ptfe-532");
+  Model no_covariance = least_squares("ptfe-532");
   no_covariance.blocks[0].covariance[1] = no_covariance.blocks[0].covariance[40] = 1;
   EXPECT_EQ(message_of([&] {
               prepare_uncertainty(no_covariance, 0.532);
             }).find("the covariance of block 11 is not positive semidefinite: its eigenvalues are -"),
             0u);
-  const PreparedUncertainty u = prepare_uncertainty(material("ptfe-532"), 0.532);
+  const PreparedUncertainty u = prepare_uncertainty(least_squares("ptfe-532"), 0.532);
   EXPECT_THROW(u.evaluate({{radians(95), 0}, {}}), std::invalid_argument);
   EXPECT_THROW(u.estimable({{0, 0}, {radians(95), 0}}), std::invalid_argument);
   EXPECT_THROW(u.directional_hemispherical_reflectance({radians(95), 0}), std::invalid_argument);
