@@ -18,6 +18,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/leverage.hpp"
 #include "mmbrdf/fitting/symmetry.hpp"
+#include "mmbrdf/mixed/sample_traits.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/quantities/trust.hpp"
@@ -81,6 +82,21 @@ TEST(Report, HasItsFieldsInOrder) {
     for (const Json& row : rows) EXPECT_EQ(names(row), names(rows.front())) << name;
   }
   EXPECT_EQ(beside["residuals"].size(), 17U);
+}
+
+TEST(Report, SaysOfAFitOfTheSampleWhatTheSampleIsLike) {
+  const Model model = fit_sample(measured(material("ptfe-532"))).model;
+  const std::vector<SampleTraits> traits = sample_traits(*model.posterior, 0);
+  const Json rows = report(model)["sample"];
+  ASSERT_EQ(rows.size(), traits.size());
+  for (std::size_t b = 0; b < traits.size(); ++b) {
+    EXPECT_EQ(rows[b]["wavelength_nm"], 532);
+    EXPECT_EQ(rows[b]["block"], traits[b].block);
+    EXPECT_EQ(rows[b]["noise"].get<double>(), traits[b].noise);
+    EXPECT_EQ(rows[b]["once_per_turn"].get<double>(), traits[b].anisotropy[0]);
+    EXPECT_EQ(rows[b]["thrice_per_turn"].get<double>(), traits[b].anisotropy[2]);
+    EXPECT_EQ(rows[b]["nonreciprocal"].get<double>(), traits[b].nonreciprocal);
+  }
 }
 
 TEST(Report, SaysOfTheModelWhatItSaysOfItself) {

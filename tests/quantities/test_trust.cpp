@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 
-#include "given/least_squares.hpp"
 #include "given/published.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
@@ -73,7 +72,7 @@ TEST(BuiltInModels, AreRealizableButForAFewGrazingGeometries) {
 }
 
 TEST(ModelDiagnostics, SayWhereTheWorstPlacesAre) {
-  const Model model = least_squares("ptfe-1064");
+  const Model model = material("ptfe-1064");
   const ModelDiagnostics found = model_diagnostics(model, 1.064);
   const PreparedModel prepared = prepare(model, 1.064);
   EXPECT_NEAR(realizability_margin(normalized(prepared.evaluate(found.margin.geometry))), found.margin.value, 1e-14);

@@ -283,10 +283,10 @@ TEST(Uncertainty, OfTheSandwichWithItsOwnReflectanceIsRightToo) {
 
 // Theory 5.1: statistical u(DHR(0)) .0004 at 532 nm and .0007 at 1064 nm.
 TEST(Uncertainty, OfTheReflectanceOfPtfeIsThatOfTheTheory) {
-  EXPECT_NEAR(prepare_uncertainty(least_squares("ptfe-532"), 0.532).directional_hemispherical_reflectance({0, 0}),
-              .0004, 5e-5);
-  EXPECT_NEAR(prepare_uncertainty(least_squares("ptfe-1064"), 1.064).directional_hemispherical_reflectance({0, 0}),
-              .0007, 5e-5);
+  EXPECT_NEAR(prepare_uncertainty(material("ptfe-532"), 0.532).directional_hemispherical_reflectance({0, 0}), .0004,
+              5e-5);
+  EXPECT_NEAR(prepare_uncertainty(material("ptfe-1064"), 1.064).directional_hemispherical_reflectance({0, 0}), .0007,
+              5e-5);
 }
 
 // Theory 2.2 and theory 4.7: the data have one plane of incidence, and the published sets at other azimuths say what

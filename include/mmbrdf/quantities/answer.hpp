@@ -40,8 +40,8 @@ struct Answer {
   std::optional<Mueller> uncertainties;  ///< of the elements
   std::vector<Answered> quantities;      ///< at each geometry the same ones, in their order
   std::optional<Budget> budget;          ///< in the frame sp; none where theta_r has no limit (budget.hpp)
-  std::optional<bool> estimable;  ///< nothing outside of the fitted range is
-  bool realizable = false;  ///< f11 > 0, and no coherency eigenvalue below 0
+  std::optional<bool> estimable;         ///< nothing outside of the fitted range is
+  bool realizable = false;               ///< f11 > 0, and no coherency eigenvalue below 0
   Outside outside = inside;
 };
 
