@@ -52,9 +52,8 @@ std::vector<CertifiedReflectance> certificate_from(const std::string& text, cons
     return result;
   }
   read_input(text, [&](std::istream& in, const std::string& name) { result = from_rows(in, name); });
-  const auto left_out = std::erase_if(result, [&](const CertifiedReflectance& one) {
-    return leaves_known_range(outside(validity, one.wavelength));
-  });
+  const auto left_out = std::erase_if(
+      result, [&](const CertifiedReflectance& one) { return leaves_known_range(outside(validity, one.wavelength)); });
   if (left_out > 0)
     note(std::to_string(left_out) + " of " + std::to_string(result.size() + left_out) + " values of " +
          data_name(text) + " are left out: the model was fitted at " + nanometre_list(validity.wavelengths));
