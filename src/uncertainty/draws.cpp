@@ -195,7 +195,7 @@ void require_semidefinite(const Model& model) {
   require_valid(model);
   for (const FittedBlock& fitted : model.blocks)
     if (!fitted.covariance.empty())
-      correlated(fitted, model.reflectance, MatrixXd(means(fitted, model.reflectance).size(), 0));
+      correlated(fitted, model.reflectance, MatrixXd::Zero(means(fitted, model.reflectance).size(), 1));
 }
 
 Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) {
