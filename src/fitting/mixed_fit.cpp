@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -24,9 +25,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::ptrdiff_t least_readings = 30;  // at a wavelength: sixty in random directions are known to do
-constexpr double first_tolerance = 1e-10;      // of the rank of the fits of a first pass: it needs none in full
-constexpr double least_relative_f11 = 1e-2;    // of the mean: darker readings are not weighed by what they happen to be
+constexpr std::ptrdiff_t least_readings = 30;    // at a wavelength: sixty in random directions are known to do
+constexpr double darkest = 0.05, brightest = 4;  // beyond these parts of 1/pi the prior does not hold: u is off by 15 %
+constexpr double first_tolerance = 1e-10;        // of the rank of the fits of a first pass: it needs none in full
+constexpr double least_relative_f11 = 1e-2;  // of the mean: darker readings are not weighed by what they happen to be
 
 std::vector<Geometry> geometries_of(std::span<const Sample> samples) {
   std::vector<Geometry> result;
@@ -112,6 +114,25 @@ auto tried(const auto& work) {
   } catch (const std::exception& error) {
     throw MixedFailure(error.what());
   }
+}
+
+/// Mean of f11 / reflectance, in parts of 1/π: about the albedo, if f11 is in sr⁻¹.
+double brightness(const Series& series) {
+  double sum = 0;
+  for (const Sample& sample : series.samples) sum += sample.f11 / series.reflectance;
+  return std::numbers::pi * sum / static_cast<double>(series.samples.size());
+}
+
+/// Variances of the prior are those of an f11 of some parts of 1/π.
+bool has_variances(double brightness) { return brightness > darkest && brightness < brightest; }
+
+/// One wavelength in other units than sr⁻¹, such as counts, is divided by what makes an albedo of it.
+void divide_other_units(const std::map<double, Series>& series, FitOptions& options) {
+  const auto& [wavelength, only] = *series.begin();
+  const double found = brightness(only);
+  if (series.size() > 1 || options.reflectance || has_variances(found)) return;
+  if (!(found > 0)) throw std::invalid_argument("the mean of f11 is " + shortest(found / std::numbers::pi));
+  options.reflectance = ReflectanceTable{{wavelength}, {found}};
 }
 
 /// Of Weights::estimated, else none.
@@ -273,6 +294,7 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
   options.minimum_norm = true;
   const std::vector<NoiseEstimate> noise = noise_for(samples, basis, options, weights);
   std::map<double, Series> series = series_of(samples, weights, noise);
+  tried([&] { divide_other_units(series, options); });
   std::map<double, std::vector<Mueller>> weights_of_series;
   FitResult result;
   for (const bool scaled : {false, true}) {  // f11 is divided by a reflectance that may be its own
@@ -284,6 +306,10 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
     }
     result = accumulator.solved(options);
     if (!scaled && !result.model.reflectance.values.empty()) continue;
+    for (const auto& [wavelength, one] : series)
+      if (!has_variances(brightness(one)))
+        throw MixedFailure("f11 at " + shortest(in_nanometres(wavelength)) + " nm is that of an albedo of " +
+                           rounded(brightness(one), 2) + ": is it in sr^-1, and the reflectance a part of 1?");
     const MixedFit mixed = tried([&] { return mixed_fit(series, basis, result.model.powers, options.declared); });
     for (std::size_t b = 0; b < result.model.blocks.size(); ++b) {
       FittedBlock& fitted = result.model.blocks[b];

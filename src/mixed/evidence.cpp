@@ -118,7 +118,7 @@ Inverse inverse_of(const MatrixXd& g, const Parts& parts, const VectorXd& varian
   }
   for (const std::vector<Index>& part : parts.columns) {
     const auto count = static_cast<Index>(part.size());
-    MatrixXd a(count, count);
+    MatrixXd a = MatrixXd::Zero(count, count);
     for (Index k = 0; k < count; ++k)
       for (Index j = k; j < count; ++j)
         a(j, k) = scaled(part[static_cast<std::size_t>(j)], part[static_cast<std::size_t>(k)]) + (j == k ? 1 : 0);
@@ -143,6 +143,11 @@ Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, cons
   const VectorXd theta = at.head(count), v = prior.variances(theta), roots = v.cwiseSqrt();
   Evidence result;
   result.inverse = inverse_of(gram.g, parts, v, noise);
+  if (!std::isfinite(result.inverse.log_determinant)) {
+    result.value = result.alone = std::nan("");
+    result.gradient.setZero(count + 1);
+    return result;
+  }
   const MatrixXd& inverse = result.inverse.matrix;
   const VectorXd m = inverse * roots.cwiseProduct(gram.z) / noise, r = inverse.diagonal();
   result.mean = roots.cwiseProduct(m);
@@ -176,6 +181,8 @@ Estimate estimate(const Gram& gram, const Parts& parts, const Prior& prior, doub
   Estimate result{Variances(count + 1), {}, 1};
   result.at << prior.mean, std::max(std::log(noise), least);
   result.evidence = evidence(gram, parts, prior, result.at);
+  if (!std::isfinite(result.evidence.value))
+    throw std::invalid_argument("the evidence of the mixed model is not finite");
   Curvature curvature;
   for (int step = 0; step < most_steps; ++step) {
     const Evidence& here = result.evidence;
@@ -192,7 +199,8 @@ Estimate estimate(const Gram& gram, const Parts& parts, const Prior& prior, doub
       ++result.evaluations;
       if (there.value > here.value + 1e-4 * part * promised) break;
       // Near the top what is gained drowns in the rounding of the evidence, the slope does not.
-      if (promised < near && std::abs(there.gradient.dot(direction)) < 0.9 * promised) break;
+      if (std::isfinite(there.value) && promised < near && std::abs(there.gradient.dot(direction)) < 0.9 * promised)
+        break;
       if (part < 1e-4) return result;
     }
     curvature.learn(part * direction, here.gradient - there.gradient);

@@ -75,7 +75,9 @@ MatrixXd covariance_of_all(const PosteriorData& data, const PosteriorAt& at, con
   const Gram gram = gram_of(columns, data.readings[at.readings], at.law, at.f11);
   const Parts parts = parts_of(gram.g, columns.calibration_count());
   const auto roots = variances.cwiseSqrt().asDiagonal();
-  return roots * inverse_of(gram.g, parts, variances, block.noise_variance).matrix * roots;
+  const Inverse inverse = inverse_of(gram.g, parts, variances, block.noise_variance);
+  require(std::isfinite(inverse.log_determinant), "covariances are not positive definite");
+  return roots * inverse.matrix * roots;
 }
 
 std::vector<SharedError> shared_errors(const DeclaredErrors& declared) {

@@ -217,5 +217,21 @@ TEST(MixedFit, SumsOfPartsOfASeriesAddUp) {
     EXPECT_NEAR(a.hyperparameters[h], b.hyperparameters[h], 1e-3);
 }
 
+TEST(MixedFit, OfWhatIsNoNumberIsRefused) {
+  const MixedColumns columns(blocks(Family::isotropic, {3, 2}).front(), DiscMapping::lambert);
+  Gram gram(columns.size(), 0);
+  gram.g.diagonal().setConstant(1);
+  gram.g(1, 0) = std::nan("");
+  gram.yy = 10;
+  gram.n = 10;
+  Parts together{{std::vector<Index>(static_cast<std::size_t>(columns.size()))}, {}};
+  std::iota(together.columns[0].begin(), together.columns[0].end(), Index{0});
+  const Prior prior = prior_of(columns);
+  Variances variances(prior.mean.size() + 1);
+  variances << prior.mean, 0;
+  EXPECT_FALSE(std::isfinite(evidence(gram, together, prior, variances).value));
+  EXPECT_THROW(estimate(gram, together, prior, 1), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace mmbrdf

@@ -256,5 +256,34 @@ TEST(RealSamples, DrawsScatterAsStated) {
   }
 }
 
+// Counts of a detector, or a sample as black as soot: u of f11 is within a fifth of where the prior was found.
+TEST(RealSamples, FollowTheUnitsOfF11) {
+  const std::vector<Sample> samples =
+      simulate(material("ptfe-532"), std::array{0.532}, random_geometries(150, 1), 0.006, 2);
+  const std::vector<Geometry> at = halton_directions(20, 0, 70);
+  const auto answers = [&](double factor, FitOptions options = {}) {
+    std::vector<Sample> scaled = samples;
+    for (Sample& sample : scaled) sample.f11 *= factor;
+    const Model model = fit_sample(scaled, {}, options).model;
+    EXPECT_EQ(model.posterior.has_value(), !options.reflectance) << factor;
+    const PreparedModel prepared = prepare(model, 0.532);
+    const PreparedUncertainty u = prepare_uncertainty(model, 0.532);
+    std::vector<std::pair<double, double>> result;
+    for (const Geometry& g : at) result.emplace_back(prepared.f11(g) / factor, std::sqrt(u.evaluate(g)(0, 0)) / factor);
+    return result;
+  };
+  const auto ours = answers(1), counts = answers(1e5), black = answers(1e-6), huge = answers(1e30);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    for (const auto& [value, u] : {counts[i], black[i], huge[i]}) {
+      EXPECT_NEAR(value, ours[i].first, 0.2 * ours[i].second);
+      EXPECT_NEAR(u, ours[i].second, 0.2 * ours[i].second);
+      EXPECT_NEAR(value, counts[i].first, 1e-6 * value);  // of the same albedo
+    }
+  }
+  FitOptions wrong;
+  wrong.reflectance = ReflectanceTable{{0.532}, {1e-5}};
+  answers(1, wrong);  // falls back
+}
+
 }  // namespace
 }  // namespace mmbrdf
