@@ -33,7 +33,7 @@ constexpr Named<Covariance> covariance_names[] = {
 
 constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sample"}, {Uncertainty::noise, "noise"}};
 
-constexpr std::size_t most_supports = 16;  // sets of directions in a model: of more wavelengths their union is kept
+constexpr std::size_t most_supports = 32;  // sets of directions in a model: of more, only what all of them have
 constexpr double involved = 1e-6;          // least part of a free combination for which a mode is named
 constexpr std::size_t most_named = 24;     // modes in a message of one line
 
@@ -306,19 +306,21 @@ void FitAccumulator::require_covered(const ReflectanceTable& table) const {
 }
 
 std::vector<SupportedPairs> FitAccumulator::support() const {
-  DirectionPairs all = wavelengths_.begin()->second.measured;
-  bool same = true;
-  for (const auto& [wavelength, at] : wavelengths_) {
-    same = same && at.measured == all;
-    all.merge(at.measured);
+  std::vector<std::pair<double, DirectionPairs>> measured;  // where it changes: the last before and the first behind
+  for (auto at = wavelengths_.begin(); at != wavelengths_.end(); ++at) {
+    const bool as_before = at != wavelengths_.begin() && std::prev(at)->second.measured == at->second.measured;
+    const bool as_behind = std::next(at) != wavelengths_.end() && std::next(at)->second.measured == at->second.measured;
+    if (!as_before || !as_behind) measured.emplace_back(at->first, at->second.measured);
+  }
+  if (measured.size() == 2 && measured[0].second == measured[1].second) measured.pop_back();
+  if (measured.size() > most_supports) {
+    for (const auto& [wavelength, pairs] : measured) measured.front().second.keep(pairs);
+    measured.resize(1);
   }
   const int order = std::max({support_order, basis_.orders.f11, basis_.orders.other});
   std::vector<SupportedPairs> result;
-  if (same || wavelengths_.size() > most_supports)
-    result.push_back({wavelengths_.begin()->first, supported(all, order, basis_.mapping)});
-  else
-    for (const auto& [wavelength, at] : wavelengths_)
-      result.push_back({wavelength, supported(at.measured, order, basis_.mapping)});
+  for (const auto& [wavelength, pairs] : measured)
+    result.push_back({wavelength, supported(pairs, order, basis_.mapping)});
   const auto complete = [&](const SupportedPairs& one) { return one.pairs.reach(theta_i_max_, theta_r_max_); };
   return std::ranges::all_of(result, complete) ? std::vector<SupportedPairs>{} : result;
 }

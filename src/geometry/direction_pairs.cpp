@@ -63,6 +63,12 @@ bool DirectionPairs::reach(double theta_i, double theta_r) const {
   return true;
 }
 
+void DirectionPairs::keep(const DirectionPairs& other) {
+  if (grid_ != other.grid_) throw std::invalid_argument("sets of pairs of directions of different grids");
+  std::ranges::transform(bytes_, other.bytes_, bytes_.begin(),
+                         [](unsigned a, unsigned b) { return static_cast<std::uint8_t>(a & b); });
+}
+
 std::size_t DirectionPairs::nodes() const { return axes(grid_).nodes(); }
 
 std::size_t DirectionPairs::node(const Geometry& geometry) const {

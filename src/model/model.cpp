@@ -118,6 +118,11 @@ void require_valid(const Validity& validity) {
     if (theta && !(*theta >= 0 && *theta <= pi / 2 + edge))
       throw std::invalid_argument("validity: polar angle " + shortest(in_degrees(*theta)) +
                                   " degrees is not in [0, 90]");
+  for (const SupportedPairs& one : validity.supported) {
+    require_wavelength(one.wavelength);
+    if (one.pairs.grid() != validity.supported.front().pairs.grid())
+      throw std::invalid_argument("validity: the supported directions are of different grids");
+  }
   const auto not_rising = [](const SupportedPairs& a, const SupportedPairs& b) {
     return !(a.wavelength < b.wavelength);
   };
@@ -199,6 +204,9 @@ void require_valid(const Model& model) {
                                 std::to_string(model.reflectance.covariance_with_f11.size()) + " numbers, expected " +
                                 std::to_string(with_f11));
   require_valid(model.validity);
+  if (!model.validity.supported.empty() && (model.validity.supported.front().pairs.grid() ==
+                                            DirectionPairs::Grid::anisotropic) != (model.family == Family::anisotropic))
+    throw std::invalid_argument("validity: the supported directions are on the grid of another family");
   if (model.posterior) require_posterior(model);
 }
 

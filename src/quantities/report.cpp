@@ -66,6 +66,9 @@ Warnings range_warnings(const Reported& reported) {
     if (outside(model.validity, wavelength) & outside_wavelength)
       warnings.push_back(nm(wavelength) + " lies outside the fitted range: what is said of it is extrapolated from " +
                          nanometre_list(model.validity.wavelengths));
+  for (const double wavelength : reported.wavelengths)
+    if (std::string line = unsupported_line(model.validity, wavelength); !line.empty())
+      warnings.push_back(nm(reported, wavelength) + ": " + line);
   if (!knows_uncertainty(model))
     warnings.push_back("the covariance of the coefficients is not known, or not of all, and no uncertainty with it");
   for (const FittedBlock& fitted : model.blocks) {

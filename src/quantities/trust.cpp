@@ -74,7 +74,8 @@ std::string missing_part(const std::string& name, const MissingAt& at) {
   const auto first = std::ranges::find_if(at, lacks);
   if (first == at.end() || std::ranges::all_of(at, lacks)) return "";
   const auto end = std::find_if_not(first, at.end(), lacks);
-  return name + " " + rounded(first->first, 3) + " to " + rounded(std::prev(end)->first, 3);
+  const std::string from = rounded(first->first, 3), to = rounded(std::prev(end)->first, 3);
+  return name + " " + from + (to == from ? "" : " to " + to);
 }
 
 /// What so large a reflectance usually comes from.
@@ -127,18 +128,6 @@ double fitted_theta_max(const Validity& validity) {
 double unsupported_share(const Validity& validity, double wavelength) {
   Missing all;
   visit_nodes(validity, wavelength, [&](const Geometry&, double weight, bool missing) { all.add(weight, missing); });
-  return all.share();
-}
-
-double unsupported_share(const Validity& validity, double wavelength, const Direction& beam) {
-  if (validity.supported.empty()) return 0;
-  Missing all;
-  visit_places(validity.theta_r_max.value_or(radians(90)), 1, [&](const Geometry& g) {
-    if (g.incident.theta > 0) return;
-    const Geometry here{beam, {g.reflected.theta, beam.phi + g.reflected.phi}};
-    all.add(std::sin(g.reflected.theta) * std::cos(g.reflected.theta),
-            (outside(validity, wavelength, here) & outside_directions) != 0);
-  });
   return all.share();
 }
 

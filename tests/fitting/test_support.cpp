@@ -17,6 +17,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/quantities/answer.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
+#include "mmbrdf/quantities/report.hpp"
 #include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -145,6 +146,35 @@ TEST(Support, ACornerOfTheWavelengthsIsNotSupported) {
   EXPECT_FALSE(leaves_known_range(outside(model.validity, 0.4, deep)));
 }
 
+TEST(Support, WhatOneOfManyWavelengthsLacksIsNotSupportedThere) {
+  std::vector<Sample> samples;
+  for (int k = 0; k < 20; ++k) {
+    const std::vector<Sample> more =
+        measured(grid(k < 19 ? Part([](const Geometry&) { return true; }) : forward), 0.4 + 0.01 * k);
+    samples.insert(samples.end(), more.begin(), more.end());
+  }
+  const Model model = least_squares(samples, {.orders = {3, 2}}).model;
+  EXPECT_EQ(model.validity.supported.size(), 3U);  // the first, the last of the same, and the other
+  EXPECT_EQ(outside(model.validity, 0.5, at_degrees(60, 60, 0)), inside);
+  EXPECT_EQ(outside(model.validity, 0.58, at_degrees(60, 60, 0)), inside);
+  EXPECT_EQ(outside(model.validity, 0.59, at_degrees(60, 60, 0)), outside_directions);
+  EXPECT_EQ(outside(model.validity, 0.585, at_degrees(60, 60, 0)), outside_directions | interpolated);
+}
+
+TEST(Support, OfMoreSetsThanAModelKeepsIsWhatAllHave) {
+  std::vector<Sample> samples;
+  for (int k = 0; k < 40; ++k) {
+    const std::vector<Sample> more = measured(grid(k % 2 == 0 ? Part(low) : forward), 0.4 + 0.01 * k);
+    samples.insert(samples.end(), more.begin(), more.end());
+  }
+  const Model model = least_squares(samples, {.orders = {3, 2}}).model;
+  EXPECT_EQ(model.validity.supported.size(), 1U);
+  for (const double wavelength : {0.4, 0.41}) {
+    EXPECT_TRUE(unsupported(model, at_degrees(60, 60, 0), wavelength));
+    EXPECT_FALSE(unsupported(model, at_degrees(30, 30, 180), wavelength));
+  }
+}
+
 TEST(Support, PartsOfTheSamplesMakeTheSameAsTheWhole) {
   const std::vector<Sample> samples = measured(grid(forward));
   const std::span<const Sample> all(samples);
@@ -163,6 +193,21 @@ TEST(Support, PartsOfTheSamplesMakeTheSameAsTheWhole) {
 TEST(Support, GoesThroughAFile) {
   const Model model = least_squares(measured(grid(forward)), {.orders = {3, 2}}).model;
   EXPECT_EQ(model_from_json(to_json(model), "m").validity.supported, model.validity.supported);
+}
+
+TEST(Support, OnAnotherGridIsRefused) {
+  Model model = least_squares(measured(grid(forward)), {.orders = {3, 2}}).model;
+  model.validity.supported.front().wavelength = -1;
+  EXPECT_THROW(require_valid(model), std::invalid_argument);
+  model.validity.supported = {{0.532, DirectionPairs(DirectionPairs::Grid::anisotropic)}};
+  EXPECT_THROW(require_valid(model), std::invalid_argument);
+  model.validity.supported = {{0.5, DirectionPairs()}, {0.6, DirectionPairs(DirectionPairs::Grid::anisotropic)}};
+  EXPECT_THROW(require_valid(model), std::invalid_argument);
+}
+
+TEST(Support, OfNothingIsWarnedOfInReports) {
+  const Model model = least_squares(measured(grid(forward)), {.orders = {3, 2}}).model;
+  EXPECT_NE(report_json(model, "m", std::array{0.532}, {}).find("532 nm: no samples support"), std::string::npos);
 }
 
 TEST(Support, NothingOutsideIsEstimable) {

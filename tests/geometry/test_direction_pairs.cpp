@@ -55,6 +55,19 @@ TEST(DirectionPairs, OfOthersTheAzimuthOfTheSampleCounts) {
   EXPECT_EQ(pairs.node({{1, -0.1}, {1, 6.2}}), pairs.node({{1, 0.1}, {1, 0}}));
 }
 
+TEST(DirectionPairs, MergeToWhatEitherHasAndKeepWhatBothHave) {
+  DirectionPairs a, b;
+  for (const Geometry& g : halton_directions(300, 0, 60)) a.add(g);
+  for (const Geometry& g : halton_directions(300, 40, 90)) b.add(g);
+  DirectionPairs either = a, both = a;
+  either.merge(b);
+  both.keep(b);
+  for (std::size_t node = 0; node < a.nodes(); ++node) {
+    EXPECT_EQ(either.contains(node), a.contains(node) || b.contains(node));
+    EXPECT_EQ(both.contains(node), a.contains(node) && b.contains(node));
+  }
+}
+
 TEST(DirectionPairs, ReachAsFarAsNoneIsMissing) {
   DirectionPairs pairs;
   for (std::size_t node = 0; node < pairs.nodes(); ++node) {

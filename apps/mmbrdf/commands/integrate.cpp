@@ -60,7 +60,8 @@ struct Options {
   bool strict = false;
 };
 
-constexpr int few_nodes = 2;  // of a rule whose nodes lie all over the apertures
+constexpr int few_nodes = 2;        // of a rule whose nodes lie all over the apertures
+constexpr int nodes_of_shares = 6;  // of one that tells a twentieth
 
 /// What belongs to one wavelength.
 struct AtWavelength {
@@ -78,12 +79,19 @@ void add_uncertainty(IntegratedRow& row, ExpandedUncertainty u) {
   row.budgets.push_back(std::move(u));
 }
 
-/// Of a beam from the source or to the receiver; much of the hemisphere around it must be supported.
-Outside outside_hemisphere(const AtWavelength& at, const Direction& beam, bool source) {
-  const Validity& validity = at.model.validity;
-  unsigned result = outside(validity, at.wavelength, source ? Geometry{beam, {}} : Geometry{{}, beam});
-  result &= ~static_cast<unsigned>(outside_directions);
-  if (unsupported_share(validity, at.wavelength, beam) > much_unsupported) result |= outside_directions;
+/// Of two apertures, whose largest polar angles make up `extreme`: much of them must be supported, as far as they are
+/// within the fitted angles.
+Outside outside_apertures(const Validity& validity, double wavelength, const Aperture& source, const Aperture& receiver,
+                          const Geometry& extreme) {
+  unsigned result = outside(validity, wavelength, extreme) & ~static_cast<unsigned>(outside_directions);
+  if (validity.supported.empty()) return static_cast<Outside>(result);
+  double all = 0, missing = 0;
+  for (const auto& [geometry, weight] : mean_rule(source, receiver, nodes_of_shares)) {
+    const Outside where = outside(validity, wavelength, geometry);
+    if (!(where & (outside_theta_i | outside_theta_r))) all += std::abs(weight);
+    if (where & outside_directions) missing += std::abs(weight);
+  }
+  if (missing > much_unsupported * all) result |= outside_directions;
   return static_cast<Outside>(result);
 }
 
@@ -93,7 +101,9 @@ IntegratedRow hemispherical_row(const AtWavelength& at, Integral quantity, doubl
   const bool dhr = quantity == Integral::dhr, unpolarized = p.light == Stokes{1, 0, 0, 0};
   IntegratedRow row;
   row.theta_deg = theta_deg;
-  row.outside = outside_hemisphere(at, beam, dhr);
+  const Aperture one = Aperture::direction(beam), hemisphere = Aperture::hemisphere();
+  row.outside = dhr ? outside_apertures(at.model.validity, at.wavelength, one, hemisphere, {beam, {}})
+                    : outside_apertures(at.model.validity, at.wavelength, hemisphere, one, {{}, beam});
   if (unpolarized) {  // the closed forms
     row.values = {directional_hemispherical_reflectance(at.model, at.wavelength, beam)};
   } else {
@@ -129,19 +139,6 @@ double factor_of(Integral quantity, const Aperture& receiver) {
     default:
       return 1;
   }
-}
-
-/// Of two apertures, whose largest polar angles make up `extreme`.
-Outside outside_apertures(const Validity& validity, double wavelength, const Aperture& source, const Aperture& receiver,
-                          const Geometry& extreme) {
-  unsigned result = outside(validity, wavelength, extreme) & ~static_cast<unsigned>(outside_directions);
-  double all = 0, missing = 0;
-  for (const auto& [geometry, weight] : mean_rule(source, receiver, few_nodes)) {
-    all += std::abs(weight);
-    if (outside(validity, wavelength, geometry) & outside_directions) missing += std::abs(weight);
-  }
-  if (missing > much_unsupported * all) result |= outside_directions;
-  return static_cast<Outside>(result);
 }
 
 IntegratedRow average_row(const AtWavelength& at, Integral quantity, const Sides& sides, const Options& options) {

@@ -23,7 +23,8 @@ class DirectionPairs {
 
   void add(const Geometry& geometry) { add(node(geometry)); }
   void add(std::size_t node) { bytes_[node / 8] |= static_cast<std::uint8_t>(1U << (node % 8)); }
-  void merge(const DirectionPairs& other);  ///< of the same grid
+  void merge(const DirectionPairs& other);  ///< of the same grid: what either has
+  void keep(const DirectionPairs& other);   ///< what both have
 
   bool contains(const Geometry& geometry) const { return contains(node(geometry)); }
   bool contains(std::size_t node) const { return (bytes_[node / 8] >> (node % 8) & 1U) != 0; }

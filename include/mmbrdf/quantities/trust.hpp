@@ -48,8 +48,6 @@ std::string energy_line(const F11Diagnostics& found, const std::string& where);
 double unsupported_share(const Validity& validity, double wavelength);
 std::string unsupported_line(const Validity& validity, double wavelength);
 
-/// Of a hemisphere around a beam, source or receiver, the same: the directions of the other one.
-double unsupported_share(const Validity& validity, double wavelength, const Direction& beam);
 inline constexpr double much_unsupported = 0.05;
 
 /// How a geometry is called in sentences: "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees".
