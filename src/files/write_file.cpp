@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <set>
 #include <streambuf>
 #include <system_error>
 
@@ -276,9 +277,12 @@ class Undisturbed {
 
 void write_files(const std::vector<NewFile>& files) {
   std::vector<std::unique_ptr<WaitingFile>> waiting;
+  std::set<fs::path> targets;
   for (const NewFile& file : files) {
     if (file.path.empty()) throw failure("output file", "it has no name");
     if (const std::optional<fs::path> target = replaced(file.path)) {
+      if (!targets.insert(fs::weakly_canonical(*target)).second)
+        throw failure(file.path, "another of the files to be written has this place");
       waiting.push_back(std::make_unique<WaitingFile>(*target, file.path));
       waiting.back()->write(file.write);
     } else {

@@ -207,6 +207,18 @@ TEST(Files, ThatBelongTogetherAreReplacedTogether) {
   EXPECT_EQ(folder.files(), 3);
 }
 
+TEST(Files, OfWhichTwoHaveOnePlaceAreRefused) {
+  const Folder folder;
+  put(folder / "a", "old");
+  fs::create_symlink("a", folder / "b");
+  const auto text = [](std::ostream& out) { out << "new"; };
+  EXPECT_NE(complaint([&] {
+              write_files({{folder / "a", text}, {folder / "b", text}});
+            }).find("has this place"),
+            std::string::npos);
+  EXPECT_EQ(contents(folder / "a"), "old");
+}
+
 TEST(Files, ThatBelongTogetherAreAllPutBackIfOneCannotBePutInPlace) {
   const Folder folder;
   put(folder / "a", "old a");

@@ -106,6 +106,9 @@ std::string geometries_csv(const std::vector<Geometry>& list) {
 }
 
 void plan(const Options& options) {
+  for (const std::string& path : options.designs) require_kept(path, options.output, "geometries");
+  require_kept(options.candidates, options.output, "candidates");
+  if (!options.like.empty()) require_model_kept(options.like, options.output);
   const VarianceComponents known = components(options);
   const std::vector<NamedTarget> all = wanted(options);
   std::vector<NamedDesign> list = designs(options);
