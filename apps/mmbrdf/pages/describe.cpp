@@ -118,6 +118,7 @@ std::string matrix_text(const Mueller& m, const std::optional<Mueller>& u) {
     const std::string element = u ? to_place_of(value, without_rounding(u->elements[e])) : format("%.10f", value);
     const auto point = static_cast<int>(std::min(element.find('.'), element.size()));
     text += format("%5.*s%-11s", point, element.c_str(), element.c_str() + point);
+    if (text.back() != ' ') text += ' ';  // of a large number
     if (e % 4 == 3) text.erase(text.find_last_not_of(' ') + 1) += '\n';
   }
   return text;
