@@ -17,7 +17,8 @@
     $ mmbrdf fit "$MMBRDF_DATA/PTFE.data.csv" | head -1
 
 $ COMMAND   Run by bash with pipefail; standard output and error together must be the lines that
-            follow, and the exit status 0, or N where the last line is [exit N].
+            follow, and the exit status 0, or N where the last line is [exit N]. Of a command with
+            a pipe, standard error follows standard output: which of them comes first is chance.
 ? COMMAND   If it fails, the rest of the file is skipped (exit status 77).
 ...         alone on a line: any number of lines, also none.
 
@@ -43,6 +44,7 @@ from pathlib import Path
 
 SKIPPED = 77
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?!\w)")
+PIPE = re.compile(r"(?<!\|)\|(?!\|)")
 
 
 @dataclass
@@ -135,9 +137,9 @@ class Shell:
             env=self.environment,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
+            stderr=subprocess.PIPE if PIPE.search(command) else subprocess.STDOUT,
         )
-        text = done.stdout.decode(errors="replace")
+        text = (done.stdout + (done.stderr or b"")).decode(errors="replace")
         for path, name in self.names.items():
             text = text.replace(path, name)
         lines = text.rstrip("\n").split("\n") if text.strip("\n") else []

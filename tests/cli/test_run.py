@@ -26,6 +26,11 @@ class Replay(unittest.TestCase):
     def test_expected_output_passes(self):
         self.assertEqual(self.replay("# why\n$ echo a; echo b >&2\na\nb\n"), 0)
 
+    def test_errors_of_a_command_with_a_pipe_come_last(self):
+        self.assertEqual(self.replay("$ { echo b >&2; sleep 0.2; echo a; } | cat\na\nb\n"), 0)
+        self.assertEqual(self.replay("$ { echo b >&2; echo a; } 2>&1 | cat\nb\na\n"), 0)
+        self.assertEqual(self.replay("$ false || echo b >&2; echo a\nb\na\n"), 0)
+
     def test_other_output_fails_and_is_shown_as_a_difference(self):
         self.assertEqual(self.replay("$ echo a; echo c\na\nb\n"), 1)
         self.assertIn("\n a\n-b\n+c\n", self.printed.getvalue())
