@@ -140,9 +140,11 @@ Validity read_validity(const Field& field) {
 }
 
 ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficients) {
-  field.require_no_other_than({"wavelengths_um", "values", "covariance", "covariance_with_f11"});
+  field.require_no_other_than({"wavelengths_um", "values", "certified_theta_deg", "covariance", "covariance_with_f11"});
   ReflectanceTable table{field["wavelengths_um"].numbers(), field["values"].numbers()};
   if (table.wavelengths.empty()) field["wavelengths_um"].refuse("must not be empty");
+  if (field.has("certified_theta_deg"))
+    for (const double theta : field["certified_theta_deg"].numbers()) table.certified_theta.push_back(radians(theta));
   if (field.has("covariance")) {
     const std::size_t count = table.values.size();
     table.covariance = read_variances(field["covariance"], count);
@@ -195,6 +197,7 @@ void require_finite(const std::vector<double>& values, const std::string& what) 
 
 ordered_json reflectance_json(const ReflectanceTable& table) {
   ordered_json result = {{"wavelengths_um", table.wavelengths}, {"values", table.values}};
+  for (const double theta : table.certified_theta) result["certified_theta_deg"].push_back(in_degrees(theta));
   if (!table.covariance.empty()) {
     const std::size_t count = table.values.size();
     result["covariance"] =

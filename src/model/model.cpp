@@ -72,6 +72,11 @@ void require_valid(const ReflectanceTable& table) {
   if (!table.covariance.empty() && table.covariance.size() != count * count && table.covariance.size() != count)
     throw std::invalid_argument("reflectance table: covariance of " + std::to_string(table.covariance.size()) +
                                 " numbers, expected " + std::to_string(count * count));
+  if (!table.certified_theta.empty() &&
+      (table.certified_theta.size() != count || table.covariance.empty() ||
+       !std::ranges::all_of(table.certified_theta, [](double theta) { return theta >= 0 && theta < pi / 2; })))
+    throw std::invalid_argument(
+        "reflectance table: certified polar angles must be in [0, 90) degrees, one for each value");
   if (table.covariance.empty() && !table.covariance_with_f11.empty())
     throw std::invalid_argument("reflectance table: a covariance with the coefficients, but none of its own");
   for (const auto* list : {&table.covariance, &table.covariance_with_f11})

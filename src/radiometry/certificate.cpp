@@ -99,6 +99,7 @@ CertifiedModel certified(Model model, std::span<const CertifiedReflectance> cert
     if (change >= result.change) result = {{}, change, one.wavelength};
     table.wavelengths.push_back(one.wavelength);
     table.values.push_back(factor);
+    if (model.posterior) table.certified_theta.push_back(one.theta);
   }
   MatrixXd covariance = of_certificate * of_certificate.transpose(), with_f11 = MatrixXd::Zero(a.size(), a.size());
   if (!f11.covariance.empty()) with_f11 = Eigen::Map<const MatrixXd>(f11.covariance.data(), a.size(), a.size());

@@ -102,9 +102,21 @@ VectorXd among(const Block& behind, const FittedBlock& fitted, double wavelength
   return result;
 }
 
-/// Of the reflectance at a wavelength. Errors of a certificate count as independent of the posterior.
+/// Of the reflectance at a wavelength, from the certificate alone.
 double table_uncertainty(const ReflectanceTable& table, double wavelength) {
   return std::sqrt(std::max(variance_of_values(table, weights_at(table, wavelength)), 0.0));
+}
+
+/// dR/da of a reflectance R that makes the DHR R D, D = s·a, a certified one: −R s/D. None: 0.
+VectorXd of_certified(const BlockAt& block, const ReflectanceTable& table, const PosteriorData& data,
+                      double wavelength) {
+  const auto count = index(table.certified_theta.size());
+  if (count == 0) return VectorXd::Zero(block.modes());
+  const double theta =
+      weights_at(table, wavelength).dot(Eigen::Map<const VectorXd>(table.certified_theta.data(), count));
+  const KTable incident = functions_at({theta, 0}, std::max(data.orders.f11, data.orders.other), data.mapping);
+  const VectorXd s = block.row({}, incident, over_hemisphere(data.mapping));
+  return -block.reflectance / s.dot(block.coefficients) * s;
 }
 
 BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, double wavelength) {
@@ -117,29 +129,32 @@ BlockAt block_at(const Posterior& posterior, const Model& model, std::size_t b, 
                  Rows(behind.modes, Family::isotropic),
                  among(behind, model.blocks[b], wavelength),
                  MatrixXd::Zero(size, size),
-                 MatrixXd::Zero(size, size),
+                 {},
                  {},
                  MatrixXd(modes, 0)};
   if (feeds_f11(behind)) result.reflectance = model.reflectance.at(wavelength);
-  const auto add = [&](const std::string& name, const VectorXd& of_modes, double of_reflectance = 0) {
-    VectorXd effect = VectorXd::Constant(size, of_reflectance);
-    effect.head(modes) = of_modes;
+  // From errors of the modes to those of all parameters, and back to their covariances.
+  MatrixXd all = MatrixXd::Identity(size, modes);
+  if (uncertain) all.bottomRows(1) = of_certified(result, model.reflectance, data, wavelength).transpose();
+  const auto add = [&](const std::string& name, const VectorXd& effect) {
     result.parts.push_back({name, effect});
     result.covariance += effect * effect.transpose();
   };
-  if (uncertain) add("certificate", VectorXd::Zero(modes), table_uncertainty(model.reflectance, wavelength));
+  MatrixXd of_modes = MatrixXd::Zero(modes, modes);
+  if (uncertain) add("certificate", table_uncertainty(model.reflectance, wavelength) * VectorXd::Unit(size, modes));
   for (const auto& [k, factor, deviation] : nodes_at(data.wavelengths, wavelength)) {
     const PosteriorAt& at = data.wavelengths[k];
     const BlockPosterior& here = at.blocks[b];
-    result.of_fit.topLeftCorner(modes, modes) +=
-        factor * Eigen::Map<const MatrixXd>(posterior.covariance(k, b).data(), modes, modes);
+    of_modes += factor * Eigen::Map<const MatrixXd>(posterior.covariance(k, b).data(), modes, modes);
     const Eigen::Map<const Eigen::MatrixXf> shared(here.shared.data(), modes, index(data.errors.size()));
     for (std::size_t e = 0; e < data.errors.size(); ++e)
       if (data.errors[e].size > 0)
-        add(data.errors[e].name, std::sqrt(factor) * data.errors[e].size * shared.col(index(e)).cast<double>());
-    add("projection", std::sqrt(deviation) * (among(behind, model.blocks[b], at.wavelength) -
-                                              Eigen::Map<const VectorXd>(here.mean.data(), modes)));
+        add(data.errors[e].name, std::sqrt(factor) * data.errors[e].size * all * shared.col(index(e)).cast<double>());
+    add("projection",
+        std::sqrt(deviation) * all *
+            (among(behind, model.blocks[b], at.wavelength) - Eigen::Map<const VectorXd>(here.mean.data(), modes)));
   }
+  result.of_fit = uncertain ? MatrixXd(all * of_modes * all.transpose()) : of_modes;
   result.covariance += result.of_fit;
   require_moderate(result, "block " + behind.name + " of the posterior");
   return result;

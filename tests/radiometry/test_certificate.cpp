@@ -11,6 +11,7 @@
 #include "given/least_squares.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
@@ -101,6 +102,29 @@ TEST(Certificate, ThatMakesNoSenseIsRefused) {
   EXPECT_EQ(what({{0.5, 0.9, 0.01, radians(90)}}),
             "polar angle 90 degrees of the certificate at 500 nm: must be in [0, 90)");
   EXPECT_EQ(what({{0.5, 0.9, 0.01}, {0.5, 0.91, 0.01}}), "two values of the certificate at 500 nm");
+}
+
+// What a posterior leaves open of the scale, the declared error of it among them, the certificate knows.
+TEST(Certified, UncertaintyOfAPosteriorIsThatOfTheCertificateWhereItHolds) {
+  FitOptions options;
+  options.declared = {0.003, radians(0.5), 0};
+  const Model before =
+      fit_sample(simulate(material("ptfe-532"), std::array{0.532}, random_geometries(150, 1), 0.006, 2), {}, options)
+          .model;
+  const CertifiedReflectance sphere{0.532, 0.95, 0.002, radians(30)};
+  const Model model = certified(before, std::vector{sphere}).model;
+  const UncertainModel u = uncertain(model, 0.532);
+  const auto of = [&](double theta) {
+    return standard_uncertainty(directional_hemispherical_budget(u, {radians(theta), 0}));
+  };
+  EXPECT_NEAR(of(30), 0.002, 1e-12);
+  EXPECT_GT(of(70), 0.0021);
+  const std::vector<BudgetTerm> parts = u.fit.parts({{radians(30), 0}, {radians(45), 0}});
+  const auto scale = std::ranges::find(parts, "declared scale", &BudgetTerm::name);
+  ASSERT_NE(scale, parts.end());
+  EXPECT_LT(std::sqrt(scale->covariance(0, 0)), 1e-3 * prepare(model, 0.532).f11({{radians(30), 0}, {radians(45), 0}}));
+  const Model read = model_from_json(to_json(model), "read");
+  EXPECT_EQ(standard_uncertainty(directional_hemispherical_budget(uncertain(read, 0.532), {radians(70), 0})), of(70));
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ struct ReflectanceTable {
   std::vector<double> values{};       ///< one for each
   std::vector<double> covariance{};   ///< of the values: square, row-major; variances alone: independent; empty: exact
   std::vector<double> covariance_with_f11{};  ///< of each value (row) with each coefficient of block 11; empty with it
+  /// Polar angles, one for each value, of the directions whose directional-hemispherical reflectance the values make a
+  /// certified one; empty if they do not. Errors of a posterior that change it do not count then.
+  std::vector<double> certified_theta{};
   double at(double wavelength) const;
   std::vector<double> weights(double wavelength) const;  ///< at(wavelength) = Σ weights × values
 };

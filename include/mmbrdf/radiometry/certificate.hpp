@@ -31,7 +31,7 @@ inline constexpr double noticeable_change = 0.03;
 /// the wavelengths of the certificate; between them the factor of f11 is linear. Its validity ends where the certificate
 /// does. Errors of the certificate count as one, the same at all its wavelengths; they replace what the fit leaves
 /// uncertain of the scale of f11, so that u of the certified reflectance is that of the certificate, and are known where
-/// the covariance of f11 is. Of a model with a posterior they count besides what that leaves uncertain: u is too wide.
+/// the covariance of f11 is.
 /// Throws std::invalid_argument for an invalid model, without values, for a wavelength that is there twice or outside
 /// the fitted ones, a value, an uncertainty or an angle that makes no sense, and where the reflectance of the model is
 /// not positive.
