@@ -18,7 +18,7 @@ struct AnswersAt {
   double wavelength;
 };
 
-/// Rows for each quantity, the broadcast shape behind them: value, u, low, high, and u of the fit and of each term. NaN
+/// Rows for each quantity, the broadcast shape behind them: value, u, low, high, and u of each part. NaN
 /// for what is not known.
 py::array_t<double> rows(const Question& question, const Answers& answers, std::size_t quantities, std::size_t per_one,
                          int threads) {
@@ -53,15 +53,15 @@ py::array_t<double> rows(const Question& question, const Answers& answers, std::
 
 py::dict analyze(const Question& question, const AnswerOptions& options, int threads) {
   const auto all = quantities(options.light.has_value());
-  const std::size_t per_one = 5 + options.terms.size();
   const Answers answers = without_gil([&] { return Answers(question.model(), options); });
+  const std::vector<std::string> causes = answers.names_of_parts();
+  const std::size_t per_one = 4 + causes.size();
   const py::object values = rows(question, answers, all.size(), per_one, threads);
   py::dict result;
   for (std::size_t q = 0; q < all.size(); ++q) {
     const auto row = [&](std::size_t which) -> py::object { return values[py::int_(per_one * q + which)]; };
     py::dict parts;
-    parts["fit"] = row(4);
-    for (std::size_t t = 0; t < options.terms.size(); ++t) parts[options.terms[t].name.c_str()] = row(5 + t);
+    for (std::size_t c = 0; c < causes.size(); ++c) parts[causes[c].c_str()] = row(4 + c);
     result[py::str(all[q].name)] = record("Analyzed", row(0), row(1), parts, row(2), row(3));
   }
   return result;

@@ -64,14 +64,17 @@ constexpr const char* terms_doc =
     "of\n"
     "Model.evaluate_uncertainty(): each is one error for all directions. by_term=True: {'fit': u, 'scale': u, ...}, "
     "for\n"
-    "budget().";
+    "budget(); of a fit of the sample 'posterior', 'declared scale', ..., 'projection' instead of 'fit'.";
 
 /// A model at the wavelengths that are asked for, for several threads.
 class UncertainModels {
  public:
   UncertainModels(const ModelObject& o, const Terms& terms)
       : terms_(terms_from(terms)),
-        prepared_([&o, this](double wavelength) { return uncertain(o.model(), wavelength, terms_); }) {}
+        causes_(names_of_parts(o.model())),
+        prepared_([&o, this](double wavelength) { return uncertain(o.model(), wavelength, terms_); }) {
+    for (const TypeBTerm& term : terms_) causes_.push_back(term.name);
+  }
   UncertainModels(const UncertainModels&) = delete;
 
   const UncertainModel& operator()(double wavelength) {
@@ -85,14 +88,15 @@ class UncertainModels {
     if (!by_term)
       return compute([](const std::vector<Contribution>& budget) { return standard_uncertainty(budget); }, true);
     py::dict result;
-    for (std::size_t c = 0; c <= terms_.size(); ++c)
-      result[py::str(c == 0 ? "fit" : terms_[c - 1].name)] =
+    for (std::size_t c = 0; c < causes_.size(); ++c)
+      result[py::str(causes_[c])] =
           compute([c](const std::vector<Contribution>& budget) { return budget[c].uncertainty; }, c == 0);
     return result;
   }
 
  private:
   std::vector<TypeBTerm> terms_;
+  std::vector<std::string> causes_;
   AtWavelengths<std::function<UncertainModel(double)>> prepared_;
   std::mutex mutex_;
 };

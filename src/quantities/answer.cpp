@@ -102,6 +102,13 @@ Answers::Answers(const Model& model, AnswerOptions options) {
   asked_ = std::move(asked);
 }
 
+std::vector<std::string> Answers::names_of_parts() const {
+  std::vector<std::string> names{"fit"};
+  if (unknown_uncertainty().empty()) names = mmbrdf::names_of_parts(model());
+  for (const TypeBTerm& term : options().terms) names.push_back(term.name);
+  return names;
+}
+
 const std::string& Answers::unknown_uncertainty() const { return asked_->unknown_uncertainty; }
 const AnswerOptions& Answers::options() const { return asked_->options; }
 const Model& Answers::model() const { return asked_->model; }

@@ -274,6 +274,15 @@ MuellerGradient PreparedUncertainty::bihemispherical_gradient() const {
   return result;
 }
 
+std::vector<std::string> names_of_parts(const Model& model) {
+  if (!knows_uncertainty(model)) return {"fit"};
+  const std::vector<double> known = known_wavelengths(model);
+  std::vector<std::string> names;
+  for (const BudgetTerm& part : prepare_uncertainty(model, known.empty() ? 1 : known.front()).parts(Geometry{}))
+    names.push_back(part.name);
+  return names;
+}
+
 bool knows_uncertainty(const Model& model) {
   return model.posterior ||
          std::ranges::none_of(model.blocks, [](const FittedBlock& fitted) { return fitted.covariance.empty(); });

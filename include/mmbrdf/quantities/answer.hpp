@@ -70,6 +70,9 @@ class Answers {
   /// Whether its uncertainty is from draws, with an interval.
   bool has_interval(const Quantity& quantity) const { return options().draws > 0 && !quantity.first_order; }
 
+  /// Of Answered::parts but for the last: those of names_of_parts(model), then the terms.
+  std::vector<std::string> names_of_parts() const;
+
   /// Why there are no uncertainties; empty if there are.
   const std::string& unknown_uncertainty() const;
 

@@ -99,6 +99,10 @@ class PreparedUncertainty {
 /// at this wavelength.
 PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength);
 
+/// Names of the parts of its uncertainties, the same at all wavelengths; "fit" where they are not known. Throws
+/// std::invalid_argument as prepare_uncertainty() does.
+std::vector<std::string> names_of_parts(const Model& model);
+
 /// Whether the covariance of every block is known: without one of them there is no uncertainty of any prediction.
 bool knows_uncertainty(const Model& model);
 
