@@ -13,7 +13,8 @@ namespace {
 Json freedom_json(double freedom) { return std::isinf(freedom) ? Json() : Json(freedom); }
 
 std::string freedom_text(double freedom) {
-  return std::isinf(freedom) ? "infinite" : format("%.0f", std::floor(freedom));
+  if (std::isinf(freedom)) return "infinite";
+  return freedom > 1e6 ? ">1e6" : format("%.0f", std::floor(freedom));  // k is that of a normal error there
 }
 
 /// To its own two digits.
