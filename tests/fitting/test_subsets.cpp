@@ -113,7 +113,7 @@ TEST(Subsets, RefuseWhatHasNoAnswer) {
                "a curve of 0 geometries, the reference has 1");
   EXPECT_PRED2(has, message_of([&] { relative_rms({}, good); }), "a curve of 0 geometries");
   Model silent = material("ptfe-532");
-  silent.blocks[3].covariance.clear();
+  silent.posterior.reset();
   EXPECT_PRED2(has, message_of([&] { polarized_uncertainty(silent, 0.532, of_the_paper()); }), "is not known");
 }
 

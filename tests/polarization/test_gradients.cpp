@@ -303,7 +303,7 @@ TEST(SpeckleBias, OfThePublishedDataIsNearWhatMirrorPairsPredict) {
   Mueller sigma;
   for (std::size_t e = 1; e < 16; ++e) sigma.elements[e] = std::sqrt(variance.elements[e] / pairs);
   EXPECT_NEAR(squared_depolarization_bias(sigma), 3.6e-4, 0.05e-4);
-  const PreparedModel model = prepare(material("ptfe-532"), 0.532);
+  const PreparedModel model = prepare(fit(samples).model, 0.532);
   double observed = 0;
   for (const Sample& s : samples)
     observed += std::pow(depolarization(s.normalized), 2) - std::pow(depolarization(model.evaluate(s.geometry)), 2);

@@ -341,6 +341,8 @@ def test_the_polar_plot_has_forward_scattering_on_the_right_and_the_normal_up(pt
 
 @pytest.mark.parametrize("power", [0, 1])
 def test_the_spectrum_shows_every_coefficient_of_a_power_with_its_uncertainty(ptfe, power):
+    data = mmbrdf.simulate(ptfe, [351, 532], mmbrdf.random_geometries(200, seed=1), speckle=0.006, seed=1)
+    ptfe = mmbrdf.fit(data, uncertainty="noise").model
     figure, axes = mmbrdf.plot.coefficient_spectrum(ptfe, power=power, coverage=2)
     shown = np.concatenate(
         [np.asarray(each.get_offsets()) for each in axes.collections if isinstance(each, PathCollection)]
