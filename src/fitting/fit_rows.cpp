@@ -50,6 +50,17 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
     }
 }
 
+/// A row of functions that all vanish but for rounding, such as that of f14 in the plane of incidence, tells nothing.
+void clear_rounding(RowColumns& rows, std::size_t modes, std::size_t count) {
+  constexpr double rounding = 1e-12;  // functions are of the order of 1
+  std::array<double, rows_at_once> largest{};
+  for (std::size_t j = 0; j < modes; ++j)
+    for (std::size_t r = 0; r < count; ++r) largest[r] = std::max(largest[r], std::abs(rows.column(j)[r]));
+  for (std::size_t r = 0; r < count; ++r)
+    if (largest[r] < rounding)
+      for (std::size_t j = 0; j < modes; ++j) rows.column(j)[r] = 0;
+}
+
 }  // namespace
 
 /// Elements whose rows are the same at the same geometry.
@@ -202,6 +213,7 @@ struct FitAccumulator::Folding::Some {
     const std::size_t modes = share.design->modes;
     RowColumns result(modes + share.columns.size(), count);
     Rows::add(share.design->terms, tables.of(count), result.column(0), result.stride());
+    clear_rounding(result, modes, count);
     for (std::size_t c = 0; c < share.columns.size(); ++c) {
       const auto [element, group] = share.columns[c];
       for (std::size_t r = 0; r < count; ++r)

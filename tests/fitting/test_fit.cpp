@@ -18,6 +18,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/projection.hpp"
 #include "mmbrdf/fitting/weights.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
@@ -440,6 +441,21 @@ TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesTheModes) {
   const FitResult result = fit(samples, {}, options);
   EXPECT_LT(result.solutions[0].rank, 40);
   EXPECT_LT(rms(result.residuals), 1e-12);
+}
+
+// Their rows are rounding there, and what is divided by it would be 1e12 elsewhere.
+TEST(Fit, OfOnePlaneSaysNothingOfElementsThatVanishInIt) {
+  std::vector<Geometry> plane;
+  for (int i = 0; i <= 75; i += 5)
+    for (int r = -75; r <= 75; r += 5) plane.push_back({direction_from_degrees(i, 30), direction_from_degrees(r, 30)});
+  FitOptions options;
+  options.minimum_norm = true;
+  const FitResult result = fit(simulate(material("ptfe-532"), std::array{0.532}, plane, 0.01, 1), {}, options);
+  const auto of_14 =
+      std::ranges::find_if(result.model.blocks, [](const FittedBlock& fitted) { return fitted.block.name == "14,41"; });
+  EXPECT_EQ(of_14->rank, 0);
+  const Mueller across = prepare(result.model, 0.532).evaluate({{radians(45), 0}, {radians(30), radians(90)}});
+  for (const double element : across.elements) EXPECT_LT(std::abs(element), 1);
 }
 
 // Samples at any azimuth are turned to phi_i = 0, where these models are evaluated.
