@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a measurement will tell.
-#include "mmbrdf/mixed/plan.hpp"
+#include "mmbrdf/fitting/plan_like.hpp"
 
 #include <pybind11/stl.h>
 
@@ -17,28 +17,29 @@ namespace {
 using Texts = std::vector<std::string>;
 using Four = std::array<Given, 4>;
 
-std::vector<Geometry> geometries_of(const Four& angles) {
-  const Broadcast broadcast(direction_operands(angles[0], angles[1], angles[2], angles[3]));
+/// Four arrays that broadcast.
+std::vector<Geometry> geometries_of(const std::string& what, const py::handle& angles) {
+  Four four;
+  try {
+    four = angles.cast<Four>();
+  } catch (const py::cast_error&) {
+    throw std::invalid_argument(what + ": expected (theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg)");
+  }
+  const Broadcast broadcast(direction_operands(four[0], four[1], four[2], four[3]));
   std::vector<Geometry> result(broadcast.size());
   gather(broadcast, 0, 0, result.size(), result.data());
   return result;
 }
 
-VarianceComponents components(const ModelObject* like, const std::optional<double>& nm, std::optional<double> noise) {
-  if (noise && !(*noise >= 1e-6 && *noise <= 10))
-    throw std::invalid_argument("noise: must be in 1e-6...10, relative for f11");
-  if (!like) return default_components(noise.value_or(0.007));
-  const std::optional<Posterior>& posterior = like->model().posterior;
-  if (!posterior)
-    throw std::invalid_argument("like: says nothing of the sample's variances; fit it with uncertainty='sample'");
-  const std::vector<double>& fitted = like->model().validity.wavelengths;
-  const double wavelength = nm ? micrometres(*nm) : posterior->data().wavelengths.front().wavelength;
-  if (outside(like->model().validity, wavelength) & (outside_wavelength | interpolated))
-    throw std::invalid_argument("wavelength_nm: like was fitted at " + nanometre_list(fitted));
-  VarianceComponents result = components_of(*posterior, wavelength);
-  for (auto& block : result.blocks)
-    if (noise) block.noise_variance = *noise * *noise;
-  return result;
+VarianceComponents components(const ModelObject* like, const std::optional<double>& nm,
+                              const std::optional<double>& noise) {
+  const std::optional<double> wavelength = nm ? std::optional(micrometres(*nm)) : std::nullopt;
+  if (!like) return components_like(nullptr, wavelength, noise);
+  try {
+    return components_like(&like->model(), wavelength, noise);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("like: ") + error.what());
+  }
 }
 
 std::vector<NamedTarget> targets_of(const Texts& texts) {
@@ -59,7 +60,7 @@ py::object planned(const py::dict& given, const ModelObject* like, const std::op
   if (given.empty()) throw std::invalid_argument("designs: none given");
   std::vector<NamedDesign> designs;
   for (const auto& [name, angles] : given)
-    for (NamedDesign& one : with_turns({name.cast<std::string>(), geometries_of(angles.cast<Four>())}))
+    for (NamedDesign& one : with_turns({name.cast<std::string>(), geometries_of("designs", angles)}))
       designs.push_back(std::move(one));
   std::vector<NamedTarget> targets = block_targets();
   for (NamedTarget& one : targets_of(texts)) targets.push_back(std::move(one));
@@ -75,11 +76,11 @@ py::object planned(const py::dict& given, const ModelObject* like, const std::op
                 tuple_of(targets, [](const NamedTarget& one) { return one.name; }), u);
 }
 
-std::vector<std::size_t> picks(std::size_t count, const Four& candidates, const std::optional<Four>& design,
+std::vector<std::size_t> picks(std::size_t count, const py::object& candidates, const py::object& design,
                                const ModelObject* like, const std::optional<double>& nm,
                                const std::optional<double>& noise, const Texts& texts) {
-  const std::vector<Geometry> choice = geometries_of(candidates);
-  const std::vector<Geometry> start = design ? geometries_of(*design) : std::vector<Geometry>{};
+  const std::vector<Geometry> choice = geometries_of("candidates", candidates);
+  const std::vector<Geometry> start = design.is_none() ? std::vector<Geometry>{} : geometries_of("design", design);
   const std::vector<PlanTarget> targets = without_names(texts.empty() ? block_targets() : targets_of(texts));
   const VarianceComponents known = components(like, nm, noise);
   return without_gil([&] { return chosen(known, start, targets, choice, count); });
@@ -111,7 +112,7 @@ void bind_plan(py::module_& m) {
         py::arg("wavelength_nm") = py::none(), py::arg("noise") = py::none(), py::arg("targets") = Texts{}, plan_doc);
   m.def(
       "choose",
-      [](std::size_t count, const Four& candidates, const std::optional<Four>& design, const ModelObject* like,
+      [](std::size_t count, const py::object& candidates, const py::object& design, const ModelObject* like,
          const std::optional<double>& nm, const std::optional<double>& noise, const Texts& targets) {
         const std::vector<std::size_t> list = picks(count, candidates, design, like, nm, noise, targets);
         return py::array_t<std::int64_t>(py::cast(list));

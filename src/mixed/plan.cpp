@@ -287,6 +287,12 @@ std::vector<std::size_t> chosen(const VarianceComponents& components, std::span<
                                 std::size_t count) {
   if (candidates.empty()) throw std::invalid_argument("no candidates");
   if (targets.empty()) throw std::invalid_argument("no targets");
+  if (candidates.size() > most_candidates)
+    throw std::invalid_argument(std::to_string(candidates.size()) + " candidates, more than " +
+                                std::to_string(most_candidates));
+  if (count > most_picks)
+    throw std::invalid_argument(std::to_string(count) + " of the candidates are asked for, more than " +
+                                std::to_string(most_picks));
   require_measurable(candidates);
   auto blocks = planned(components, design, targets);
   for (const PlanTarget& target : targets) {

@@ -63,7 +63,7 @@ def test_a_fit_lends_its_variances_and_its_noise():
     many = {"many": mmbrdf.random_geometries(200, seed=4)}
     noisy, quiet = (mmbrdf.plan(many, like=like, noise=noise).u for noise in (0.02, 0.002))
     assert np.all(quiet < noisy)
-    with pytest.raises(ValueError, match="like was fitted at 532 nm"):
+    with pytest.raises(ValueError, match="like: it was fitted at 532 nm, not at 600 nm"):
         mmbrdf.plan({"scan": scan()}, like=like, wavelength_nm=600)
 
 
@@ -71,7 +71,10 @@ def test_refuses_what_no_plan_is_made_of():
     for arguments, words in (
         ({"designs": {}}, "designs: none given"),
         ({"designs": {"a": scan()}, "targets": ["bhr"]}, "target 'bhr': expected dhr:THETA"),
-        ({"designs": {"a": scan()}, "noise": 0}, "noise: must be in 1e-6...10"),
+        ({"designs": {"a": scan()}, "noise": 0}, "noise 0: must be in 1e-06...10"),
+        ({"designs": {"a": scan()}, "wavelength_nm": 532}, "a wavelength is that of a fit"),
+        ({"designs": {"a": (1, 2)}}, "designs: expected .theta_i_deg, phi_i_deg"),
+        ({"designs": {"a": 3}}, "designs: expected .theta_i_deg, phi_i_deg"),
         ({"designs": {"a": (0, 0, 90, 0)}}, "90"),
     ):
         with pytest.raises(ValueError, match=words):
@@ -82,3 +85,13 @@ def test_has_a_picture():
     figure, axes = mmbrdf.plot.plan(mmbrdf.plan({"scan": scan()}, targets=["f:0:45"]))
     assert len(axes.lines) == 3 and [label.get_text() for label in axes.get_yticklabels()][-1] == "f_0_45"
     assert axes.get_xscale() == "log" and figure.axes == [axes]
+
+
+def test_chooses_among_as_many_as_memory_holds():
+    few, many = (mmbrdf.random_geometries(count, seed=1) for count in (10, 20001))
+    with pytest.raises(ValueError, match="20001 candidates, more than 20000"):
+        mmbrdf.choose(1, many)
+    with pytest.raises(ValueError, match="1001 of the candidates are asked for, more than 1000"):
+        mmbrdf.choose(1001, few)
+    with pytest.raises(ValueError, match="candidates: expected"):
+        mmbrdf.choose(1, few[:3])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf plan
 
-#include "mmbrdf/mixed/plan.hpp"
+#include "mmbrdf/fitting/plan_like.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,23 +55,17 @@ std::vector<Geometry> read_geometries(const std::string& path) {
 }
 
 VarianceComponents components(const Options& options) {
-  if (options.noise && !(*options.noise >= 1e-6 && *options.noise <= 10))
+  if (options.wavelength_nm && options.like.empty()) throw WrongUsage("--wavelength", "goes with --like");
+  if (options.noise && !(*options.noise >= least_noise && *options.noise <= largest_noise))
     throw WrongUsage("--noise", "must be in 1e-6...10, relative for f11");
-  if (options.like.empty()) return default_components(options.noise.value_or(0.007));
+  if (options.like.empty()) return components_like(nullptr, {}, options.noise);
   const Model model = open_model(options.like);
-  if (!model.posterior)
-    throw std::runtime_error(options.like +
-                             ": says nothing of the sample's variances; fit it with --uncertainty sample");
-  const double wavelength =
-      options.wavelength_nm ? micrometres(*options.wavelength_nm) : model.posterior->data().wavelengths[0].wavelength;
-  if (std::ranges::none_of(model.posterior->data().wavelengths,
-                           [&](const PosteriorAt& at) { return same_wavelength(at.wavelength, wavelength); }))
-    throw std::runtime_error(options.like + ": was not fitted at " + format("%g", *options.wavelength_nm) +
-                             " nm, but at " + nanometre_list(model.validity.wavelengths));
-  VarianceComponents result = components_of(*model.posterior, wavelength);
-  for (auto& block : result.blocks)
-    if (options.noise) block.noise_variance = *options.noise * *options.noise;
-  return result;
+  try {
+    const auto wavelength = options.wavelength_nm ? std::optional(micrometres(*options.wavelength_nm)) : std::nullopt;
+    return components_like(&model, wavelength, options.noise);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.like + ": " + error.what());
+  }
 }
 
 std::vector<NamedDesign> designs(const Options& options) {
@@ -163,9 +157,9 @@ constexpr const char* footer =
 
 Run plan_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
-  add_texts(app, "GEOMETRIES.csv", o->designs, " ", "Designs: directions to be measured").required();
+  add_files(app, "GEOMETRIES.csv", o->designs, "Designs: directions to be measured").required();
   add_text(app, "--like", o->like, "MODEL", "A fit whose variances the sample will have [sintered PTFE]");
-  add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM", "Of that fit, in nm [its first]");
+  add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM", "Of the fit of --like, in nm [its first]");
   add_option(app, "--noise", o->noise, number, "S", "Of a reading, at normal directions [of the fit; 0.007]");
   add_texts(app, "--target", o->targets, "TARGET",
             "What is to be known: dhr:THETA[,THETA...] or\nf:THETA_I:THETA_R[:PHI_R], in degrees");

@@ -22,6 +22,11 @@ Option add_texts(CLI::App& app, const std::string& names, std::vector<std::strin
   return Option(app.add_option(names, target, description)->option_text(shown)->allow_extra_args(false));
 }
 
+Option add_files(CLI::App& app, const std::string& name, std::vector<std::string>& target,
+                 const std::string& description) {
+  return Option(app.add_option(name, target, description)->option_text(" "));
+}
+
 Option add_used(CLI::App& app, const std::string& names, const std::function<void(const std::string&)>& use,
                 const std::string& shown, const std::string& description) {
   return Option(app.add_option_function<std::string>(names, use, description)->option_text(shown));

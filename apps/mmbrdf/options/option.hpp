@@ -43,6 +43,10 @@ class Option {
 Option add_text(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,
                 const std::string& description);
 
+/// Files that are arguments, one or more.
+Option add_files(CLI::App& app, const std::string& name, std::vector<std::string>& target,
+                 const std::string& description);
+
 /// May be given again: each value is added to the others.
 Option add_texts(CLI::App& app, const std::string& names, std::vector<std::string>& target, const std::string& shown,
                  const std::string& description);

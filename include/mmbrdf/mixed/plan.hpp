@@ -71,9 +71,13 @@ std::vector<NamedDesign> with_turns(const NamedDesign& design);
 std::vector<double> expected_uncertainties(const VarianceComponents& components, std::span<const Geometry> design,
                                            std::span<const PlanTarget> targets);
 
+/// A candidate takes some kilobytes.
+inline constexpr std::size_t most_candidates = 20000, most_picks = 1000;
+
 /// The candidates to measure next, one after the other, each that which lowers the variances of the targets most, all
 /// targets together in parts of what they are at the start; a candidate may come again. Throws as
-/// expected_uncertainties() does, and std::invalid_argument without candidates or targets.
+/// expected_uncertainties() does, and std::invalid_argument without candidates or targets, or with more
+/// candidates or picks than these.
 std::vector<std::size_t> chosen(const VarianceComponents& components, std::span<const Geometry> design,
                                 std::span<const PlanTarget> targets, std::span<const Geometry> candidates,
                                 std::size_t count);
