@@ -111,8 +111,8 @@ py::object compared(const Model& model, const std::vector<Sample>& samples, cons
   }
   py::dict normalized;
   for (std::size_t e = 1; e < 16; ++e) normalized[py::str(element_name(e))] = difference(found.normalized[e]);
-  return record("Comparison", found.samples, difference(found.f11), difference(found.f11_relative), normalized,
-                polarization_rms(found), difference(largest(found)), by_element);
+  return record("Comparison", found.samples, found.dark, difference(found.f11), difference(found.f11_relative),
+                normalized, polarization_rms(found), difference(largest(found)), by_element);
 }
 
 using Other = std::variant<DatasetPointer, ModelPointer>;

@@ -81,7 +81,7 @@ py::object split_object(const SubsetSplit& split, const std::vector<double>& the
   const SubsetStatistics& s = split.statistics;
   return record("SubsetSplit", split.seed, tuple_of(split.curves, polarized), polarized(s.mean), polarized(s.deviation),
                 polarized(split.uncertainty), polarized(split.reference), s.mean_deviation, s.root_mean_variance,
-                s.mean_distance, s.largest_distance, theta_r_deg[s.largest_at]);
+                s.mean_distance, s.largest_distance, theta_r_deg[s.largest_at], s.left_out);
 }
 
 /// Those at the wavelength, or all if they have one.

@@ -88,6 +88,7 @@ class SubsetSplit(_NamedTuple):
     reference           the fit to all samples, or the model that was given; what follows is relative to it
     mean_deviation      mean of deviation; root_mean_variance: its root mean square
     mean_distance       mean of |mean - 1|; largest_distance: the largest, at largest_at_theta_r_deg
+    left_out            angles at which the reference is not positive: what is relative to it leaves them out
     """
 
     seed: int | None
@@ -101,6 +102,7 @@ class SubsetSplit(_NamedTuple):
     mean_distance: float
     largest_distance: float
     largest_at_theta_r_deg: float
+    left_out: int
 
 
 class Subsets(_NamedTuple):
@@ -284,6 +286,7 @@ class Significance(_NamedTuple):
 class Comparison(_NamedTuple):
     """Samples, or a second model, minus a model.
 
+    dark               of the samples: f11 of the model is not positive, and f11 alone is compared
     f11, f11_relative  in sr^-1, and divided by f11 of the model
     normalized         of the 15 f_ij / f11, by element: comparison.normalized['22'].rms
     polarization_rms   root mean square over those
@@ -292,6 +295,7 @@ class Comparison(_NamedTuple):
     """
 
     samples: int
+    dark: int
     f11: Difference
     f11_relative: Difference
     normalized: dict[str, Difference]

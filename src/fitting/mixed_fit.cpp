@@ -16,6 +16,7 @@
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/threads.hpp"
+#include "numerics/typical_size.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -143,18 +144,31 @@ std::vector<NoiseEstimate> noise_for(std::span<const Sample> samples, const Basi
   return fit(samples, basis, options, weights).noise;
 }
 
+/// Noise is relative to f11 only where f11 stands above it.
+bool stands_above_noise(const Series& series, DiscMapping mapping) {
+  ReadingLaw law = series.law;
+  law.relative = false;
+  const VectorXd f11 =
+      first_f11(first_f11_fit(series.samples, mapping, law, 1), mapping, geometries_of(series.samples));
+  std::vector<double> left;
+  for (std::size_t s = 0; s < series.samples.size(); ++s) left.push_back(series.samples[s].f11 - f11(index(s)));
+  return f11.minCoeff() > typical_size(std::move(left));
+}
+
 /// The samples by wavelength, with the laws that the weights stand for.
 std::map<double, Series> series_of(std::span<const Sample> samples, Weights weights,
-                                   const std::vector<NoiseEstimate>& noise) {
+                                   const std::vector<NoiseEstimate>& noise, DiscMapping mapping) {
   std::map<double, Series> result;
   const std::vector<double> nodes = wavelengths(samples);
   for (const Sample& sample : samples)
     result[nodes[wavelength_index(nodes, sample.wavelength)]].samples.push_back(sample);
   for (auto& [wavelength, one] : result) {
     if (weights == Weights::none) one.law = {0, 0, false};
-    if (weights != Weights::estimated) continue;
-    const NoiseLaw& law = noise[wavelength_index(nodes, wavelength)].law;
-    one.law = {law.incident_exponent, law.reflected_exponent, true};
+    if (weights == Weights::estimated) {
+      const NoiseLaw& law = noise[wavelength_index(nodes, wavelength)].law;
+      one.law = {law.incident_exponent, law.reflected_exponent, true};
+    }
+    one.law.relative = one.law.relative && stands_above_noise(one, mapping);
   }
   return result;
 }
@@ -293,7 +307,7 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
                                     Weights weights) {
   options.minimum_norm = true;
   const std::vector<NoiseEstimate> noise = noise_for(samples, basis, options, weights);
-  std::map<double, Series> series = series_of(samples, weights, noise);
+  std::map<double, Series> series = series_of(samples, weights, noise, basis.mapping);
   tried([&] { divide_other_units(series, options); });
   std::map<double, std::vector<Mueller>> weights_of_series;
   FitResult result;

@@ -16,7 +16,6 @@ namespace mmbrdf {
 namespace {
 
 constexpr std::array every_curve{&PolarizedBrdf::ss, &PolarizedBrdf::sp, &PolarizedBrdf::ps, &PolarizedBrdf::pp};
-constexpr std::array<const char*, 4> curve_names{"f_ss", "f_sp", "f_ps", "f_pp"};
 
 void require_same_rank(const Model& part, const Model& whole) {
   for (std::size_t b = 0; b < whole.blocks.size(); ++b)
@@ -26,13 +25,16 @@ void require_same_rank(const Model& part, const Model& whole) {
                                   std::to_string(whole.blocks[b].rank));
 }
 
-void require_positive(const PolarizedCurve& reference) {
+bool is_positive(const PolarizedBrdf& f) {
+  return std::ranges::all_of(every_curve, [&](const auto part) { return f.*part > 0 && std::isfinite(f.*part); });
+}
+
+/// At how many geometries there is something to be relative to.
+double count_positive(const PolarizedCurve& reference) {
   if (reference.empty()) throw std::invalid_argument("no geometries");
-  for (std::size_t g = 0; g < reference.size(); ++g)
-    for (std::size_t c = 0; c < every_curve.size(); ++c)
-      if (const double value = reference[g].*every_curve[c]; !(value > 0) || !std::isfinite(value))
-        throw std::invalid_argument(std::string(curve_names[c]) + " of the reference is " + shortest(value) +
-                                    " /sr at geometry " + std::to_string(g + 1) + ", must be positive");
+  const auto count = std::ranges::count_if(reference, is_positive);
+  if (count == 0) throw std::invalid_argument("f_ss, f_sp, f_ps and f_pp of the reference are positive at no geometry");
+  return static_cast<double>(count);
 }
 
 void require_same_length(const PolarizedCurve& curve, const PolarizedCurve& reference) {
@@ -106,10 +108,11 @@ PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std:
 
 SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const PolarizedCurve& reference) {
   if (curves.size() < 2) throw std::invalid_argument("fewer than 2 curves have no spread");
-  require_positive(reference);
+  const double positive = count_positive(reference);
   for (const PolarizedCurve& curve : curves) require_same_length(curve, reference);
-  const auto k = static_cast<double>(curves.size()), count = 4 * static_cast<double>(reference.size());
+  const auto k = static_cast<double>(curves.size()), count = 4 * positive;
   SubsetStatistics result;
+  result.left_out = reference.size() - static_cast<std::size_t>(positive);
   for (std::size_t g = 0; g < reference.size(); ++g) {
     PolarizedBrdf mean{}, deviation{};
     for (const auto part : every_curve) {
@@ -117,6 +120,7 @@ SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const
       double squares = 0;
       for (const PolarizedCurve& curve : curves) squares += std::pow(curve[g].*part - mean.*part, 2);
       deviation.*part = std::sqrt(squares / (k - 1));
+      if (!is_positive(reference[g])) continue;
       const double relative = deviation.*part / reference[g].*part;
       const double distance = std::abs(mean.*part / reference[g].*part - 1);
       result.mean_deviation += relative / count;
@@ -133,12 +137,13 @@ SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const
 }
 
 double relative_rms(const PolarizedCurve& uncertainty, const PolarizedCurve& reference) {
-  require_positive(reference);
+  const double positive = count_positive(reference);
   require_same_length(uncertainty, reference);
   double squares = 0;
   for (std::size_t g = 0; g < reference.size(); ++g)
-    for (const auto part : every_curve) squares += std::pow(uncertainty[g].*part / reference[g].*part, 2);
-  return std::sqrt(squares / (4 * static_cast<double>(reference.size())));
+    if (is_positive(reference[g]))
+      for (const auto part : every_curve) squares += std::pow(uncertainty[g].*part / reference[g].*part, 2);
+  return std::sqrt(squares / (4 * positive));
 }
 
 std::vector<SubsetSplit> split_samples(std::span<const Sample> samples, const Division& division,

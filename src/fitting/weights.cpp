@@ -9,35 +9,42 @@
 
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "numerics/typical_size.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-/// Of one sample, whose f11 is relative to that of the model.
-Mueller weights_of(const Sample& sample, const NoiseLaw& law, const PreparedModel& prepared, double reflectance) {
-  const double f11 = prepared.f11(sample.geometry) / reflectance;
-  if (!(f11 > 0)) throw std::invalid_argument("f11 of the unweighted fit is " + shortest(f11));
-  Mueller weights;
-  weights.elements.fill(weight(law, sample.geometry));
-  weights(0, 0) /= f11 * f11;
-  return weights;
+/// f11 over the reflectance of samples as a model has it, but no less than what the model leaves of the samples: noise
+/// that is relative to f11 does not vanish with it.
+std::vector<double> f11_above_noise(std::span<const Sample> samples, const Model& model) {
+  const PreparedModel first = prepare(model, 1);
+  AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
+  std::vector<double> result, left;
+  for (const Sample& sample : samples) {
+    const double reflectance = model.reflectance.at(sample.wavelength);
+    result.push_back(prepared(sample.wavelength).f11(sample.geometry) / reflectance);
+    left.push_back(sample.f11 / reflectance - result.back());
+  }
+  const double noise = typical_size(left);
+  for (double& f11 : result) f11 = std::max(f11, noise);
+  return result;
 }
 
 /// `law_at` gives the law at a wavelength.
 std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& model, const auto& law_at) {
-  std::vector<Mueller> weights;
-  const PreparedModel first = prepare(model, 1);
-  AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
-  for (const auto& sample : samples) {
-    const double wavelength = sample.wavelength;
-    try {
-      weights.push_back(weights_of(sample, law_at(wavelength), prepared(wavelength), model.reflectance.at(wavelength)));
+  std::vector<Mueller> result;
+  const std::vector<double> f11 = f11_above_noise(samples, model);
+  for (std::size_t s = 0; s < samples.size(); ++s) try {
+      if (!(f11[s] > 0)) throw std::invalid_argument("f11 of the unweighted fit is " + shortest(f11[s]));
+      Mueller weights;
+      weights.elements.fill(weight(law_at(samples[s].wavelength), samples[s].geometry));
+      weights(0, 0) /= f11[s] * f11[s];
+      result.push_back(weights);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
+      throw std::invalid_argument("sample " + std::to_string(s + 1) + ": " + error.what());
     }
-  }
-  return weights;
+  return result;
 }
 
 Mueller data_weights_of(const Sample& sample, double reflectance) {

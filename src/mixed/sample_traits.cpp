@@ -47,11 +47,12 @@ SampleTraits traits_of(const MixedColumns& columns, const BlockPosterior& p) {
 
 std::string two_digits(double u) { return to_place_of(u, u); }
 
-std::string of_noise(const std::vector<SampleTraits>& blocks) {
+std::string of_noise(const std::vector<SampleTraits>& blocks, bool relative) {
   double others = 0;
   for (const SampleTraits& block : blocks)
     if (block.block != "11") others = std::max(others, block.noise);
-  return "noise " + two_digits(blocks.front().noise) + " of f11, relative, " + two_digits(others) +
+  return "noise " + two_digits(blocks.front().noise) +
+         (relative ? " of f11, relative, " : " of f11 / reflectance, the same everywhere, ") + two_digits(others) +
          " of the other elements, at normal directions";
 }
 
@@ -124,7 +125,7 @@ std::vector<std::string> described_sample(const Posterior& posterior) {
   for (std::size_t k = 0; k < posterior.data().wavelengths.size(); ++k) {
     const std::vector<SampleTraits> blocks = sample_traits(posterior, k);
     const std::string where = shortest(in_nanometres(posterior.data().wavelengths[k].wavelength)) + " nm: ";
-    lines.push_back(where + of_noise(blocks));
+    lines.push_back(where + of_noise(blocks, posterior.data().wavelengths[k].law.relative));
     if (const std::string text = of_anisotropy(blocks); !text.empty()) lines.push_back(where + text);
     if (blocks.front().nonreciprocal > noticeable)
       lines.push_back(where + "source and receiver are not interchangeable: a part of f11 of " +

@@ -356,7 +356,10 @@ void add(Json& report, const std::string& name, Field field) {
 
 void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
   add(report, "data", data_field(model, data));
-  report["residuals"] = residuals_json(compare(model, data.samples));
+  const Comparison compared = compare(model, data.samples);
+  Field differences{residuals_json(compared)};
+  if (compared.dark > 0) differences.warnings.push_back(dark_line(compared));
+  add(report, "residuals", std::move(differences));
   const FitResult unweighted = refitted(model, data.samples, Weights::none);
   const bool weighs = std::ranges::all_of(data.samples, knows_all_uncertainties);
   add(report, "chi_squared", chi_squared(weighs ? refitted(model, data.samples, Weights::data) : unweighted));

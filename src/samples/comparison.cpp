@@ -32,14 +32,6 @@ void divide(Difference& total, long samples, const std::string& name) {
     throw std::invalid_argument("the differences of " + name + " are too large to be squared");
 }
 
-void require_positive(double f11, const Sample& sample) {
-  if (f11 > 0) return;
-  throw std::invalid_argument("f11 of the model is " + shortest(f11) +
-                              " /sr at theta_i = " + shortest(in_degrees(sample.geometry.incident.theta)) +
-                              ", theta_r = " + shortest(in_degrees(sample.geometry.reflected.theta)) +
-                              " degrees, must be positive");
-}
-
 }  // namespace
 
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples) {
@@ -67,20 +59,31 @@ Comparison compare(const Model& model, std::span<const Sample> samples) {
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Mueller& d = differences[s];
     const double f11 = prepared(samples[s].wavelength).f11(samples[s].geometry);
-    require_positive(f11, samples[s]);
     add(result.f11, d(0, 0), samples[s]);
+    if (!(f11 > 0)) {
+      ++result.dark;
+      continue;
+    }
     add(result.f11_relative, d(0, 0) / f11, samples[s]);
     for (std::size_t e = 1; e < 16; ++e) add(result.normalized[e], d.elements[e], samples[s]);
   }
+  const long bright = result.samples - result.dark;
+  if (bright == 0) throw std::invalid_argument("f11 of the model is positive at none of the samples");
   divide(result.f11, result.samples, "f11");
-  divide(result.f11_relative, result.samples, "f11");
-  for (std::size_t e = 1; e < 16; ++e) divide(result.normalized[e], result.samples, "element " + element_name(e));
+  divide(result.f11_relative, bright, "f11");
+  for (std::size_t e = 1; e < 16; ++e) divide(result.normalized[e], bright, "element " + element_name(e));
   return result;
 }
 
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
                    std::span<const Geometry> geometries) {
   return compare(first, simulate(second, wavelengths, geometries));
+}
+
+std::string dark_line(const Comparison& comparison) {
+  if (comparison.dark == 0) return "";
+  return "f11 of the model is not positive at " + std::to_string(comparison.dark) + " of " +
+         std::to_string(comparison.samples) + " samples: there f11 alone is compared";
 }
 
 std::vector<double> common_wavelengths(const Model& first, const Model& second) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -283,6 +284,37 @@ TEST(RealSamples, FollowTheUnitsOfF11) {
   FitOptions wrong;
   wrong.reflectance = ReflectanceTable{{0.532}, {1e-5}};
   answers(1, wrong);  // falls back
+}
+
+/// f11 about 1e-4 sr⁻¹, with three times as much noise.
+std::vector<Sample> black(unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Sample> samples = simulate(material("ptfe-532"), std::array{0.532}, random_geometries(600, 1));
+  for (Sample& sample : samples) {
+    sample.f11 = 3e-4 * sample.f11 + 3e-4 * normal(engine);
+    for (std::size_t e = 1; e < 16; ++e) sample.normalized.elements[e] += 0.05 * normal(engine);
+  }
+  return samples;
+}
+
+TEST(RealSamples, MayBeDarkerThanTheirNoise) {
+  const PreparedModel truth = prepare(material("ptfe-532"), 0.532);
+  int within = 0, asked = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Model model = fit_sample(black(seed)).model;
+    ASSERT_TRUE(model.posterior);
+    EXPECT_FALSE(model.posterior->data().wavelengths[0].law.relative);  // the noise of what is black is not black
+    const PreparedModel found = prepare(model, 0.532);
+    const PreparedUncertainty u = prepare_uncertainty(model, 0.532);
+    for (const Geometry& g : halton_directions(50, 0, 70)) {
+      ++asked;
+      within += std::abs(found.f11(g) - 3e-4 * truth.f11(g)) < 2 * std::sqrt(u.evaluate(g)(0, 0)) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(within, 0.85 * asked);  // 95 % are meant; directions of a fit err together
+  for (const Weights weights : {Weights::speckle, Weights::estimated})
+    EXPECT_LT(std::abs(prepare(fit(black(1), {}, {}, weights).model, 0.532).f11({})), 1e-3);
 }
 
 }  // namespace

@@ -56,6 +56,22 @@ TEST(Subsets, StatisticsAreThoseOfTheirDefinition) {
   EXPECT_NEAR(relative_rms({{0.1, 0, 0, 0}, {0, 0, 0.3, 0}}, reference), std::sqrt(0.1 / 8), rounding);
 }
 
+TEST(Subsets, AreRelativeWhereThereIsSomethingToBeRelativeTo) {
+  const PolarizedCurve good{{1, 2, 4, 5}, {1, 1, 1, 1}}, other{{1, 2, 4, 5}, {1, 1, 1.5, 1}};
+  const auto with = [](PolarizedCurve curve, double f_sp) {
+    curve.push_back({1, f_sp, 1, 1});
+    return curve;
+  };
+  const SubsetStatistics all = subset_statistics(std::array{good, other}, good),
+                         most = subset_statistics(std::array{with(good, 0.2), with(other, 0.4)}, with(good, -0.1));
+  EXPECT_EQ(all.left_out, 0U);
+  EXPECT_EQ(most.left_out, 1U);
+  EXPECT_EQ(most.mean_deviation, all.mean_deviation);
+  EXPECT_EQ(most.largest_distance, all.largest_distance);
+  EXPECT_NEAR(most.mean[2].sp, 0.3, 1e-15);
+  EXPECT_EQ(relative_rms(with(other, 0.1), with(good, 0)), relative_rms(other, good));
+}
+
 TEST(Subsets, PlaneOfIncidenceRunsFromTheSourceToForward) {
   const std::vector<double> theta_r{radians(-45), 0, radians(45)};
   const std::vector<Geometry> g = in_plane(radians(45), theta_r);
@@ -107,7 +123,7 @@ TEST(Subsets, RefuseWhatHasNoAnswer) {
   const PolarizedCurve good{{1, 1, 1, 1}}, zero{{1, 1, 0, 1}};
   const std::vector<PolarizedCurve> two{good, good}, one{good}, uneven{good, {}};
   EXPECT_PRED2(has, message_of([&] { subset_statistics(one, good); }), "fewer than 2 curves");
-  EXPECT_PRED2(has, message_of([&] { subset_statistics(two, zero); }), "f_ps of the reference is 0 /sr at geometry 1");
+  EXPECT_PRED2(has, message_of([&] { subset_statistics(two, zero); }), "of the reference are positive at no geometry");
   EXPECT_PRED2(has, message_of([&] { subset_statistics(two, {}); }), "no geometries");
   EXPECT_PRED2(has, message_of([&] { subset_statistics(uneven, good); }),
                "a curve of 0 geometries, the reference has 1");

@@ -189,11 +189,8 @@ std::string csv(const Report& report) {
 }
 
 std::string json(const Report& report) {
-  Json json{{"model", report.first},
-            {"compared_with", report.second},
-            {"rotation", to_string(report.rotation)},
-            {"frame", "xy"},
-            {"samples", report.comparison.samples}};
+  Json json{{"model", report.first}, {"compared_with", report.second},       {"rotation", to_string(report.rotation)},
+            {"frame", "xy"},         {"samples", report.comparison.samples}, {"dark_samples", report.comparison.dark}};
   for (const double wavelength : report.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
   json["elements"] = json_of(table(report.comparison, report.significance));
   json["rms_polarization"] = polarization_rms(report.comparison);
@@ -247,6 +244,7 @@ void compare_them(const Options& options) {
   write_text(options.output, (options.format == Format::text  ? text
                               : options.format == Format::csv ? csv
                                                               : json)(report));
+  if (comparison.dark > 0) warn(base_name(options.first) + ": " + dark_line(comparison));
   warn_if_outside(first, samples, base_name(options.first));
   if (options.tolerance) require_within(*options.tolerance, comparison);
 }

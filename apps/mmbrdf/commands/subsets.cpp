@@ -207,6 +207,9 @@ void study(Options o) {
   range.validity = splits.front().validity;
   warn_of_directions(range, q, data_name(o.data));
   if (q.reference) warn_of_directions(*q.reference, q, base_name(o.reference));
+  if (const std::size_t left_out = splits.front().statistics.left_out; left_out > 0)
+    warn("the reference is not positive at " + std::to_string(left_out) + " of " +
+         std::to_string(o.theta_r_deg.size()) + " angles: what is divided by it leaves them out");
   write_text(o.output, (o.format == Format::text ? text : o.format == Format::csv ? csv : json)(q, o, splits));
 }
 

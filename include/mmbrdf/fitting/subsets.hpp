@@ -52,10 +52,11 @@ struct SubsetStatistics {
   double mean_distance = 0;       ///< mean of |mean / reference − 1|
   double largest_distance = 0;    ///< largest of them
   std::size_t largest_at = 0;     ///< its geometry
+  std::size_t left_out = 0;       ///< geometries where the reference is not positive: in mean and deviation alone
 };
 
 /// Throws std::invalid_argument for fewer than 2 curves, curves of other lengths than the reference, empty ones, or a
-/// reference that is not positive.
+/// reference that is positive nowhere.
 SubsetStatistics subset_statistics(std::span<const PolarizedCurve> curves, const PolarizedCurve& reference);
 
 /// Root mean square of uncertainty / reference: what root_mean_variance estimates. That of a fit to one of k equal

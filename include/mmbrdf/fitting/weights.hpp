@@ -10,8 +10,9 @@
 namespace mmbrdf {
 
 /// Weights of a noise law, as FitAccumulator::add takes them: w = 1/σ² for m_ij, and for f11 / reflectance
-/// w / (f11 / reflectance)² with the f11 of `model`, to which its noise is relative. Throws std::invalid_argument, with
-/// the sample's number, where weight() does or f11 of the model is not positive.
+/// w / (f11 / reflectance)² with the f11 of `model`, to which its noise is relative; where that is less than what the
+/// model typically leaves of f11 (1.48 times the median), with this. Throws std::invalid_argument, with the sample's
+/// number, where weight() does or f11 would be 0.
 std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model& model, const NoiseLaw& law);
 
 /// noise_weights() of the speckle law with scale 1: w = cos θr / cos θi.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mmbrdf/model/model.hpp"
@@ -22,6 +23,7 @@ struct Difference {
 
 struct Comparison {
   long samples = 0;
+  long dark = 0;                          ///< of them: f11 of the model is not positive, and f11 alone is compared
   Difference f11;                         ///< in sr⁻¹
   Difference f11_relative;                ///< divided by f11 of the model
   std::array<Difference, 16> normalized;  ///< of f_ij / f11, in row-major order, xy frame; that of element 11 is 0
@@ -32,15 +34,18 @@ struct Comparison {
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples);
 
 /// Samples − model, for f11 and for the normalised elements.
-/// Throws std::invalid_argument for an invalid model or sample, without samples, where f11 of the model is not positive
-/// (what would f_ij / f11 say there?), or for differences whose squares overflow.
+/// Throws std::invalid_argument for an invalid model or sample, without samples, where f11 of the model is positive at
+/// none of them (what would f_ij / f11 say there?), or for differences whose squares overflow.
 Comparison compare(const Model& model, std::span<const Sample> samples);
 
 /// Second − first model at each of the wavelengths (micrometres) and geometries. Throws
 /// std::invalid_argument for an invalid model, wavelength or geometry, without geometries, where f11 of either model is
-/// not positive, or for differences whose squares overflow.
+/// not positive (of the first: anywhere), or for differences whose squares overflow.
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
                    std::span<const Geometry> geometries);
+
+/// "f11 of the model is not positive at 3 of 40 samples: there f11 alone is compared"; empty where it is positive.
+std::string dark_line(const Comparison& comparison);
 
 /// The wavelengths to which both models were fitted; what one does not know is left to the other. Empty: neither knows,
 /// or they share none.
