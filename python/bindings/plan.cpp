@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a measurement will tell.
-#include "mmbrdf/fitting/plan_like.hpp"
+#include "mmbrdf/quantities/plan_like.hpp"
 
 #include <pybind11/stl.h>
 

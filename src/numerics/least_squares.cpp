@@ -73,10 +73,9 @@ Solution solution_of(MatrixXd v, const VectorXd& values, const VectorXd& right, 
   solution.null_space = numbers_of(v.rightCols(size - rank));
   solution.residual_norm = right.tail(size - rank).stableNorm();
   for (Index q = 0; q < rank; ++q) v.col(q) /= values(q);
-  const auto kept = v.leftCols(rank);
-  solution.x = numbers_of(kept * right.head(rank));
-  MatrixXd inverse = MatrixXd::Zero(size, size);  // symmetric to the last bit
-  inverse.selfadjointView<Eigen::Lower>().rankUpdate(kept);
+  solution.x = numbers_of(v.leftCols(rank) * right.head(rank));
+  MatrixXd inverse = MatrixXd::Zero(size, size);                                       // symmetric to the last bit
+  if (rank > 0) inverse.selfadjointView<Eigen::Lower>().rankUpdate(v.leftCols(rank));  // of 0 columns it divides by 0
   inverse.triangularView<Eigen::StrictlyUpper>() = inverse.transpose();
   solution.inverse = numbers_of(inverse);
   return solution;

@@ -350,6 +350,19 @@ TEST(LeastSquares, SolvesFewerRowsThanUnknownsByTheShortestVector) {
   EXPECT_EQ(solution.variance(), 0);
 }
 
+TEST(LeastSquares, OfRowsOfZerosDeterminesNothing) {
+  for (const int unknowns : {1, 7, 40, 60}) {
+    LeastSquares rows(unknowns);
+    for (int r = 0; r < 3; ++r) rows.add(Numbers(static_cast<std::size_t>(unknowns)), std::array{2.0});
+    const Solution s = rows.solve(1e-10);
+    EXPECT_EQ(s.rank, 0);
+    EXPECT_EQ(s.x, Numbers(s.x.size()));
+    EXPECT_EQ(s.inverse, Numbers(s.inverse.size()));
+    EXPECT_EQ(s.condition(), 0);
+    EXPECT_NEAR(s.residual_norm, std::sqrt(12), 1e-14);
+  }
+}
+
 TEST(LeastSquares, WithoutRowsDeterminesNothing) {
   const LeastSquares empty(3);
   const Solution solution = empty.solve();

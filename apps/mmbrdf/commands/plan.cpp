@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf plan
 
-#include "mmbrdf/fitting/plan_like.hpp"
+#include "mmbrdf/quantities/plan_like.hpp"
 
 #include <algorithm>
 #include <cmath>

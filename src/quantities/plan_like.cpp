@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/fitting/plan_like.hpp"
+#include "mmbrdf/quantities/plan_like.hpp"
 
 #include <algorithm>
 #include <array>
