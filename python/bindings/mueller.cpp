@@ -97,7 +97,7 @@ void bind_mueller(py::module_& m) {
   m.def(
       "normalized",
       [](const Given& mueller) { return over_matrices(mueller, [](const Mueller& f) { return normalized(f); }); },
-      py::arg("mueller"), "M / M11: element 11 is 1.");
+      py::arg("mueller"), "M / M11: element 11 is 1. Raises ValueError where M11 is 0, or too small for the others.");
   m.def(
       "exchanged",
       [](const Given& mueller) { return over_matrices(mueller, [](const Mueller& f) { return exchanged(f); }); },

@@ -155,7 +155,7 @@ std::vector<Sample> reduced_file(const std::filesystem::path& path, const Calibr
 void bind_states(py::module_& m) {
   m.def(
       "condition_number", [](const Given& states) { return condition_number(states_from(states, "states")); },
-      py::arg("states"), "Of states (n, 4): 3^0.5 at best, infinite for fewer than four independent ones.");
+      py::arg("states"), "Of states (n, 4): 3^0.5 at best, inf for fewer than four independent ones.");
   m.def(
       "optimal_angles",
       [](double retardance, int states) {

@@ -308,7 +308,7 @@ void bind_radiometry(py::module_& m) {
   m.def("budget", budget_of, py::arg("parts"), py::arg("degrees_of_freedom") = std::map<std::string, double>(),
         "What can be signed: Budget of {name: standard uncertainty}, numbers or arrays, as by_term=True and\n"
         "Analyzed.parts give them. degrees_of_freedom of those parts where they are finite: {'fit': "
-        "model.degrees_of_freedom}.");
+        "model.degrees_of_freedom}; all others are inf.");
 }
 
 }  // namespace mmbrdf::python

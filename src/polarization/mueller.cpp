@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarization/mueller.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -105,6 +106,8 @@ Mueller normalized(const Mueller& m) {
     throw std::invalid_argument("M11 = " + shortest(m11) + ", must be finite and not 0");
   Mueller result = m;
   for (double& element : result.elements) element /= m11;
+  if (std::ranges::any_of(result.elements, [](double element) { return std::isinf(element); }))
+    throw std::invalid_argument("M11 = " + shortest(m11) + ", too small to divide the other elements by");
   return result;
 }
 

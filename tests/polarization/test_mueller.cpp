@@ -90,6 +90,7 @@ TEST(Mueller, NormalizedHasElement11EqualToOne) {
 
 TEST(Mueller, WithoutIntensityCannotBeNormalized) {
   EXPECT_THROW(normalized(diagonal(0, 1, 1, 1)), std::invalid_argument);
+  EXPECT_THROW(normalized(diagonal(1e-300, 1e9, 1, 1)), std::invalid_argument);
   EXPECT_THROW(normalized(diagonal(std::numeric_limits<double>::quiet_NaN(), 1, 1, 1)), std::invalid_argument);
   EXPECT_THROW(normalized(diagonal(std::numeric_limits<double>::infinity(), 1, 1, 1)), std::invalid_argument);
 }

@@ -48,7 +48,7 @@ Mueller operator+(const Mueller& a, const Mueller& b);
 Mueller operator-(const Mueller& a, const Mueller& b);
 Mueller transpose(const Mueller& m);
 
-/// M / M11. Throws std::invalid_argument if M11 is 0 or not finite.
+/// M / M11. Throws std::invalid_argument if M11 is 0, not finite, or so small that an element overflows.
 Mueller normalized(const Mueller& m);
 
 /// R(angle): the same light, described in axes turned by `angle` radians from e1 towards e2 (theory 1.1).
