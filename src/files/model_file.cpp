@@ -89,8 +89,13 @@ FittedBlock read_fitted_block(const Field& field, Family family, int powers) {
   const std::size_t free = (size - static_cast<std::size_t>(fitted.rank)) * size;
   if (field.has("null_space"))
     require_count(field["null_space"], fitted.null_space.size(), free, "one combination for each that is free");
-  if (field.has("rows")) fitted.rows = static_cast<long>(field["rows"].number());
-  if (fitted.rows < 0) field["rows"].refuse(field["rows"].shown() + " is negative");
+  if (field.has("rows")) {
+    constexpr double most = 9e15;
+    const double rows = field["rows"].number();
+    if (!(rows >= 0 && rows <= most) || rows != std::floor(rows))
+      field["rows"].refuse("must be a number of rows, not " + field["rows"].shown());
+    fitted.rows = static_cast<long>(rows);
+  }
   if (fitted.condition < 0) field["condition"].refuse(field["condition"].shown() + " is negative");
   return fitted;
 }

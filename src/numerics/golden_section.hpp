@@ -29,7 +29,8 @@ double golden_section(const F& function, double low, double high, double width) 
   return (low + high) / 2;
 }
 
-/// Where a function is smallest: the best of equal steps, then golden section around it.
+/// Where a function is smallest: the best of equal steps, then golden section from the step before it to that
+/// behind it, one of which is beyond the ends where the best is at one.
 template <class F>
 double scanned_minimum(const F& function, double low, double high, int steps, double width) {
   const double step = (high - low) / steps;

@@ -263,6 +263,8 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
       {"\"covariance\": [0.5]", "\"covariance\": []", "m.json: blocks[0].covariance: 0 numbers in place of 1"},
       {"\"covariance\": [0.5]", "\"covariance\": [-0.5]", "m.json: blocks[0].covariance: variance 0 is negative"},
       {"\"rank\": 1", "\"rank\": 2", "m.json: blocks[0].rank: 2 is not in 0...1"},
+      {"\"rank\": 1", "\"rank\": 1, \"rows\": 10.7", "m.json: blocks[0].rows: must be a number of rows, not 10.7"},
+      {"\"rank\": 1", "\"rank\": 1, \"rows\": 1e300", "m.json: blocks[0].rows: must be a number of rows, not 1e"},
       {"\"condition\": 2.0", "\"condition\": -2", "m.json: blocks[0].condition: -2 is negative"},
       {"[\"11\",0,0,0,0]", "[\"11\",0,0,0]", "m.json: blocks[0].modes[0]: must be [function, n, m, k, l]"},
       {"[\"11\",0,0,0,0]", "[\"q\",0,0,0,0]", "m.json: blocks[0].modes[0][0]: function 'q'"},

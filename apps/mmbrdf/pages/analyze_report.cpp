@@ -213,7 +213,7 @@ void require_inside(Outside outside, const Validity& validity) {
     throw std::invalid_argument("outside the fitted range (" + to_string(outside) +
                                 "), refused by --strict: fitted are " + fitted_range(validity));
   }
-  if (outside != inside) throw std::invalid_argument("the fitted range is not known, refused by --strict");
+  if (outside & unknown_range) throw std::invalid_argument("the fitted range is not known, refused by --strict");
 }
 
 AddedColumns analyzed_columns(const Answers& answers, bool strict) {
