@@ -3,7 +3,7 @@
 """Asks much of the program at once, and prints a table: run.py PROGRAM [--rows 10000000] [--processes 1000] [--threads 64]
 
 rows       of samples into `fit --uncertainty noise`, of geometries through `evaluate`: time and largest memory
-processes  that write the same model, as many at once as there is memory, while others read it: each reads a whole one
+processes  of which half write one model and half evaluate it, 100 at once: each reads a whole one
 threads    of `evaluate`: the same bytes as one
 """
 
@@ -54,7 +54,7 @@ def line(what, rows, seconds, megabytes):
 
 
 def many_processes(program, folder, count):
-    """Every second one writes models/ptfe-532 or ptfe-633 over the same file, the others evaluate it."""
+    """Seconds; every second one writes ptfe-532 or ptfe-633 over the same file, the others evaluate it."""
     target = folder / "model.json"
     subprocess.run([program, "convert", "ptfe-532", target], check=True, capture_output=True)
     question = ["--incident", "45,0", "--reflected", "30,180", "--format", "csv"]
