@@ -19,6 +19,11 @@ GRAMMARS = [
     "random:20",
     "germer2017",
     "1,2.5,1e3",
+    "plaque:scale=0.3%,dof=12",
+    "theta_r=0.02deg",
+    "theta_r=-75:75:1",
+    "8:443:0.990+-0.004,8:532:0.99",
+    "wavelength_nm,reflectance,u_reflectance,theta_i_deg\n443,0.99,0.004,8\n532,0.985,0.004,8\n",
 ]
 
 
@@ -50,7 +55,7 @@ def main():
     header, rows = lines[0].split(",")[:5], [line.split(",")[:5] for line in lines[1:6]]
     (seeds("geometries") / "one.csv").write_text("\n".join(",".join(row) for row in [header, *rows]) + "\n")
     for number, text in enumerate(GRAMMARS):
-        for kind in range(7):
+        for kind in range(11):
             (seeds("grammars") / f"{number}-{kind}").write_bytes(bytes([kind]) + text.encode())
 
 

@@ -27,7 +27,9 @@ CertifiedReflectance typed(const std::string& text) {
   }
 }
 
-std::vector<CertifiedReflectance> from_rows(std::istream& in, const std::string& name) {
+}  // namespace
+
+std::vector<CertifiedReflectance> read_certificate(std::istream& in, const std::string& name) {
   using namespace std::string_view_literals;
   CsvReader reader(in, name);
   const int wavelength = reader.find(std::array{"wavelength_nm"sv}), value = reader.find(std::array{"reflectance"sv}),
@@ -42,8 +44,6 @@ std::vector<CertifiedReflectance> from_rows(std::istream& in, const std::string&
   return result;
 }
 
-}  // namespace
-
 std::vector<CertifiedReflectance> certificate_from(const std::string& text, const Validity& validity) {
   std::vector<CertifiedReflectance> result;
   if (text.find(':') != std::string::npos) {
@@ -51,7 +51,7 @@ std::vector<CertifiedReflectance> certificate_from(const std::string& text, cons
     for (std::string part; std::getline(parts, part, ',');) result.push_back(typed(part));
     return result;
   }
-  read_input(text, [&](std::istream& in, const std::string& name) { result = from_rows(in, name); });
+  read_input(text, [&](std::istream& in, const std::string& name) { result = read_certificate(in, name); });
   const auto left_out = std::erase_if(
       result, [&](const CertifiedReflectance& one) { return leaves_known_range(outside(validity, one.wavelength)); });
   if (left_out > 0)

@@ -29,7 +29,11 @@ void set(Question& question, const std::string& variable, double value) {
   (variable.starts_with("theta") ? direction->theta : direction->phi) = value;
 }
 
+constexpr double largest = 1e6;  // as far as values are rounded to their decimals
+
 long steps_between(const std::string& text, double from, double to, double step) {
+  if (std::max(std::abs(from), std::abs(to)) > largest)
+    throw std::invalid_argument("\"" + text + "\": expected values up to " + shortest(largest));
   if (step == 0 || (to - from) / step < 0) {
     throw std::invalid_argument("\"" + text + "\": no step of " + shortest(step) + " leads from " + shortest(from) +
                                 " to " + shortest(to));
