@@ -169,7 +169,7 @@ void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
           "(N,), the unpolarized BRDF in sr^-1")
       .def_property_readonly(
           "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
-          "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1: a view")
+          "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1, nan for what was not measured: a view")
       .def_property_readonly("mueller", mueller, "(N, 4, 4) in sr^-1, xy frame")
       .def_property_readonly(
           "uncertainty",
@@ -186,7 +186,11 @@ void bind_class(py::module_& m) {
       "Measured or simulated samples: N matrices, each at its own wavelength and geometry. It does not change.\n\n"
       "From read_samples(), simulate(), or arrays that broadcast to N: mueller (..., 4, 4) in sr^-1 in the frame "
       "named,\n"
-      "and uncertainty (..., 4, 4): element 11 of f11 in sr^-1, the others of f_ij / f11, in the xy frame.\n"
+      "and uncertainty (..., 4, 4): element 11 of f11 in sr^-1, the others of f_ij / f11, in the xy frame. An element "
+      "that\n"
+      "was not measured is nan, here as in models: f11 must be there. Frames that turn axes mix 12 with 13, 21 with "
+      "31,\n"
+      "24 with 34, 42 with 43, and 22, 23, 32 and 33: of these all are lost where one is.\n"
       "data[0:100], data[mask] and data[numbers] are datasets of fewer samples.");
   c.def(py::init(&from_arrays), py::arg("wavelength_nm"), py::arg("theta_i_deg"), py::arg("phi_i_deg"),
         py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::arg("mueller"), py::arg("frame") = "xy",

@@ -80,8 +80,10 @@ void bind_model_diagnostics(py::module_& m) {
         const double wavelength = model.wavelength(nm);
         const ModelDiagnostics d =
             without_gil([&] { return model_diagnostics(model.model(), wavelength, radians(theta_max)); });
-        return record("ModelDiagnostics", nanometres(d.wavelength), degrees(d.theta_max), d.geometries, d.margin.value,
-                      geometry_object(d.margin.geometry), d.unrealizable, d.f11.value, geometry_object(d.f11.geometry),
+        const auto of_whole = [&](const py::object& value) { return d.whole ? value : py::object(py::none()); };
+        return record("ModelDiagnostics", nanometres(d.wavelength), degrees(d.theta_max), d.geometries,
+                      of_whole(py::cast(d.margin.value)), of_whole(geometry_object(d.margin.geometry)),
+                      of_whole(py::cast(d.unrealizable)), d.f11.value, geometry_object(d.f11.geometry),
                       d.not_positive_f11, d.dhr, degrees(d.dhr_theta_i));
       },
       py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_max_deg") = 90.0,
@@ -110,7 +112,8 @@ py::object compared(const Model& model, const std::vector<Sample>& samples, cons
       if (all[e].samples > 0) by_element[py::str(element_name(e))] = significance_object(all[e]);
   }
   py::dict normalized;
-  for (std::size_t e = 1; e < 16; ++e) normalized[py::str(element_name(e))] = difference(found.normalized[e]);
+  for (std::size_t e = 1; e < 16; ++e)
+    if (found.normalized[e].samples > 0) normalized[py::str(element_name(e))] = difference(found.normalized[e]);
   return record("Comparison", found.samples, found.dark, difference(found.f11), difference(found.f11_relative),
                 normalized, polarization_rms(found), difference(largest(found)), by_element);
 }

@@ -148,6 +148,15 @@ void bind_properties(ModelClass& c) {
           "degrees_of_freedom", [](const ModelObject& o) { return degrees_of_freedom(o.model()); },
           "Of the fit: rows less rank; inf: not known")
       .def_property_readonly("blocks", blocks_of, "List of Block")
+      .def_property_readonly(
+          "not_measured",
+          [](const ModelObject& o) {
+            std::vector<std::string> result;
+            for (std::size_t e = 0; e < 16; ++e)
+              if (o.model().not_measured[e]) result.push_back(element_name(e));
+            return result;
+          },
+          "Elements of which no sample told, as a list: ['14', '24']. They are nan in every matrix of the model")
       .def_property_readonly("wavelengths_nm", wavelengths_nm, "Those it was fitted to; empty: not known")
       .def_property_readonly(
           "theta_i_max_deg", [](const ModelObject& o) { return in_degrees(o.model().validity.theta_i_max); },

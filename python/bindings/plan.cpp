@@ -62,9 +62,9 @@ py::object planned(const py::dict& given, const ModelObject* like, const std::op
   for (const auto& [name, angles] : given)
     for (NamedDesign& one : with_turns({name.cast<std::string>(), geometries_of("designs", angles)}))
       designs.push_back(std::move(one));
-  std::vector<NamedTarget> targets = block_targets();
-  for (NamedTarget& one : targets_of(texts)) targets.push_back(std::move(one));
   const VarianceComponents known = components(like, nm, noise);
+  std::vector<NamedTarget> targets = block_targets(known);
+  for (NamedTarget& one : targets_of(texts)) targets.push_back(std::move(one));
   py::array_t<double> u({designs.size(), targets.size()});
   double* out = u.mutable_data();
   without_gil([&] {
@@ -81,8 +81,8 @@ std::vector<std::size_t> picks(std::size_t count, const py::object& candidates, 
                                const std::optional<double>& noise, const Texts& texts) {
   const std::vector<Geometry> choice = geometries_of("candidates", candidates);
   const std::vector<Geometry> start = design.is_none() ? std::vector<Geometry>{} : geometries_of("design", design);
-  const std::vector<PlanTarget> targets = without_names(texts.empty() ? block_targets() : targets_of(texts));
   const VarianceComponents known = components(like, nm, noise);
+  const std::vector<PlanTarget> targets = without_names(texts.empty() ? block_targets(known) : targets_of(texts));
   return without_gil([&] { return chosen(known, start, targets, choice, count); });
 }
 

@@ -283,7 +283,7 @@ std::vector<std::vector<Function>> block_functions(Family family) {
 
 /// The block of some functions without modes: its elements are those that its functions feed.
 Block empty_block(const std::vector<Function>& functions) {
-  using Elements = std::vector<Element>;
+  using List = std::vector<Element>;
   Block block;
   switch (functions.front()) {
     case Function::g:
@@ -297,7 +297,7 @@ Block empty_block(const std::vector<Function>& functions) {
       break;
     default: {
       const auto [row, column] = element_of(functions.front());
-      block.elements = row == column ? Elements{{row, column}} : Elements{{row, column}, {column, row}};
+      block.elements = row == column ? List{{row, column}} : List{{row, column}, {column, row}};
     }
   }
   for (const auto& [row, column] : block.elements)
@@ -362,6 +362,13 @@ std::vector<Block> blocks(Family family, const std::vector<Mode>& modes) {
     if (!block.modes.empty()) result.push_back(std::move(block));
   }
   return result;
+}
+
+std::vector<Block> without(const Elements& elements, std::vector<Block> blocks) {
+  std::erase_if(blocks, [&](const Block& block) {
+    return std::ranges::all_of(block.elements, [&](const Element& element) { return elements[element.index()]; });
+  });
+  return blocks;
 }
 
 Orders orders(const std::vector<Block>& blocks) {

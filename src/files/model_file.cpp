@@ -123,6 +123,17 @@ std::optional<double> read_polar_angle(const Field& field) {
   return radians(value);
 }
 
+Elements read_elements(const Field& field) {
+  Elements result;
+  for (const Field& item : field.items()) {
+    std::size_t e = 0;
+    while (e < 16 && item.text() != element_name(e)) ++e;
+    if (e == 16) item.refuse(item.shown() + " is none of the elements 11 ... 44");
+    result.set(e);
+  }
+  return result;
+}
+
 SupportedPairs read_supported(const Field& field) {
   field.require_no_other_than({"wavelength_um", "pairs"});
   const auto bytes = from_base64(field["pairs"].text());
@@ -166,7 +177,7 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
 Model read_model(const Field& root) {
   require_format(root, format_name, conventions(), units(),
                  {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "rotation", "conventions",
-                  "units", "validity", "reflectance", "blocks", "posterior", "provenance"});
+                  "units", "validity", "not_measured", "reflectance", "blocks", "posterior", "provenance"});
   Model model;
   model.name = root["name"].text();
   model.family = checked(root["basis"], [&] { return family_from(root["basis"].text()); });
@@ -180,6 +191,7 @@ Model read_model(const Field& root) {
   model.powers = root["powers"].integer();
   if (model.powers < 0) root["powers"].refuse(root["powers"].shown() + " is negative");
   model.blocks = read_blocks(root["blocks"], model.family, model.powers);
+  if (root.has("not_measured")) model.not_measured = read_elements(root["not_measured"]);
   const Orders found = orders(model);
   if (root["orders"].numbers() != std::vector<double>{double(found.f11), double(found.other)})
     root["orders"].refuse("must be [" + std::to_string(found.f11) + ", " + std::to_string(found.other) +
@@ -187,7 +199,7 @@ Model read_model(const Field& root) {
   if (root.has("reflectance"))
     model.reflectance = read_reflectance(root["reflectance"], model.blocks.front().coefficients.size());
   model.validity = read_validity(root["validity"]);
-  if (root.has("posterior")) model.posterior = read_posterior(root["posterior"], model.mapping);
+  if (root.has("posterior")) model.posterior = read_posterior(root["posterior"], model.mapping, model.not_measured);
   model.provenance = root["provenance"].texts();
   checked(root, [&] { require_valid(model); });
   return model;
@@ -250,6 +262,8 @@ ordered_json model_json(const Model& model) {
     root["validity"]["supported"].push_back({{"wavelength_um", wavelength}, {"pairs", to_base64(pairs.bytes())}});
   if (!model.reflectance.wavelengths.empty()) root["reflectance"] = reflectance_json(model.reflectance);
   root["provenance"] = model.provenance;
+  for (std::size_t e = 0; e < 16; ++e)
+    if (model.not_measured[e]) root["not_measured"].push_back(element_name(e));
   root["blocks"] = ordered_json::array();
   for (const FittedBlock& fitted : model.blocks) root["blocks"].push_back(block_json(fitted));
   if (model.posterior) root["posterior"] = posterior_json(*model.posterior);
@@ -289,6 +303,7 @@ std::vector<std::string> beside_coefficients(const Model& model) {
   add(has_covariance(model), "the covariance");
   add(model.provenance.contains("attribution"), "the attribution");
   add(!model.provenance.empty(), "the provenance");
+  add(model.not_measured.any(), "which elements were not measured");
   add(!model.reflectance.values.empty(), "the reflectance that f11 is multiplied by");
   return known;
 }

@@ -152,13 +152,13 @@ ordered_json posterior_json(const Posterior& posterior) {
   return result;
 }
 
-Posterior read_posterior(const Field& field, DiscMapping mapping) {
+Posterior read_posterior(const Field& field, DiscMapping mapping, const Elements& not_measured) {
   field.require_no_other_than({"orders", "shared_errors", "readings", "wavelengths"});
   const std::vector<Field> orders = field["orders"].items();
   require_count(field["orders"], orders.size(), 2, "of f11 and of the other elements");
-  PosteriorData data{{orders[0].integer(), orders[1].integer()}, mapping, {}, {}, {}};
+  PosteriorData data{{orders[0].integer(), orders[1].integer()}, mapping, not_measured, {}, {}, {}};
   const std::vector<Block> blocks =
-      checked(field["orders"], [&] { return mmbrdf::blocks(Family::isotropic, data.orders); });
+      checked(field["orders"], [&] { return without(not_measured, mmbrdf::blocks(Family::isotropic, data.orders)); });
   for (const Field& error : field["shared_errors"].items())
     data.errors.push_back({error["name"].text(), error["size"].number()});
   for (const Field& list : field["readings"].items()) data.readings.push_back(read_readings(list));

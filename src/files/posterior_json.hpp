@@ -8,6 +8,6 @@
 namespace mmbrdf {
 
 nlohmann::ordered_json posterior_json(const Posterior& posterior);
-Posterior read_posterior(const Field& field, DiscMapping mapping);
+Posterior read_posterior(const Field& field, DiscMapping mapping, const Elements& not_measured);
 
 }  // namespace mmbrdf

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 
 #include "mmbrdf/files/write_file.hpp"
@@ -24,6 +25,25 @@ double measured(const CsvReader& reader, int column) {
   return value;
 }
 
+/// NaN where there is no column, or the field is empty.
+double measured_or_unknown(const CsvReader& reader, int column) {
+  if (column < 0 || reader.field(column).empty()) return std::numeric_limits<double>::quiet_NaN();
+  return measured(reader, column);
+}
+
+/// A column that may be one of this element, which else is not measured: M12, f12, F_R12 …
+void refuse_like(const CsvReader& reader, std::size_t element) {
+  for (const std::string& column : reader.columns()) {
+    std::string name;
+    for (const char c : column)
+      if (c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (const char* prefix : {"m", "f", "fr"})
+      if (name == prefix + element_name(element))
+        throw reader.error("column " + shown_name(column) + ": is it " + sample_element(element) +
+                           ", the element divided by f11? Columns of other names are not read");
+  }
+}
+
 /// The columns of f11 and of the normalised elements, in row-major order. That of m11, if there is one, must be 1.
 std::array<int, 16> element_columns(const CsvReader& reader, int& m11) {
   using namespace std::string_view_literals;
@@ -41,13 +61,13 @@ std::array<int, 16> element_columns(const CsvReader& reader, int& m11) {
     const std::string published = std::string("f_r").append(own, 1).append("/f_r11");
     const std::string_view names[] = {own, published};
     columns[e] = reader.find(names);
-    if (columns[e] < 0) throw reader.error("no column " + own + " (nor " + published + "), the element divided by f11");
+    if (columns[e] < 0) refuse_like(reader, e);
   }
   return columns;
 }
 
-/// The columns of their standard uncertainties, all or none.
-std::array<int, 16> uncertainty_columns(const CsvReader& reader) {
+/// The columns of their standard uncertainties, of all that are measured or of none.
+std::array<int, 16> uncertainty_columns(const CsvReader& reader, const std::array<int, 16>& elements) {
   std::array<int, 16> columns;
   std::array<std::string, 16> names;
   for (std::size_t e = 0; e < columns.size(); ++e) {
@@ -55,13 +75,15 @@ std::array<int, 16> uncertainty_columns(const CsvReader& reader) {
     const std::string_view name[] = {names[e]};
     columns[e] = reader.find(name);
   }
-  const auto is_there = [](int column) { return column >= 0; };
-  const auto there = std::find_if(columns.begin(), columns.end(), is_there);
-  const auto missing = std::find_if_not(columns.begin(), columns.end(), is_there);
-  if (there != columns.end() && missing != columns.end())
-    throw reader.error("column " + names[static_cast<std::size_t>(there - columns.begin())] + ", but no " +
-                       names[static_cast<std::size_t>(missing - columns.begin())] +
-                       ": uncertainties are needed of all sixteen elements, or of none");
+  int some = -1;  // of which the uncertainty is there
+  for (std::size_t e = 0; e < columns.size(); ++e) {
+    if (columns[e] >= 0 && elements[e] < 0) throw reader.error("column " + names[e] + ", but no " + sample_element(e));
+    if (columns[e] >= 0) some = static_cast<int>(e);
+  }
+  for (std::size_t e = 0; e < columns.size(); ++e)
+    if (some >= 0 && elements[e] >= 0 && columns[e] < 0)
+      throw reader.error("column " + names[static_cast<std::size_t>(some)] + ", but no " + names[e] +
+                         ": uncertainties are needed of all elements that are there, or of none");
   return columns;
 }
 
@@ -97,7 +119,7 @@ SampleReader::SampleReader(std::istream& in, const std::string& name)
       geometry_(reader_),
       rotation_(rotation_column(reader_)),
       elements_(element_columns(reader_, m11_)),
-      uncertainties_(uncertainty_columns(reader_)) {}
+      uncertainties_(uncertainty_columns(reader_, elements_)) {}
 
 bool SampleReader::next(Sample& sample) {
   if (!reader_.next()) {
@@ -107,11 +129,14 @@ bool SampleReader::next(Sample& sample) {
   ++rows_;
   sample.wavelength = geometry_.wavelength(reader_);
   sample.geometry = geometry_.geometry(reader_);
-  sample.f11 = measured(reader_, elements_[0]);
+  sample.f11 = measured_or_unknown(reader_, elements_[0]);
   sample.normalized.elements[0] = 1;
-  for (std::size_t e = 1; e < elements_.size(); ++e) sample.normalized.elements[e] = measured(reader_, elements_[e]);
+  for (std::size_t e = 1; e < elements_.size(); ++e)
+    sample.normalized.elements[e] = measured_or_unknown(reader_, elements_[e]);
+  const Elements unknown = not_measured(sample);
+  if (unknown.all()) throw reader_.error("no element is measured: all of these fields are empty");
   for (std::size_t e = 0; e < uncertainties_.size(); ++e)
-    sample.uncertainty.elements[e] = uncertainties_[e] < 0 ? 0 : uncertainty(reader_, uncertainties_[e]);
+    sample.uncertainty.elements[e] = uncertainties_[e] < 0 || unknown[e] ? 0 : uncertainty(reader_, uncertainties_[e]);
   if (rotation_ >= 0) sample = turned(sample, -radians(measured(reader_, rotation_)));
   if (m11_ >= 0 && reader_.number(m11_) != 1)
     throw reader_.error("m11: " + printable(reader_.field(m11_), 40) +
@@ -149,17 +174,23 @@ void write_samples(const std::string& path, std::span<const Sample> samples) {
 void write_samples(std::ostream& out, std::span<const Sample> samples) {
   require_valid(samples);
   const bool with_uncertainties = have_uncertainties(samples);
-  out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11";
-  for (std::size_t e = 1; e < 16; ++e) out << ',' << sample_element(e);
-  for (std::size_t e = 0; e < 16 && with_uncertainties; ++e) out << ",u_" << sample_element(e);
+  const Elements never = samples.empty() ? Elements{} : not_measured(samples);
+  if (never[0]) throw std::invalid_argument("f11 is not measured in any sample, and a file needs its column");
+  out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
+  for (const char* prefix : {"", "u_"})
+    for (std::size_t e = 0; e < 16 && (*prefix == 0 || with_uncertainties); ++e)
+      if (!never[e]) out << ',' << prefix << sample_element(e);
   out << '\n';
   for (const Sample& sample : samples) {
+    const Elements unknown = not_measured(sample);
     out << shortest(in_nanometres(sample.wavelength));
     for (const Direction& direction : {sample.geometry.incident, sample.geometry.reflected})
       out << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
-    out << ',' << shortest(sample.f11);
-    for (std::size_t e = 1; e < 16; ++e) out << ',' << shortest(sample.normalized.elements[e]);
-    for (std::size_t e = 0; e < 16 && with_uncertainties; ++e) out << ',' << shortest(sample.uncertainty.elements[e]);
+    Mueller values = sample.normalized;
+    values(0, 0) = sample.f11;
+    for (const Mueller* numbers : std::array<const Mueller*, 2>{&values, &sample.uncertainty})
+      for (std::size_t e = 0; e < 16 && (numbers == &values || with_uncertainties); ++e)
+        if (!never[e]) out << ',' << (unknown[e] ? "" : shortest(numbers->elements[e]));
     out << '\n';
   }
 }

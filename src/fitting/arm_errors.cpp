@@ -50,7 +50,7 @@ Mueller reading(const PreparedModel& model, const Geometry& g, double source, do
   Mueller m = model.evaluate({direction(s2), direction(r2)});
   const double f11 = m(0, 0);
   for (double& element : m.elements) element /= f11;
-  m = rotator(carried(r2, r, axis, receiver)) * m * rotator(-carried(negative(s2), negative(s), axis, source));
+  m = rotated(m, carried(r2, r, axis, receiver), carried(negative(s2), negative(s), axis, source));
   m(0, 0) = f11;
   return m;
 }

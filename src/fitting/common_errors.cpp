@@ -131,10 +131,20 @@ Posterior with_shared_errors(const Model& model, std::span<const Sample> samples
   return Posterior(std::move(data));
 }
 
+/// In one sample at least.
+Elements missing(std::span<const Sample> samples) {
+  Elements result;
+  for (const Sample& sample : samples) result |= not_measured(sample);
+  return result;
+}
+
 }  // namespace
 
 std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::span<const Sample> samples) {
   std::vector<SampleChanges> result;
+  if (const Elements unknown = missing(samples); unknown.any())
+    throw std::invalid_argument("not measured in all samples: " + element_names(unknown) +
+                                "; what errors of the instrument do is known of whole matrices only");
   for (const Sample& sample : samples) {
     const Mueller m = change_frame(sample.normalized, sample.geometry, Frame::xy, Frame::scattering_plane);
     const std::vector<Mueller> changes = reduction.errors(m);

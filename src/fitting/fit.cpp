@@ -248,7 +248,10 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   if (options.reflectance) model.reflectance = {options.reflectance->wavelengths, options.reflectance->values};
   require_valid(model.reflectance);
   require_covered(model.reflectance);
+  model.not_measured = not_measured();
+  if (model.not_measured[0]) throw std::invalid_argument("f11 is not measured in any sample");
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (model.not_measured[blocks_[b].elements.front().index()]) continue;
     Solution solution = block_solution(b, powers, model.reflectance, options.rank_tolerance, known);
     if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution, sides_);
     for (const Element& element : blocks_[b].elements)
@@ -264,7 +267,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   }
   require_determined("the data do not determine the model", complaints, options);
   for (std::size_t e = 0; e < 16; ++e)
-    if (block_of_[e] < 0)  // no mode: the model's element is 0
+    if (block_of_[e] < 0 && !model.not_measured[e])  // no mode: the model's element is 0
       result.elements[e] = element_fit(e, std::array{0.0}, model.reflectance);
   if (takes_own_reflectance(options) && row_variance(result.solutions.front(), options.covariance))
     add_own_reflectance_covariance(result, options, known, nullptr);
@@ -275,11 +278,14 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
 std::string FitAccumulator::determined_orders(const FitOptions& options) const {
   const int powers = chosen_powers(options);
   SvdCache known;
+  const Elements unknown = not_measured();
   const auto determines = [&](const Orders& orders, bool f11) {
     const FitAccumulator lower = at_orders(orders);
     const auto full = [](const Solution& s) { return size(s.rank) == s.x.size(); };
     for (std::size_t b = f11 ? 0 : 1; b < (f11 ? 1 : lower.blocks_.size()); ++b)
-      if (!full(lower.block_solution(b, powers, {}, options.rank_tolerance, known))) return false;
+      if (!unknown[lower.blocks_[b].elements.front().index()] &&
+          !full(lower.block_solution(b, powers, {}, options.rank_tolerance, known)))
+        return false;
     return !f11 || !takes_own_reflectance(options) || std::ranges::all_of(lower.wavelengths_, [&](const auto& at) {
       return full(at.second.elements[0].solve(options.rank_tolerance, &known));
     });
@@ -325,6 +331,21 @@ std::vector<SupportedPairs> FitAccumulator::support() const {
   return std::ranges::all_of(result, complete) ? std::vector<SupportedPairs>{} : result;
 }
 
+/// Without a row, and without a block that has one.
+Elements FitAccumulator::not_measured() const {
+  const auto has_rows = [&](std::size_t e) {
+    return std::ranges::any_of(wavelengths_, [e](const auto& at) { return at.second.elements[e].rows() > 0; });
+  };
+  Elements result;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const int block = block_of_[e];
+    result[e] = block < 0 ? !has_rows(e) : std::ranges::none_of(blocks_[size(block)].elements, [&](const Element& one) {
+      return has_rows(one.index());
+    });
+  }
+  return result;
+}
+
 ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const double> x,
                                        const ReflectanceTable& reflectance) const {
   ElementFit fit;
@@ -367,7 +388,8 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
       const double phi_i = samples[s].geometry.incident.phi;
       Mueller r = accumulator.turns() ? turned(result.residuals[s], -phi_i) : result.residuals[s];
       r(0, 0) /= result.model.reflectance.at(samples[s].wavelength);
-      for (std::size_t e = 0; e < 16; ++e) list[s].elements[e] *= list[s].elements[e] * r.elements[e] * r.elements[e];
+      for (std::size_t e = 0; e < 16; ++e)
+        list[s].elements[e] *= std::isnan(r.elements[e]) ? 0 : list[s].elements[e] * r.elements[e] * r.elements[e];
     }
     FitAccumulator squares(basis);
     squares.add(samples, list);

@@ -108,13 +108,13 @@ void FitAccumulator::add_own_reflectance_covariance(FitResult& result, const Fit
 void FitAccumulator::use_sandwich(FitResult& result, const FitOptions& options, const FitAccumulator& squares) const {
   Model& model = result.model;
   SvdCache known;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     const Solution& solution = result.solutions[b];
     if (solution.degrees_of_freedom() <= 0) continue;
     const Index size = index(solution.x.size());
     const MatrixXd g = square(solution.inverse, size);
     Covariances of_a(size);
-    for (const Element& element : blocks_[b].elements)
+    for (const Element& element : model.blocks[b].block.elements)
       for (const auto& [wavelength, at] : squares.wavelengths_) {
         const LeastSquares& rows = at.elements[element.index()];
         of_a.add(g * repetition(rows.unknowns(), powers_of(wavelength, model.powers)) * triangle_of(rows).transpose());

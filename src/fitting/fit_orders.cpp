@@ -11,15 +11,19 @@ namespace mmbrdf {
 
 std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
   const auto same = [](const Block& ours, const FittedBlock& theirs) { return ours.modes == theirs.block.modes; };
+  const std::vector<Block> measured = without(model.not_measured, blocks_);
   if (model.family != basis_.family || model.mapping != basis_.mapping || mmbrdf::turns(model) != turns() ||
-      !std::equal(blocks_.begin(), blocks_.end(), model.blocks.begin(), model.blocks.end(), same))
+      !std::equal(measured.begin(), measured.end(), model.blocks.begin(), model.blocks.end(), same))
     throw std::invalid_argument("the model has another basis");
   std::array<ElementFit, 16> result;
   for (std::size_t e = 0; e < 16 && samples_ > 0; ++e) {
-    const bool fed = block_of_[e] >= 0;
+    if (model.not_measured[e]) continue;
+    const auto feeds = [e](const FittedBlock& fitted) {
+      return std::ranges::any_of(fitted.block.elements, [e](const Element& one) { return one.index() == e; });
+    };
+    const auto fed = std::ranges::find_if(model.blocks, feeds);
     result[e] =
-        element_fit(e, fed ? model.blocks[static_cast<std::size_t>(block_of_[e])].coefficients : std::vector<double>{0},
-                    model.reflectance);
+        element_fit(e, fed != model.blocks.end() ? fed->coefficients : std::vector<double>{0}, model.reflectance);
   }
   return result;
 }

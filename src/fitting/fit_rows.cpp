@@ -50,6 +50,17 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
     }
 }
 
+/// What was not measured of each sample, as it is turned; nothing if all was.
+std::vector<Elements> unknown_of(std::span<const Sample> samples, bool turns) {
+  std::vector<Elements> result;
+  for (const Sample& sample : samples) {
+    const bool turned = turns && sample.geometry.incident.phi != 0;
+    result.push_back(turned ? turned_into(not_measured(sample)) : not_measured(sample));
+  }
+  if (std::ranges::none_of(result, [](const Elements& elements) { return elements.any(); })) result.clear();
+  return result;
+}
+
 /// A row of functions that all vanish but for rounding, such as that of f14 in the plane of incidence, tells nothing.
 void clear_rounding(RowColumns& rows, std::size_t modes, std::size_t count) {
   constexpr double rounding = 1e-12;  // functions are of the order of 1
@@ -110,6 +121,7 @@ struct FitAccumulator::Folding {
 
   std::span<const Sample> samples;
   std::span<const Mueller> weights;
+  std::span<const Elements> unknown;  // of each sample, as it is turned: of weight 0; or none
   std::vector<Group> groups{};
 
   bool has_geometries_of(const std::vector<std::size_t>& members) const {
@@ -122,11 +134,14 @@ struct FitAccumulator::Folding {
   struct Some;
 
   std::size_t rows() const { return groups[0].members.size(); }
+  bool is_weighted() const { return !weights.empty() || !unknown.empty(); }
   double weight(const Column& c, std::size_t row) const {
-    return weights.empty() ? 1 : weights[groups[c.group].members[row]].elements[c.element];
+    const std::size_t s = groups[c.group].members[row];
+    if (!unknown.empty() && unknown[s][c.element]) return 0;
+    return weights.empty() ? 1 : weights[s].elements[c.element];
   }
   bool have_same_weights(const Column& a, const Column& b) const {
-    for (std::size_t row = 0; row < rows() && !weights.empty(); ++row)
+    for (std::size_t row = 0; row < rows() && is_weighted(); ++row)
       if (weight(a, row) != weight(b, row)) return false;
     return true;
   }
@@ -138,13 +153,14 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const Muelle
   require_valid(samples);
   require_weights(weights, samples.size());
   require_moderate(samples, weights);
+  const std::vector<Elements> unknown = unknown_of(samples, turns());
   std::map<AtWavelength*, std::vector<std::size_t>> members;
   for (std::size_t s = 0; s < samples.size(); ++s) members[&slot(samples[s].wavelength)].push_back(s);
   std::vector<Folding> all;
   for (auto& [at, list] : members) {
     const auto same = [&here = list](const Folding& folding) { return folding.has_geometries_of(here); };
     auto found = std::find_if(all.begin(), all.end(), same);
-    if (found == all.end()) found = all.insert(found, {samples, weights});
+    if (found == all.end()) found = all.insert(found, {samples, weights, unknown});
     found->groups.push_back({at, std::move(list)});
   }
   for (const Folding& folding : all) folding.fold(*this);
@@ -216,10 +232,12 @@ struct FitAccumulator::Folding::Some {
     clear_rounding(result, modes, count);
     for (std::size_t c = 0; c < share.columns.size(); ++c) {
       const auto [element, group] = share.columns[c];
-      for (std::size_t r = 0; r < count; ++r)
-        result.column(modes + c)[r] = values[group * rows_at_once + r].elements[element];
+      for (std::size_t r = 0; r < count; ++r) {
+        const double value = values[group * rows_at_once + r].elements[element];
+        result.column(modes + c)[r] = std::isnan(value) ? 0 : value;
+      }
     }
-    if (all.weights.empty()) return result;
+    if (!all.is_weighted()) return result;
     std::array<double, rows_at_once> roots;
     for (std::size_t r = 0; r < count; ++r) roots[r] = std::sqrt(all.weight(share.columns[0], first + r));
     for (std::size_t j = 0; j < result.columns(); ++j)

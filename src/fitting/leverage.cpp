@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "basis/rows.hpp"
@@ -48,7 +49,9 @@ void require_matching(std::span<const Sample> samples, const FitResult& result, 
   if (!weights.empty() && weights.size() != samples.size())
     throw std::invalid_argument(std::to_string(weights.size()) + " weights for " + std::to_string(samples.size()) +
                                 " samples");
-  const auto weighs = [&](std::size_t s) { return weights.empty() || weights[s](0, 0) > 0; };
+  const auto weighs = [&](std::size_t s) {
+    return !std::isnan(samples[s].f11) && (weights.empty() || weights[s](0, 0) > 0);
+  };
   long rows = 0;  // an accumulator does not count rows of weight 0
   for (std::size_t s = 0; s < samples.size(); ++s) rows += weighs(s) ? 1 : 0;
   if (result.elements[0].rows != rows || result.solutions.size() != result.model.blocks.size())
@@ -73,6 +76,10 @@ double leverage_and_residuals(const FittedRows& block, const Model& model, const
     const std::size_t e = element.index();
     const VectorXd x = block.row(e, k_i, k_r, sample.wavelength);
     const double leverage = weights.elements[e] * x.dot(inverse * x);
+    if (not_measured(sample)[e]) {
+      residuals.elements[e] = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     const double y = e == 0 ? sample.f11 / model.reflectance.at(sample.wavelength) : sample.normalized.elements[e];
     residuals.elements[e] =
         studentized(y - x.dot(a), weights.elements[e], std::sqrt(block.solution.variance()), leverage);

@@ -248,7 +248,16 @@ std::vector<Mueller> series_weights(const Series& series, const Basis& basis) {
 std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, Covariance covariance,
                            Weights weights) {
   if (basis.family != Family::isotropic) return "the " + to_string(basis.family) + " basis has no mixed model";
-  if (blocks(basis.family, basis.orders).size() < blocks(basis.family, generous_orders).size())
+  const Elements unknown = not_measured(samples);
+  for (const Sample& sample : samples)
+    if (const Elements here = not_measured(sample); here != unknown)
+      return "not measured in all samples: " + element_names(here & ~unknown);
+  const std::vector<Block> generous_blocks = blocks(basis.family, generous_orders);
+  for (const Block& block : generous_blocks)
+    for (const Element& element : block.elements)
+      if (unknown[element.index()] != unknown[block.elements.front().index()])
+        return "of the elements " + block.name + ", which belong together, some were not measured";
+  if (blocks(basis.family, basis.orders).size() < generous_blocks.size())
     return "orders " + std::to_string(basis.orders.f11) + "," + std::to_string(basis.orders.other) +
            " leave elements without modes";
   if (covariance != Covariance::residuals) return "the covariance " + to_string(covariance) + " is one of them";
@@ -265,10 +274,12 @@ std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, 
 
 MixedFit mixed_fit(const std::map<double, Series>& series, const Basis& basis, int powers,
                    const DeclaredErrors& declared) {
-  PosteriorData data{generous(basis.orders), basis.mapping, shared_errors(declared), {}, {}};
-  const std::vector<Block> evaluated = blocks(basis.family, basis.orders);
+  const Elements unknown = not_measured(series.begin()->second.samples);  // and in all others
+  PosteriorData data{generous(basis.orders), basis.mapping, unknown, shared_errors(declared), {}, {}};
+  const std::vector<Block> evaluated = without(unknown, blocks(basis.family, basis.orders));
   std::vector<MixedColumns> columns;
-  for (const Block& block : blocks(Family::isotropic, data.orders)) columns.emplace_back(block, basis.mapping);
+  for (const Block& block : without(unknown, blocks(Family::isotropic, data.orders)))
+    columns.emplace_back(block, basis.mapping);
   std::map<double, Fitted> wavelengths;
   std::vector<Fitted*> list;
   for (const auto& [wavelength, one] : series) {

@@ -152,8 +152,9 @@ LeastSquares rows_at(const Problem& problem, double wavelength, const Block& blo
           const double angle = static_cast<double>(1 + h / 2) * problem.samples[s].geometry.incident.phi;
           rows[e * width + columns.size() + harmonics * e + h] = h % 2 == 0 ? std::cos(angle) : std::sin(angle);
         }
-      values.push_back(row + column == 0 ? sample.f11 : sample.normalized(row, column));
-      weights.push_back(problem.weights.empty() ? 1 : problem.weights[s](row, column));
+      const double value = row + column == 0 ? sample.f11 : sample.normalized(row, column);
+      values.push_back(std::isnan(value) ? 0 : value);
+      weights.push_back(std::isnan(value) ? 0 : problem.weights.empty() ? 1 : problem.weights[s](row, column));
     }
     result.add(rows, values, weights);
   }
@@ -164,7 +165,8 @@ double total_weight(const Problem& problem, const Block& block) {
   double weight = 0;
   for (std::size_t s = 0; s < problem.samples.size(); ++s)
     for (const auto& [row, column] : block.elements)
-      weight += problem.weights.empty() ? 1 : problem.weights[s](row, column);
+      if (!not_measured(problem.samples[s])[Element{row, column}.index()])
+        weight += problem.weights.empty() ? 1 : problem.weights[s](row, column);
   return weight;
 }
 
@@ -239,7 +241,7 @@ SymmetryTests symmetry_tests(std::span<const Sample> samples, const Orders& orde
   const Problem problem{samples, weights, wavelengths(samples), std::max(orders.f11, orders.other), mapping};
   SymmetryTests result;
   result.one_azimuth = has_one_azimuth(samples);
-  for (const Block& block : blocks(Family::isotropic, orders)) {
+  for (const Block& block : without(not_measured(samples), blocks(Family::isotropic, orders))) {
     result.reciprocity.push_back(compared(problem, block, reciprocity_breaking(block), false));
     result.mirror.push_back(compared(problem, block, mirror_breaking(block, orders.other), false));
     if (!result.one_azimuth) result.azimuth.push_back(compared(problem, block, {}, true));

@@ -26,12 +26,22 @@ std::map<std::array<double, 5>, std::vector<Mueller>> by_geometry(std::span<cons
   return result;
 }
 
-/// Squares of one element about its mean.
-double scatter(const std::vector<Mueller>& residuals, std::size_t element) {
-  double mean = 0, squares = 0;
-  for (const Mueller& r : residuals) mean += r.elements[element] / static_cast<double>(residuals.size());
-  for (const Mueller& r : residuals) squares += std::pow(r.elements[element] - mean, 2);
-  return squares;
+struct Scatter {
+  long repeats = 0;
+  double squares = 0;  // about the mean
+};
+
+/// Of one element, where it was measured.
+Scatter scatter(const std::vector<Mueller>& residuals, std::size_t element) {
+  std::vector<double> values;
+  for (const Mueller& r : residuals)
+    if (!std::isnan(r.elements[element])) values.push_back(r.elements[element]);
+  if (values.empty()) return {};
+  double mean = 0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  Scatter result{static_cast<long>(values.size()) - 1};
+  for (const double value : values) result.squares += std::pow(value - mean, 2);
+  return result;
 }
 
 }  // namespace
@@ -47,15 +57,18 @@ std::vector<LackOfFit> lack_of_fit(std::span<const Sample> samples, const FitRes
     const Solution& solution = fitted.solutions[b];
     LackOfFit& test = result.emplace_back();
     test.block = block.name;
-    test.repeats = static_cast<long>((samples.size() - groups.size()) * block.elements.size());
+    double pure = 0;
+    for (const auto& [geometry, residuals] : groups)
+      for (const Element& element : block.elements) {
+        const Scatter here = scatter(residuals, element.index());
+        test.repeats += here.repeats;
+        pure += here.squares;
+      }
     const long q = solution.degrees_of_freedom() - test.repeats;
     if (test.repeats == 0 || q <= 0) {
       test.repeats = 0;
       continue;
     }
-    double pure = 0;
-    for (const auto& [geometry, residuals] : groups)
-      for (const Element& element : block.elements) pure += scatter(residuals, element.index());
     const double left = std::max(0.0, solution.residual_norm * solution.residual_norm - pure);
     test.pure_error = std::sqrt(pure / static_cast<double>(test.repeats));
     test.misfit = std::sqrt(left / static_cast<double>(q));

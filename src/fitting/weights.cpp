@@ -24,7 +24,7 @@ std::vector<double> f11_above_noise(std::span<const Sample> samples, const Model
   for (const Sample& sample : samples) {
     const double reflectance = model.reflectance.at(sample.wavelength);
     result.push_back(prepared(sample.wavelength).f11(sample.geometry) / reflectance);
-    left.push_back(sample.f11 / reflectance - result.back());
+    if (!std::isnan(sample.f11)) left.push_back(sample.f11 / reflectance - result.back());
   }
   const double noise = typical_size(left);
   for (double& f11 : result) f11 = std::max(f11, noise);
@@ -49,7 +49,9 @@ std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& mo
 
 Mueller data_weights_of(const Sample& sample, double reflectance) {
   Mueller weights;
+  const Elements unknown = not_measured(sample);
   for (std::size_t e = 0; e < 16; ++e) {
+    if (unknown[e]) continue;
     const double u = sample.uncertainty.elements[e] / (e == 0 ? reflectance : 1);
     if (!(u > 0)) throw std::invalid_argument("the uncertainty of " + sample_element(e) + " is not known");
     weights.elements[e] = 1 / (u * u);

@@ -38,23 +38,6 @@ FrameAngles angles_from_sp_to_plane(const Geometry& g) {
   return {.scattered = std::atan2(p_out, s_out), .incident = std::atan2(p_in, s_in)};
 }
 
-/// R(scattered) M R(incident)ᵀ without the multiplications by 0 and 1.
-Mueller rotated(const Mueller& m, double scattered, double incident) {
-  const double c_out = std::cos(2 * scattered), s_out = std::sin(2 * scattered);
-  const double c_in = std::cos(2 * incident), s_in = std::sin(2 * incident);
-  Mueller rows = m;
-  for (int j = 0; j < 4; ++j) {
-    rows(1, j) = c_out * m(1, j) + s_out * m(2, j);
-    rows(2, j) = c_out * m(2, j) - s_out * m(1, j);
-  }
-  Mueller result = rows;
-  for (int i = 0; i < 4; ++i) {
-    result(i, 1) = c_in * rows(i, 1) + s_in * rows(i, 2);
-    result(i, 2) = c_in * rows(i, 2) - s_in * rows(i, 1);
-  }
-  return result;
-}
-
 std::string begun(const char* where) { return *where == 0 ? "" : std::string(where) + ": "; }
 
 void require_theta(double theta, const char* where, const char* name) {

@@ -41,6 +41,9 @@ class PlannedBlock {
   PlannedBlock(const VarianceComponents& components, std::size_t block, std::span<const Geometry> design)
       : components_(components), columns_(blocks_of(components)[block], components.mapping) {
     const auto& [hyperparameters, noise] = components.blocks[block];
+    if (hyperparameters.empty())
+      throw std::invalid_argument("elements " + columns_.isotropic().name +
+                                  " were not measured: nothing is known of their variances");
     const Prior prior = prior_of(columns_);
     if (static_cast<Index>(hyperparameters.size()) != prior.mean.size())
       throw std::invalid_argument("block " + columns_.isotropic().name + ": " + std::to_string(hyperparameters.size()) +
@@ -187,7 +190,14 @@ VarianceComponents components_of(const Posterior& posterior, double wavelength) 
   const PosteriorAt& at = *std::ranges::min_element(
       data.wavelengths, {}, [&](const PosteriorAt& one) { return std::abs(one.wavelength - wavelength); });
   VarianceComponents result{data.orders, data.mapping, at.law, at.f11, {}};
-  for (const BlockPosterior& block : at.blocks) result.blocks.push_back({block.hyperparameters, block.noise_variance});
+  for (const Block& block : blocks(Family::isotropic, data.orders)) {
+    const auto known = std::ranges::find(posterior.blocks(), block.name, &Block::name);
+    const auto b = static_cast<std::size_t>(known - posterior.blocks().begin());
+    result.blocks.push_back(
+        known == posterior.blocks().end()
+            ? VarianceComponents::OfBlock{}
+            : VarianceComponents::OfBlock{at.blocks[b].hyperparameters, at.blocks[b].noise_variance});
+  }
   return result;
 }
 
@@ -242,10 +252,11 @@ NamedDesign turned(const NamedDesign& design, const std::string& how, double (*p
 
 }  // namespace
 
-std::vector<NamedTarget> block_targets() {
+std::vector<NamedTarget> block_targets(const VarianceComponents& components) {
   std::vector<NamedTarget> result;
-  const std::vector<Block> list = blocks(Family::isotropic, VarianceComponents{}.orders);
+  const std::vector<Block> list = blocks_of(components);
   for (std::size_t b = 0; b < list.size(); ++b) {
+    if (components.blocks[b].hyperparameters.empty()) continue;
     std::string name = list[b].name;
     std::ranges::replace(name, ',', '_');
     result.push_back({name, {PlanTarget::Kind::block, b, {}}});

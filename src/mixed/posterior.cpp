@@ -103,7 +103,10 @@ struct Posterior::State {
 };
 
 Posterior::State::State(PosteriorData from)
-    : data(std::move(from)), blocks(mmbrdf::blocks(Family::isotropic, data.orders)), known(data.wavelengths.size()) {
+    : data(std::move(from)),
+      blocks(without(data.not_measured, mmbrdf::blocks(Family::isotropic, data.orders))),
+      known(data.wavelengths.size()) {
+  require(!data.not_measured[0], "f11 must be measured");
   require(!data.wavelengths.empty(), "no wavelength");
   require(data.errors.size() >= declared_errors, "number of shared errors");
   for (const auto& list : data.readings) require_measurable(list);

@@ -52,8 +52,8 @@ std::string of_noise(const std::vector<SampleTraits>& blocks, bool relative) {
   for (const SampleTraits& block : blocks)
     if (block.block != "11") others = std::max(others, block.noise);
   return "noise " + two_digits(blocks.front().noise) +
-         (relative ? " of f11, relative, " : " of f11 / reflectance, the same everywhere, ") + two_digits(others) +
-         " of the other elements, at normal directions";
+         (relative ? " of f11, relative, " : " of f11 / reflectance, the same everywhere, ") +
+         (blocks.size() > 1 ? two_digits(others) + " of the other elements, " : "") + "at normal directions";
 }
 
 /// Nothing for a sample that is as good as isotropic.

@@ -82,11 +82,13 @@ Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {
 template <class T>
 class Question {
  public:
-  explicit Question(const KernelModel<double>& folded) { convert(folded, {}); }
+  explicit Question(const PreparedIncidence& prepared) : unknown(Evaluation::pattern(prepared).unknown) {
+    convert(Evaluation::model(prepared), {});
+  }
 
   /// At the wavelengths of the options, if there are any.
   Question(const PreparedModel& prepared, std::size_t count, const BatchOptions& options)
-      : wavelengths(options.wavelengths) {
+      : unknown(Evaluation::pattern(prepared).unknown), wavelengths(options.wavelengths) {
     KernelModel<double> asked = Evaluation::model(prepared);
     if (wavelengths.empty()) {
       convert(asked, {});
@@ -111,12 +113,14 @@ class Question {
   /// The same at the wavelength of point q alone.
   Question(const Question& all, std::size_t q)
       : model(all.model),
+        unknown(all.unknown),
         wavelengths(all.reflectance ? all.wavelengths.subspan(q, 1) : all.wavelengths),
         reflectance(all.reflectance) {}
   Question(const Question&) = delete;
   Question& operator=(const Question&) = delete;
 
   KernelModel<T> model{};
+  Elements unknown;
   std::span<const double> wavelengths;
   const ReflectanceTable* reflectance = nullptr;
 
@@ -164,12 +168,16 @@ class Question {
 // ---- evaluation -----------------------------------------------------------------------------------------------------
 
 template <class T>
-void run_kernel(const KernelModel<T>& model, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+void run_kernel(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
                 std::size_t count) {
   if constexpr (std::is_same_v<T, double>)
-    best_kernel().evaluate(model, points, out, count);
+    best_kernel().evaluate(question.model, points, out, count);
   else
-    best_kernel().evaluate_single(model, points, out, count);
+    best_kernel().evaluate_single(question.model, points, out, count);
+  if (question.unknown.none()) return;
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t q = 0; question.unknown[e] && q < count; ++q)
+      out.element[e][static_cast<std::ptrdiff_t>(q) * out.stride] = std::numeric_limits<T>::quiet_NaN();
 }
 
 template <class T>
@@ -210,10 +218,10 @@ void run_in_blocks(const Question<T>& question, const KernelPoints<T>& points, c
       block.scale = scales;
     }
     if (frame == Frame::xy) {
-      run_kernel(question.model, block, from(out, begin), here);
+      run_kernel(question, block, from(out, begin), here);
       continue;
     }
-    run_kernel(question.model, block, rows(values), here);
+    run_kernel(question, block, rows(values), here);
     for (std::size_t q = 0; q < here; ++q) {
       Mueller m;
       std::copy_n(values + 16 * q, 16, m.elements.begin());
@@ -230,7 +238,7 @@ void run(const Question<T>& question, const KernelPoints<T>& points, const Kerne
   require_known(options.frame);
   in_parts(count, options.threads, [&](std::size_t first, std::size_t part) {
     if (options.frame == Frame::xy && !question.reflectance)
-      run_kernel(question.model, from(points, first), from(out, first), part);
+      run_kernel(question, from(points, first), from(out, first), part);
     else
       run_in_blocks(question, points, out, first, part, options.frame, geometry);
     finish(first, part);
@@ -310,7 +318,7 @@ void run_vectors(const PreparedIncidence& model, const UnitVectors<T>& reflected
                  const BatchOptions& options) {
   if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, "reflected", options.threads);
-  const Question<T> question(Evaluation::model(model));
+  const Question<T> question(model);
   const KernelPoints<T> points{
       false, {reflected.x.data(), reflected.y.data(), reflected.z.data()}, 1, nullptr, nullptr};
   run(
@@ -366,7 +374,7 @@ void evaluate(const PreparedIncidence& model, std::span<const Direction> reflect
   require_size(reflected.size(), "directions", out.size());
   if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, options.threads);
-  run_angles(Question<double>(Evaluation::model(model)), reflected, out, options, [&](std::size_t q) {
+  run_angles(Question<double>(model), reflected, out, options, [&](std::size_t q) {
     return Geometry{model.incident(), reflected[q]};
   });
 }

@@ -23,7 +23,12 @@ std::string basis_line(const Model& model) {
   return to_string(model.family) + (model.rotation == Rotation::as_printed ? " as printed" : "") + ", orders " +
          std::to_string(order.f11) + "," + std::to_string(order.other) + ", wavelength power" +
          (model.powers == 0 ? " 0" : "s 0 to " + std::to_string(model.powers)) + ", " + to_string(model.mapping) +
-         " mapping: " + counted(mode_count(model), "mode") + ", " + counted(coefficient_count(model), "coefficient");
+         " mapping: " + counted(mode_count(model), "mode") + ", " + counted(coefficient_count(model), "coefficient") +
+         (model.not_measured.any() ? "; " + not_measured_line(model.not_measured) : "");
+}
+
+std::string not_measured_line(const Elements& elements) {
+  return elements.count() == 15 ? "f11 alone was measured" : "not measured: " + element_names(elements);
 }
 
 std::string angles_line(const Validity& validity) {

@@ -171,6 +171,7 @@ void require_posterior(const Model& model) {
   const std::vector<Block>& behind = model.posterior->blocks();
   if (model.family != Family::isotropic) refuse("is of the isotropic family, the model of " + to_string(model.family));
   if (model.mapping != model.posterior->data().mapping) refuse("has another mapping to the disc");
+  if (model.not_measured != model.posterior->data().not_measured) refuse("is of other elements");
   if (model.blocks.size() != behind.size()) refuse("has " + std::to_string(behind.size()) + " blocks");
   for (std::size_t b = 0; b < behind.size(); ++b)
     for (const Mode& mode : model.blocks[b].block.modes)
@@ -200,6 +201,12 @@ void require_valid(const Model& model) {
       throw std::invalid_argument("block " + fitted.block.name + ": modes are not in canonical order");
     require_valid(fitted, fitted.block.modes.size() * (static_cast<std::size_t>(model.powers) + 1));
   }
+  if (model.not_measured[0]) throw std::invalid_argument("model: f11 is said not to be measured");
+  for (const Block& block : expected)
+    for (const Element& element : block.elements)
+      if (model.not_measured[element.index()])
+        throw std::invalid_argument("model: element " + element_name(element.index()) +
+                                    " is said not to be measured, but block " + block.name + " has modes");
   require_valid(model.reflectance);
   const std::size_t with_f11 = model.reflectance.covariance.empty()
                                    ? 0
@@ -228,6 +235,10 @@ double degrees_of_freedom(const Model& model) {
 }
 
 bool turns(const Model& model) { return turns(model.family, model.rotation); }
+
+Elements unknown_elements(const Model& model, Frame frame) {
+  return turns(model) || frame != Frame::xy ? turned_into(model.not_measured) : model.not_measured;
+}
 
 Model as_printed(Model model) {
   model.rotation = Rotation::as_printed;

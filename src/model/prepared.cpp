@@ -40,6 +40,7 @@ PreparedModel prepare(const Model& model, double wavelength) {
   pattern->by_powers = by_powers(model);
   pattern->reflectance = model.reflectance;
   pattern->validity = model.validity;
+  pattern->unknown = unknown_elements(model);
   for (const FittedBlock& fitted : model.blocks)
     for (const Mode& mode : fitted.block.modes) {
       for (const Term& term : terms(mode, model.family)) pattern->terms.push_back(term);
@@ -94,6 +95,7 @@ KernelModel<double> Evaluation::model(const PreparedModel& prepared) {
 }
 
 const PreparedPattern& Evaluation::pattern(const PreparedModel& prepared) { return *prepared.pattern_; }
+const PreparedPattern& Evaluation::pattern(const PreparedIncidence& prepared) { return *prepared.pattern_; }
 
 Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
   Mueller m;

@@ -67,7 +67,8 @@ long double bilinear(const Mueller& g, const Mueller& h, const MuellerCovariance
   long double sum = 0;
   for (std::size_t e = 0; e < 16; ++e)
     for (std::size_t f = 0; f < 16 && g.elements[e] != 0; ++f)
-      sum += static_cast<long double>(g.elements[e]) * v(e, f) * h.elements[f];
+      if (h.elements[f] != 0)  // what has no part may be unknown
+        sum += static_cast<long double>(g.elements[e]) * v(e, f) * h.elements[f];
   return sum;
 }
 

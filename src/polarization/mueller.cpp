@@ -54,6 +54,32 @@ std::string element_name(std::size_t element) {
   return std::to_string(element / 4 + 1) + std::to_string(element % 4 + 1);
 }
 
+Elements turned_into(const Elements& elements) {
+  constexpr unsigned together[] = {1U << 1 | 1U << 2, 1U << 4 | 1U << 8, 1U << 7 | 1U << 11, 1U << 13 | 1U << 14,
+                                   1U << 5 | 1U << 6 | 1U << 9 | 1U << 10};
+  Elements result = elements;
+  for (const Elements group : together)
+    if ((group & elements).any()) result |= group;
+  return result;
+}
+
+Elements unknown_elements(const Mueller& m) {
+  Elements result;
+  for (std::size_t e = 0; e < 16; ++e) result[e] = std::isnan(m.elements[e]);
+  return result;
+}
+
+std::string element_names(const Elements& elements) {
+  std::string result;
+  std::size_t left = elements.count();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    if (!elements[e]) continue;
+    result += (result.empty() ? "" : left == 1 ? " and " : ", ") + element_name(e);
+    --left;
+  }
+  return result;
+}
+
 Mueller identity() { return diagonal(1, 1, 1, 1); }
 
 Mueller diagonal(double m11, double m22, double m33, double m44) {
@@ -115,6 +141,22 @@ Mueller rotator(double angle) { return rotator(std::cos(2 * angle), std::sin(2 *
 
 Mueller rotator(double cos_2a, double sin_2a) {
   return {{1, 0, 0, 0, 0, cos_2a, sin_2a, 0, 0, -sin_2a, cos_2a, 0, 0, 0, 0, 1}};
+}
+
+Mueller rotated(const Mueller& m, double scattered, double incident) {
+  const double c_out = std::cos(2 * scattered), s_out = std::sin(2 * scattered);
+  const double c_in = std::cos(2 * incident), s_in = std::sin(2 * incident);
+  Mueller rows = m;
+  for (int j = 0; j < 4; ++j) {
+    rows(1, j) = c_out * m(1, j) + s_out * m(2, j);
+    rows(2, j) = c_out * m(2, j) - s_out * m(1, j);
+  }
+  Mueller result = rows;
+  for (int i = 0; i < 4; ++i) {
+    result(i, 1) = c_in * rows(i, 1) + s_in * rows(i, 2);
+    result(i, 2) = c_in * rows(i, 2) - s_in * rows(i, 1);
+  }
+  return result;
 }
 
 Mueller exchanged(const Mueller& m) { return with_signs(transpose(m), {1, 1, -1, 1}); }

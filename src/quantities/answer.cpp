@@ -60,12 +60,22 @@ std::vector<double> parts(const Mueller& gradient, const Budget& budget) {
   return result;
 }
 
+/// With 0 for what was not measured, where that has no part.
+Mueller without_unknown(Mueller m) {
+  for (double& element : m.elements)
+    if (std::isnan(element)) element = 0;
+  return m;
+}
+
 Answered in_first_order(const Quantity& quantity, const Mueller& m_sp, const Stokes& light,
                         const std::optional<Budget>& budget) {
   Answered answered{.quantity = &quantity};
+  answered.known = is_known(quantity, m_sp, light);
+  if (!answered.known) return answered;
   try {
-    const double value = quantity.value(m_sp, light);
-    if (budget) answered.parts = parts(quantity.gradient(m_sp, light), *budget);
+    const Mueller m = without_unknown(m_sp);
+    const double value = quantity.value(m, light);
+    if (budget) answered.parts = parts(quantity.gradient(m, light), *budget);
     answered.value = value;
   } catch (const std::invalid_argument&) {
     return answered;  // it has no meaning here
@@ -80,7 +90,7 @@ void set_distribution(Answered& answered, const std::vector<Mueller>& drawn, con
   values.reserve(drawn.size());
   answered.uncertainty.reset();
   try {
-    for (const Mueller& m : drawn) values.push_back(answered.quantity->value(m, light));
+    for (const Mueller& m : drawn) values.push_back(answered.quantity->value(without_unknown(m), light));
   } catch (const std::invalid_argument&) {
     return;
   }
@@ -128,7 +138,10 @@ Answer PreparedAnswers::at(const Geometry& geometry) const {
   Answer a;
   a.elements = model.evaluate(geometry, options.frame);
   a.outside = model.outside(geometry);
-  a.realizable = a.elements(0, 0) > 0 && realizable(a.elements);
+  if (!(a.elements(0, 0) > 0))
+    a.realizable = false;
+  else if (unknown_elements(a.elements).none())
+    a.realizable = realizable(a.elements);
   std::vector<Mueller> drawn_sp;
   if (uncertainty) {
     a.estimable = !leaves_known_range(a.outside) && uncertainty->estimable(geometry);

@@ -60,6 +60,8 @@ std::vector<Sample> some_of(std::span<const Sample> samples, std::size_t most) {
 std::vector<ConventionFit> convention_fits(std::span<const Sample> samples, const Orders& orders, DiscMapping mapping,
                                            std::size_t most) {
   const std::vector<Sample> some = some_of(samples, most);
+  for (const Sample& sample : some)  // frames would lose elements, and be compared by others
+    if (const Elements unknown = not_measured(sample); turned_into(unknown) != unknown) return {};
   FitOptions options;
   options.minimum_norm = true;
   std::vector<ConventionFit> result;

@@ -18,10 +18,12 @@ namespace {
 using M = const Mueller&;
 using S = const Stokes&;
 
+constexpr unsigned all_of_them = 0xffff, first_row = 0x000f, first_column = 0x1111, s_and_p = 0x0033;
+
 /// A row for what does not take light.
 template <double (*value)(M), Mueller (*gradient)(M)>
-constexpr Quantity of_matrix(std::string_view name, std::string_view meaning) {
-  return {name, "", meaning, false, false, [](M m, S) { return value(m); }, [](M m, S) { return gradient(m); }};
+constexpr Quantity of_matrix(std::string_view name, std::string_view meaning, Elements needs = all_of_them) {
+  return {name, "", meaning, false, false, needs, [](M m, S) { return value(m); }, [](M m, S) { return gradient(m); }};
 }
 
 template <double PolarizedBrdf::*part, Mueller PolarizedBrdfGradients::*slopes>
@@ -31,6 +33,7 @@ constexpr Quantity polarized(std::string_view name, std::string_view meaning) {
           meaning,
           true,
           false,
+          s_and_p,
           [](M m, S) { return co_and_cross_polarized(m).*part; },
           [](M, S) { return co_and_cross_polarized_gradients().*slopes; }};
 }
@@ -76,6 +79,7 @@ constexpr Quantity component(std::string_view name, std::string_view meaning) {
           meaning,
           true,
           true,
+          first_row << 4 * k,
           [](M m, S light) { return scattered(m, light)[k]; },
           [](M m, S light) { return scattered(m, light), scattered_gradient(k, light); }};
 }
@@ -120,9 +124,9 @@ constexpr Quantity table[] = {
     polarized<&P::ps, &G::ps>("f_ps", "BRDF from p- to s-polarized light"),
     polarized<&P::pp, &G::pp>("f_pp", "BRDF from p- to p-polarized light"),
     of_matrix<depolarization_ratio, depolarization_ratio_gradient>(
-        "depolarization_ratio", "linear depolarization ratio, (f_sp + f_ps) / (f_ss + f_pp), frame sp"),
-    of_matrix<diattenuation, diattenuation_gradient>("diattenuation", "length of (M12, M13, M14) / M11"),
-    of_matrix<polarizance, polarizance_gradient>("polarizance", "length of (M21, M31, M41) / M11"),
+        "depolarization_ratio", "linear depolarization ratio, (f_sp + f_ps) / (f_ss + f_pp), frame sp", s_and_p),
+    of_matrix<diattenuation, diattenuation_gradient>("diattenuation", "length of (M12, M13, M14) / M11", first_row),
+    of_matrix<polarizance, polarizance_gradient>("polarizance", "length of (M21, M31, M41) / M11", first_column),
     of_matrix<realizability_margin, realizability_margin_gradient>(
         "eigenvalue_min", "smallest eigenvalue of the coherency matrix / M11: negative for what cannot exist"),
     of_matrix<purity, purity_gradient>("purity", "1/4 for a perfect depolarizer, 1 for a Jones matrix"),
@@ -132,10 +136,10 @@ constexpr Quantity table[] = {
     component<1>("scattered_S2", "scattered light: s- minus p-polarized"),
     component<2>("scattered_S3", "scattered light: at +45 minus at -45 degrees, from s towards p"),
     component<3>("scattered_S4", "scattered light: left- minus right-handed"),
-    {"degree_of_polarization", "", "of the scattered light", false, true, degree_of_polarization,
+    {"degree_of_polarization", "", "of the scattered light", false, true, all_of_them, degree_of_polarization,
      degree_of_polarization_gradient},
     {"orientation_deg", "deg", "scattered light: angle of linear polarization from s to p, -90 to 90", true, true,
-     orientation_deg, orientation_deg_gradient},
+     first_row | first_row << 4 | first_row << 8, orientation_deg, orientation_deg_gradient},
 };
 
 constexpr std::size_t without_light =
@@ -145,6 +149,13 @@ constexpr std::size_t without_light =
 
 std::span<const Quantity> quantities(bool with_light) {
   return std::span(table).first(with_light ? std::size(table) : without_light);
+}
+
+bool is_known(const Quantity& quantity, const Mueller& m, const Stokes& light) {
+  Elements needs = quantity.needs;
+  for (std::size_t column = 0; column < 4 && quantity.takes_light; ++column)
+    if (light[column] == 0) needs &= ~Elements(first_column << column);
+  return (needs & unknown_elements(m)).none();
 }
 
 const Quantity& quantity(std::string_view name) {

@@ -145,9 +145,9 @@ Field realizability(const Reported& reported) {
       field.value.push_back({{"wavelength_nm", wavelength_json(reported, wavelength)},
                              {"theta_max_deg", degrees(theta_max)},
                              {"geometries", d.geometries},
-                             {"unrealizable", d.unrealizable},
-                             {"smallest_margin", d.margin.value},
-                             {"margin_at", at(d.margin.geometry)},
+                             {"unrealizable", d.whole ? Json(d.unrealizable) : Json(nullptr)},
+                             {"smallest_margin", d.whole ? Json(d.margin.value) : Json(nullptr)},
+                             {"margin_at", d.whole ? Json(at(d.margin.geometry)) : Json(nullptr)},
                              {"f11_not_positive", d.not_positive_f11},
                              {"smallest_f11", d.f11.value},
                              {"largest_dhr", d.dhr},
@@ -213,7 +213,8 @@ Json residuals_json(const Comparison& comparison) {
   rows.push_back(difference_json("11", "sr^-1", comparison.f11));
   rows.push_back(difference_json("11", "f11", comparison.f11_relative));
   for (std::size_t e = 1; e < 16; ++e)
-    rows.push_back(difference_json(element_name(e), "f11", comparison.normalized[e]));
+    if (comparison.normalized[e].samples > 0)
+      rows.push_back(difference_json(element_name(e), "f11", comparison.normalized[e]));
   return rows;
 }
 
@@ -274,7 +275,10 @@ FitResult refitted(const Model& model, std::span<const Sample> samples, Weights 
 }
 
 bool knows_all_uncertainties(const Sample& sample) {
-  return std::ranges::all_of(sample.uncertainty.elements, [](double u) { return u > 0; });
+  const Elements unknown = not_measured(sample);
+  for (std::size_t e = 0; e < 16; ++e)
+    if (!unknown[e] && !(sample.uncertainty.elements[e] > 0)) return false;
+  return true;
 }
 
 /// And what the samples say against themselves.

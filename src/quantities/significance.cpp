@@ -61,7 +61,8 @@ std::array<Significance, 16> significance(const Model& first, const Model& secon
     const Mueller variance = of_first.at(of_second[s]) + of_other.at(of_second[s]);
     for (std::size_t e = 0; e < 16; ++e) {
       const double u = std::sqrt(variance.elements[e]);
-      if (u > rounding) add(result[e], std::abs(differences[s].elements[e]) / u, of_second[s]);
+      if (u > rounding && !std::isnan(differences[s].elements[e]))
+        add(result[e], std::abs(differences[s].elements[e]) / u, of_second[s]);
     }
   }
   for (Significance& total : result) {

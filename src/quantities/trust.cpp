@@ -106,7 +106,8 @@ F11Diagnostics f11_diagnostics(const Model& model, double wavelength, double the
 }
 
 ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double theta_max) {
-  ModelDiagnostics result{f11_diagnostics(model, wavelength, theta_max), {}, 0};
+  ModelDiagnostics result{f11_diagnostics(model, wavelength, theta_max), {}, 0, unknown_elements(model).none()};
+  if (!result.whole) return result;
   const PreparedModel prepared = prepare(model, wavelength);
   bool first = true;
   visit_places(theta_max, 1, [&](const Geometry& geometry) {

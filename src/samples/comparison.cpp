@@ -16,6 +16,8 @@ namespace mmbrdf {
 namespace {
 
 void add(Difference& total, double d, const Sample& sample) {
+  if (std::isnan(d)) return;  // not measured, or the model does not know it
+  ++total.samples;
   total.rms += d * d;
   total.mean += d;
   if (std::abs(d) <= total.largest && total.wavelength > 0) return;
@@ -25,9 +27,10 @@ void add(Difference& total, double d, const Sample& sample) {
 }
 
 /// From sums to means.
-void divide(Difference& total, long samples, const std::string& name) {
-  total.rms = std::sqrt(total.rms / static_cast<double>(samples));
-  total.mean /= static_cast<double>(samples);
+void divide(Difference& total, const std::string& name) {
+  if (total.samples == 0) return;
+  total.rms = std::sqrt(total.rms / static_cast<double>(total.samples));
+  total.mean /= static_cast<double>(total.samples);
   if (!std::isfinite(total.rms) || !std::isfinite(total.mean))
     throw std::invalid_argument("the differences of " + name + " are too large to be squared");
 }
@@ -67,11 +70,10 @@ Comparison compare(const Model& model, std::span<const Sample> samples) {
     add(result.f11_relative, d(0, 0) / f11, samples[s]);
     for (std::size_t e = 1; e < 16; ++e) add(result.normalized[e], d.elements[e], samples[s]);
   }
-  const long bright = result.samples - result.dark;
-  if (bright == 0) throw std::invalid_argument("f11 of the model is positive at none of the samples");
-  divide(result.f11, result.samples, "f11");
-  divide(result.f11_relative, bright, "f11");
-  for (std::size_t e = 1; e < 16; ++e) divide(result.normalized[e], bright, "element " + element_name(e));
+  if (result.samples == result.dark) throw std::invalid_argument("f11 of the model is positive at none of the samples");
+  divide(result.f11, "f11");
+  divide(result.f11_relative, "f11");
+  for (std::size_t e = 1; e < 16; ++e) divide(result.normalized[e], "element " + element_name(e));
   return result;
 }
 
@@ -105,9 +107,12 @@ std::vector<Geometry> common_geometries(const Model& first, const Model& second,
 }
 
 double polarization_rms(const Comparison& comparison) {
-  double squares = 0;
-  for (std::size_t e = 1; e < 16; ++e) squares += std::pow(comparison.normalized[e].rms, 2);
-  return std::sqrt(squares / 15);
+  double squares = 0, known = 0;
+  for (std::size_t e = 1; e < 16; ++e) {
+    squares += std::pow(comparison.normalized[e].rms, 2);
+    known += comparison.normalized[e].samples > 0 ? 1 : 0;
+  }
+  return known > 0 ? std::sqrt(squares / known) : 0;
 }
 
 Difference largest(const Comparison& comparison) {

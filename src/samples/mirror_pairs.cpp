@@ -54,20 +54,23 @@ std::vector<std::pair<std::size_t, std::size_t>> paired(std::span<const Sample> 
 MirrorPairs mirror_pairs(std::span<const Sample> samples) {
   require_valid(samples);
   MirrorPairs result;
+  std::array<double, 16> counts{};
   for (const auto& [a, b] : paired(samples)) {
     const Sample first = at_zero_azimuth(samples[a]), second = at_zero_azimuth(samples[b]);
     Mueller difference = first.normalized - mirrored(second.normalized);
     const double mean = (first.f11 + second.f11) / 2;
     difference(0, 0) = mean != 0 ? (first.f11 - second.f11) / mean : 0;
     for (std::size_t e = 0; e < 16; ++e) {
+      if (std::isnan(difference.elements[e])) continue;  // not measured
+      ++counts[e];
       result.rms.elements[e] += difference.elements[e] * difference.elements[e] / 2;
       result.mean.elements[e] += difference.elements[e] / 2;
     }
     ++result.pairs;
   }
   for (std::size_t e = 0; e < 16 && result.pairs > 0; ++e) {
-    result.rms.elements[e] = std::sqrt(result.rms.elements[e] / static_cast<double>(result.pairs));
-    result.mean.elements[e] /= static_cast<double>(result.pairs);
+    result.rms.elements[e] = std::sqrt(result.rms.elements[e] / counts[e]);  // 0 / 0 of what was not measured
+    result.mean.elements[e] /= counts[e];
   }
   return result;
 }

@@ -91,6 +91,7 @@ Rows rows_of(std::span<const Sample> samples, std::span<const Mueller> residuals
       if (row < 0 || row > 3 || column < 0 || column > 3)
         throw std::invalid_argument("element (" + std::to_string(row) + ", " + std::to_string(column) +
                                     "): row and column are counted from 0 to 3");
+      if (not_measured(samples[s])[Element{row, column}.index()]) continue;
       const double residual = residuals[s](row, column) / (row == 0 && column == 0 ? samples[s].f11 : 1);
       if (!std::isfinite(residual * residual))
         throw std::invalid_argument(name + ": the residual of element " + std::to_string(row + 1) +
@@ -162,6 +163,8 @@ NoiseEstimate estimate_noise(std::span<const Sample> samples, std::span<const Mu
     throw std::invalid_argument(std::to_string(residuals.size()) + " residuals for " + std::to_string(samples.size()) +
                                 " samples");
   const Rows rows = rows_of(samples, residuals, elements);
+  if (rows.z.empty() && !samples.empty() && !elements.empty())
+    throw std::invalid_argument("the elements whose residuals tell the law of the noise were not measured");
   require_determined(rows);
   const Eigen::LLT<Matrix3d> information(rows.information);
   const Vector3d beta = most_likely(rows, information);

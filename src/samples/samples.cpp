@@ -44,7 +44,7 @@ double distance(const Direction& a, const Direction& b) {
 void require_valid_elements(const Sample& sample, const std::string& name) {
   for (std::size_t e = 0; e < 16; ++e) {
     const double value = e == 0 ? sample.f11 : sample.normalized.elements[e], u = sample.uncertainty.elements[e];
-    if (!std::isfinite(value))
+    if (std::isinf(value))
       throw std::invalid_argument(name + ": " + sample_element(e) + " = " + shortest(value) + ", must be finite");
     if (!(u >= 0) || !std::isfinite(u))
       throw std::invalid_argument(name + ": u_" + sample_element(e) + " = " + shortest(u) +
@@ -120,6 +120,19 @@ Sides side(const Geometry& geometry) {
   return out < 0 ? negative_side : positive_side;
 }
 
+Elements not_measured(const Sample& sample) {
+  Elements result = unknown_elements(sample.normalized);
+  result[0] = std::isnan(sample.f11);
+  return result;
+}
+
+Elements not_measured(std::span<const Sample> samples) {
+  Elements result;
+  result.set();
+  for (const Sample& sample : samples) result &= not_measured(sample);
+  return result;
+}
+
 std::string sample_element(std::size_t element) { return (element == 0 ? "f" : "m") + element_name(element); }
 
 bool has_uncertainty(const Sample& sample) {
@@ -134,6 +147,7 @@ void require_valid(std::span<const Sample> samples) {
     require_wavelength(sample, i);
     require_valid(sample.geometry, name.c_str());
     require_valid_elements(sample, name);
+    if (not_measured(sample).all()) throw std::invalid_argument(name + ": nothing is measured");
   }
 }
 

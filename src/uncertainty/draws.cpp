@@ -84,6 +84,7 @@ MatrixXd correlated(const FittedBlock& fitted, const ReflectanceTable& table, co
 Model over_modes_behind(const Model& model) {
   Model result;
   result.mapping = model.mapping;
+  result.not_measured = model.not_measured;
   result.reflectance = {model.reflectance.wavelengths, model.reflectance.values};
   result.validity = model.validity;
   for (const Block& block : model.posterior->blocks())

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -63,6 +64,15 @@ struct PreparedUncertainty::Blocks {
   int order = 0;  // of the functions of the rows
   DiscMapping mapping = DiscMapping::lambert;
   bool turns = false;
+  Elements unknown;  // in the frame xy
+
+  /// The covariance in a frame, from that of what the modes give.
+  MuellerCovariance in_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame frame) const {
+    const auto [left, right] = to_frame(geometry, frame);
+    MuellerCovariance result = transformed(covariance, left, right);
+    if (unknown.any()) set_unknown(result, frame == Frame::xy ? unknown : turned_into(unknown));
+    return result;
+  }
 
   /// As the modes are asked.
   Geometry turned(const Geometry& geometry) const {
@@ -134,6 +144,7 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
   blocks->order = std::max(highest.f11, highest.other);
   blocks->mapping = model.mapping;
   blocks->turns = mmbrdf::turns(model);
+  blocks->unknown = unknown_elements(model);
   blocks->freedom = degrees_of_freedom(model);
   blocks->list = blocks_at(model, wavelength);
   for (BlockAt& block : blocks->list) {
@@ -145,8 +156,7 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
 
 MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
   const NormalizedAt at = blocks_->normalized({&geometry, 1});
-  const auto [left, right] = blocks_->to_frame(geometry, frame);
-  return transformed(at.total(0), left, right);
+  return blocks_->in_frame(at.total(0), geometry, frame);
 }
 
 MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame frame) const {
@@ -163,19 +173,16 @@ void PreparedUncertainty::evaluate(std::span<const Geometry> geometries, Frame f
   for (std::size_t first = 0; first < geometries.size(); first += at_once) {
     const auto some = geometries.subspan(first, std::min(at_once, geometries.size() - first));
     const NormalizedAt at = blocks_->normalized(some);
-    for (std::size_t g = 0; g < some.size(); ++g) {
-      const auto [left, right] = blocks_->to_frame(some[g], frame);
-      out[first + g] = transformed(of_product(at.m[g], at.total(g)), left, right);
-    }
+    for (std::size_t g = 0; g < some.size(); ++g)
+      out[first + g] = blocks_->in_frame(of_product(at.m[g], at.total(g)), some[g], frame);
   }
 }
 
 std::vector<BudgetTerm> PreparedUncertainty::parts(const Geometry& geometry, Frame frame) const {
   const NormalizedAt at = blocks_->normalized({&geometry, 1});
-  const auto [left, right] = blocks_->to_frame(geometry, frame);
   std::vector<BudgetTerm> result;
   for (const NormalizedAt::Part& part : at.parts)
-    result.push_back({part.name, transformed(of_product(at.m[0], part.covariances[0]), left, right)});
+    result.push_back({part.name, blocks_->in_frame(of_product(at.m[0], part.covariances[0]), geometry, frame)});
   result.front().freedom = freedom();
   return result;
 }
@@ -210,8 +217,11 @@ MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> 
     }
   }
   MuellerGradient result;
+  const Elements unknown = frame == Frame::xy ? blocks_->unknown : turned_into(blocks_->unknown);
   for (Index e = 0; e < 16; ++e)
-    for (Index q = 0; q < sum.cols(); ++q) result.values.push_back(sum(e, q));
+    for (Index q = 0; q < sum.cols(); ++q)
+      result.values.push_back(unknown[static_cast<std::size_t>(e)] ? std::numeric_limits<double>::quiet_NaN()
+                                                                   : sum(e, q));
   return result;
 }
 

@@ -42,10 +42,10 @@ struct Columns {
 };
 
 template <class Real>
-struct Elements {
+struct ElementColumns {
   std::array<std::vector<Real>, 16> values;
   MuellerColumns<Real> columns;
-  explicit Elements(std::size_t count) {
+  explicit ElementColumns(std::size_t count) {
     for (std::size_t e = 0; e < 16; ++e) {
       values[e].resize(count);
       columns.elements[e] = values[e];
@@ -98,7 +98,7 @@ RC_GTEST_PROP(Batch, HasTheBitsOfOneAtATime, ()) {
   const Columns<double> vectors(geometries);
   std::vector<Mueller> from_angles(geometries.size()), rows(geometries.size());
   std::vector<double> numbers(16 * geometries.size());
-  Elements<double> columns(geometries.size());
+  ElementColumns<double> columns(geometries.size());
   evaluate(model, geometries, from_angles);
   evaluate(model, vectors.geometries(), rows);
   evaluate(model, vectors.geometries(), numbers);
@@ -119,7 +119,7 @@ RC_GTEST_PROP(Batch, InSinglePrecisionKeepsItsPromise, ()) {
   const Columns<float> vectors(geometries);
   const Frame frame = *rc::gen::element(Frame::xy, Frame::sp);
   std::vector<float> rows(16 * geometries.size());
-  Elements<float> columns(geometries.size());
+  ElementColumns<float> columns(geometries.size());
   evaluate(model, vectors.geometries(), rows, {.frame = frame});
   evaluate(model, vectors.geometries(), columns.columns, {.frame = frame});
   for (std::size_t q = 0; q < geometries.size(); ++q) {

@@ -140,7 +140,8 @@ constexpr const char* columns =
 constexpr const char* footer =
     "and realizable, 1 unless f11 or an eigenvalue is negative; estimable, 1 where the data of the fit determine "
     "every\n"
-    "element. A field is empty where a quantity has no meaning (f11 is not positive) or its uncertainty is not known.\n"
+    "element. A field is empty where a quantity has no meaning (f11 is not positive), needs an\n"
+    "element that was not measured, or its uncertainty is not known.\n"
     "\n"
     "A scan of theta_r without --reflected runs in the plane of incidence: forward (phi_r = phi_i + 180) for\n"
     "theta_r > 0, back towards the source for theta_r < 0.\n"

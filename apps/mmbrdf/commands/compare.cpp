@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "command.hpp"
@@ -163,7 +164,9 @@ Table table(const Comparison& comparison, const std::optional<std::array<Signifi
   if (significance)
     for (const Column& column : significance_columns(in_csv | in_json)) table.columns.push_back(column);
   const auto add = [&](std::size_t e, const std::string& unit, const Difference& d) {
-    Table::Row& row = table.rows.emplace_back(Table::Row{element_name(e), unit, d.rms, d.mean, d.largest});
+    Table::Row& row = table.rows.emplace_back(Table::Row{element_name(e), unit});
+    if (d.samples == 0) return;  // not measured
+    row.insert(row.end(), {d.rms, d.mean, d.largest});
     std::ranges::copy(place(d), std::back_inserter(row));
     append(row, significance, e, 1);
   };
@@ -174,11 +177,15 @@ Table table(const Comparison& comparison, const std::optional<std::array<Signifi
 }
 
 std::string text(const Report& report) {
+  const auto others = std::ranges::count_if(std::span(report.comparison.normalized).subspan(1),
+                                            [](const Difference& d) { return d.samples > 0; });
   return report.second + " - " + report.first + (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
          counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) + ", frame xy\n\n" +
          text(table(report.comparison, report.significance)) +
          (report.significance ? significance_text(*report.significance) : "") +
-         format("\nrms of the 15 others / f11         %.6g\n", polarization_rms(report.comparison)) +
+         (others == 0 ? "\n"
+                      : format("\n%-35s%.6g\n", ("rms of the " + std::to_string(others) + " others / f11").c_str(),
+                               polarization_rms(report.comparison))) +
          format("largest difference / f11           %.6g\n", largest(report.comparison).largest);
 }
 

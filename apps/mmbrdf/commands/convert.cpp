@@ -56,12 +56,13 @@ Change change(const Model& before, const Model& after) {
       const Mueller f = old_model.evaluate(geometry), g = new_model.evaluate(geometry);
       const Mueller difference = normalized(f) - normalized(g);
       change.f11 += std::pow(f(0, 0) - g(0, 0), 2);
-      for (const double m : difference.elements) change.others += m * m;
+      for (const double m : difference.elements) change.others += std::isnan(m) ? 0 : m * m;
     }
   }
+  const auto others = static_cast<double>(std::max<std::size_t>(15 - unknown_elements(before).count(), 1));
   const double geometries = count * static_cast<double>(wavelengths.size());
   change.f11 = std::sqrt(change.f11 / geometries);
-  change.others = std::sqrt(change.others / (15 * geometries));
+  change.others = std::sqrt(change.others / (others * geometries));
   return change;
 }
 

@@ -30,8 +30,8 @@ struct Options {
 };
 
 /// The blocks in the order of their elements' names, then what was asked for.
-std::vector<NamedTarget> wanted(const Options& options) {
-  std::vector<NamedTarget> result = block_targets();
+std::vector<NamedTarget> wanted(const Options& options, const VarianceComponents& known) {
+  std::vector<NamedTarget> result = block_targets(known);
   for (const std::string& text : options.targets) try {
       for (NamedTarget& one : targets_from(text)) result.push_back(std::move(one));
     } catch (const std::invalid_argument& error) {
@@ -104,14 +104,14 @@ void plan(const Options& options) {
   require_kept(options.candidates, options.output, "candidates");
   if (!options.like.empty()) require_model_kept(options.like, options.output);
   const VarianceComponents known = components(options);
-  const std::vector<NamedTarget> all = wanted(options);
+  const std::vector<NamedTarget> all = wanted(options, known);
   std::vector<NamedDesign> list = designs(options);
   if (options.choose == 0 && !options.candidates.empty()) throw missing("--choose");
   if (options.choose > 0) {
     if (options.candidates.empty()) throw missing("--from");
     const std::vector<Geometry> candidates = read_geometries(options.candidates);
     std::vector<PlanTarget> targets;
-    const bool own = all.size() > block_targets().size();
+    const bool own = all.size() > block_targets(known).size();
     for (const NamedTarget& one : all)
       if (!own || one.target.kind != PlanTarget::Kind::block) targets.push_back(one.target);
     const std::vector<Geometry> start = list.empty() ? std::vector<Geometry>{} : list.front().geometries;

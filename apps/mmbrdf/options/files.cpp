@@ -30,9 +30,9 @@ bool is_built_in(const std::string& name) {
 
 /// A truncated coefficient file is a valid one, of fewer modes.
 void warn_of_missing_elements(const Model& model) {
-  std::array<bool, 16> there{};
+  Elements there = model.not_measured;  // that is no surprise
   for (const FittedBlock& fitted : model.blocks)
-    for (const Element& element : fitted.block.elements) there[element.index()] = true;
+    for (const Element& element : fitted.block.elements) there.set(element.index());
   std::vector<std::string> missing;
   for (std::size_t element = 0; element < 16; ++element)
     if (!there[element]) missing.push_back(element_name(element));

@@ -27,14 +27,17 @@ std::string validity_words(Outside outside) {
 
 std::string estimable_words(const Answer& a) {
   if (!a.estimable) return "not known";
-  if (*a.estimable) return "yes, the data of the fit determine every element here";
+  if (*a.estimable)
+    return unknown_elements(a.elements).any() ? "yes, the data of the fit determine every element that was measured"
+                                              : "yes, the data of the fit determine every element here";
   return leaves_known_range(a.outside)
              ? "no, no data of the fit reach here: uncertainties are not verified"
              : "no, the data of the fit leave elements free here: uncertainties are too small";
 }
 
 std::string realizable_words(const Answer& a) {
-  if (a.realizable) return "yes, a scatterer can have this matrix";
+  if (!a.realizable) return "not known, " + not_measured_line(unknown_elements(a.elements));
+  if (*a.realizable) return "yes, a scatterer can have this matrix";
   return a.elements(0, 0) > 0 ? "no, no scatterer can have this matrix: eigenvalue_min is negative"
                               : "no, no scatterer can have this matrix: f11 is not positive";
 }
@@ -55,6 +58,10 @@ std::string uncertainty_words(const AnalysisReport& r) {
 
 void print_quantity(const Answered& q, std::string_view name, std::string_view unit, const Answer& a) {
   std::cout << format("%-24.*s", static_cast<int>(name.size()), name.data());
+  if (!q.known) {
+    std::cout << "-  not measured\n";
+    return;
+  }
   if (!q.value) {
     std::cout << (a.elements(0, 0) > 0 ? "has no meaning here\n" : "has no meaning where f11 is not positive\n");
     return;
@@ -121,7 +128,7 @@ nlohmann::ordered_json number_or_null(const std::optional<double>& value) {
 
 void append(std::string& text, const std::optional<double>& value) {
   text += ',';
-  if (value) append_exact(text, *value);
+  if (value && !std::isnan(*value)) append_exact(text, *value);
 }
 
 std::string columns(const Answers& answers) {
@@ -148,7 +155,7 @@ void append_fields(std::string& text, const Answer& a, const Answers& answers) {
       append(text, q.high);
     }
   }
-  text += a.realizable ? ",1," : ",0,";
+  text += a.realizable ? *a.realizable ? ",1," : ",0," : ",,";
   if (a.estimable) text += *a.estimable ? '1' : '0';
 }
 
@@ -184,7 +191,7 @@ void print_json(const AnalysisReport& r) {
   json["unit"] = "sr^-1";
   json["validity"] = to_string(a.outside);
   json["estimable"] = a.estimable ? nlohmann::ordered_json(*a.estimable) : nullptr;
-  json["realizable"] = a.realizable;
+  json["realizable"] = a.realizable ? nlohmann::ordered_json(*a.realizable) : nullptr;
   json["mueller"] = matrix_json(a.elements);
   json["u_mueller"] = a.uncertainties ? matrix_json(*a.uncertainties) : nullptr;
   for (const Answered& q : a.quantities) {

@@ -115,7 +115,9 @@ std::string matrix_text(const Mueller& m, const std::optional<Mueller>& u) {
   std::string text;
   for (std::size_t e = 0; e < 16; ++e) {
     const double value = without_rounding(m.elements[e]);
-    const std::string element = u ? to_place_of(value, without_rounding(u->elements[e])) : format("%.10f", value);
+    const std::string element = std::isnan(value) ? "-"
+                                : u               ? to_place_of(value, without_rounding(u->elements[e]))
+                                                  : format("%.10f", value);
     const auto point = static_cast<int>(std::min(element.find('.'), element.size()));
     text += format("%5.*s%-11s", point, element.c_str(), element.c_str() + point);
     if (text.back() != ' ') text += ' ';  // of a large number

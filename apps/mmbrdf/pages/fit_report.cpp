@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <span>
 
 #include "mmbrdf/mixed/sample_traits.hpp"
 #include "mmbrdf/model/description.hpp"
@@ -31,6 +32,12 @@ long polarization_rows(const FitResult& result) {
   long rows = 0;
   for (std::size_t element = 1; element < 16; ++element) rows += result.elements[element].rows;
   return rows;
+}
+
+/// Of the 15, how many were measured.
+long polarized_elements(const FitResult& result) {
+  return std::ranges::count_if(std::span(result.elements).subspan(1),
+                               [](const ElementFit& fit) { return fit.rows > 0; });
 }
 
 /// Whether chi^2 can be set beside the degrees of freedom.
@@ -67,10 +74,13 @@ Table elements(const FitResult& result) {
     const ElementFit& fit = result.elements[element];
     const std::size_t b = block_of(result.model, element);
     const bool fitted = b < result.solutions.size();
-    Table::Row row{element_name(element), fit.rows, fit.rms, fit.chi_squared};
-    std::ranges::move(fitted ? block_row(result, b) : Table::Row{"no modes", 0, 0}, std::back_inserter(row));
+    const char* without = result.model.not_measured[element] ? "not measured" : "no modes";
+    const bool measured = fit.rows > 0;
+    Table::Row row{element_name(element), fit.rows, measured ? Json(fit.rms) : Json(),
+                   measured ? Json(fit.chi_squared) : Json()};
+    std::ranges::move(fitted ? block_row(result, b) : Table::Row{without, 0, 0}, std::back_inserter(row));
     row.resize(4 + of_blocks.size());
-    row.push_back(fitted ? "" : "no modes");
+    row.push_back(fitted ? measured ? "" : "from the others" : without);
     table.rows.push_back(row);
   }
   return table;
@@ -89,12 +99,16 @@ void print_text(const FitReport& report) {
             << "basis " << basis_line(model) << ", weights " << report.weights << "\n\n"
             << text(elements(report.result)) << '\n'
             << text(blocks(report.result));
+  const std::string others = "the " + std::to_string(polarized_elements(report.result)) + " others / f11";
   const char* f11 = model.reflectance.values.empty() ? "f11, sr^-1" : "f11 / reflectance, sr^-1";
   std::cout << format("\nrms of %-27s %.6g\n", f11, report.result.elements[0].rms)
-            << format("rms of %-27s %.6g\n", "the 15 others / f11", polarization_rms(report.result));
+            << (polarization_rows(report.result) > 0
+                    ? format("rms of %-27s %.6g\n", others.c_str(), polarization_rms(report.result))
+                    : "");
   if (knows_scale(report.result)) {
     const ReducedChiSquared reduced = chi_squared_per_dof(report.result);
-    std::cout << format("%-34s %.3g\n%-34s %.3g\n", "chi^2/dof of f11", reduced.f11, "chi^2/dof of the 15 others",
+    std::cout << format("%-34s %.3g\n%-34s %.3g\n", "chi^2/dof of f11", reduced.f11,
+                        ("chi^2/dof of the " + std::to_string(polarized_elements(report.result)) + " others").c_str(),
                         reduced.others)
               << format("%-34s ", "uncertainties of the model from") << source_of_uncertainties(report.covariance)
               << '\n';

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -73,7 +74,7 @@ std::string element_columns(bool normalized) {
 void append_elements(std::string& text, const Mueller& m) {
   for (const double value : m.elements) {
     text += ',';
-    append_exact(text, value);
+    if (!std::isnan(value)) append_exact(text, value);  // else it was not measured
   }
 }
 

@@ -62,6 +62,9 @@ struct Block {
 /// Whether the block is that of element 11, which alone is in sr⁻¹.
 inline bool feeds_f11(const Block& block) { return block.elements.front().index() == 0; }
 
+/// The blocks but those whose elements are all among these.
+std::vector<Block> without(const Elements& elements, std::vector<Block> blocks);
+
 /// Radial orders: n, m ≤ f11 for the element 11, ≤ other for all others.
 struct Orders {
   int f11 = 7;

@@ -2,7 +2,8 @@
 /// From samples to a model, by linear least squares.
 ///
 /// f11 is fitted directly (divided by the reflectance where there is one), the other elements as m_ij = f_ij / f11.
-/// Elements that reciprocity or the basis ties together are fitted together, block by block. With y the samples of a
+/// What was not measured (samples.hpp) has weight 0; a block without a row is not in the model, which then does not know
+/// its elements. Elements that reciprocity or the basis ties together are fitted together, block by block. With y the samples of a
 /// block, X its modes at their geometries and W the weights, the coefficients minimise ‖W^½ (X a − y)‖, and
 ///
 ///     covariance(a) = s² (Xᵀ W X)⁺,     s² = ‖W^½ (X a − y)‖² / (rows − rank).
@@ -184,6 +185,7 @@ class FitAccumulator {
   void require_determined(const std::string& refusal, const std::string& free, const FitOptions& options) const;
   int chosen_powers(const FitOptions& options) const;
   ReflectanceTable own_reflectance(const FitOptions& options, SvdCache& known) const;
+  Elements not_measured() const;
   void require_covered(const ReflectanceTable& table) const;
   ElementFit element_fit(std::size_t element, std::span<const double> x, const ReflectanceTable& reflectance) const;
 

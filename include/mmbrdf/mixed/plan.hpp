@@ -23,7 +23,7 @@ struct VarianceComponents {
   DiscMapping mapping = DiscMapping::lambert;
   ReadingLaw law;
   std::vector<double> f11;      ///< as in PosteriorAt; empty: 1/π everywhere
-  std::vector<OfBlock> blocks;  ///< of the isotropic family
+  std::vector<OfBlock> blocks;  ///< of the isotropic family; without hyperparameters: not measured
 };
 
 /// Those of a fit at the fitted wavelength that is nearest (micrometres).
@@ -50,8 +50,8 @@ struct NamedTarget {
   std::string name;
   PlanTarget target;
 };
-/// All blocks, in canonical order.
-std::vector<NamedTarget> block_targets();
+/// All blocks that were measured, in canonical order.
+std::vector<NamedTarget> block_targets(const VarianceComponents& components);
 /// Of "dhr:THETA[,THETA...]" or "f:THETA_I:THETA_R[:PHI_R]", in degrees, phi_r 180 unless it is given. Throws
 /// std::invalid_argument for another text.
 std::vector<NamedTarget> targets_from(const std::string& text);

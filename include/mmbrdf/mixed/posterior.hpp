@@ -72,7 +72,7 @@ struct PosteriorAt {
   ReadingLaw law;                      ///< of the noise
   std::vector<double> f11;             ///< what the noise of f11 is relative to: isotropic modes of order first_order
   std::size_t readings = 0;            ///< which of the lists of directions
-  std::vector<BlockPosterior> blocks;  ///< those of the isotropic family, in canonical order
+  std::vector<BlockPosterior> blocks;  ///< those of the isotropic family that were measured, in canonical order
 };
 
 inline constexpr int first_order = 7;                 ///< of the fit that weights are relative to
@@ -81,6 +81,7 @@ inline constexpr std::size_t most_directions = 9000;  ///< beyond these the cova
 struct PosteriorData {
   Orders orders;  ///< of the isotropic modes: generous
   DiscMapping mapping = DiscMapping::lambert;
+  Elements not_measured{};                               ///< there is nothing of their blocks
   std::vector<SharedError> errors;                       ///< those that are declared first
   std::vector<std::vector<ReadingDirections>> readings;  ///< lists of directions, each for one or several wavelengths
   std::vector<PosteriorAt> wavelengths;                  ///< rising

@@ -16,6 +16,9 @@ std::string basis_line(const Model& model);
 /// "theta_i <= 75, theta_r <= 81.87 degrees", or "not known"
 std::string angles_line(const Validity& validity);
 
+/// "f11 alone was measured", or "not measured: 12, 13 and 44".
+std::string not_measured_line(const Elements& elements);
+
 /// "theta_i <= 75, theta_r <= 81.87 degrees at 351, 532 nm", or what of it is known
 std::string fitted_range(const Validity& validity);
 

@@ -106,6 +106,9 @@ struct Model {
                             ///< enter an evaluation
   int powers = 0;           ///< highest power of the wavelength
   std::vector<FittedBlock> blocks;
+  Elements
+      not_measured{};  ///< of whose blocks no sample tells: there are none of them, and these elements are unknown,
+                       ///< NaN, wherever the model is asked. All other elements without modes are 0
   ReflectanceTable reflectance;
   Validity validity;
   std::optional<Posterior>
@@ -123,6 +126,10 @@ double degrees_of_freedom(const Model& model);
 
 /// Whether it is evaluated at phi_i = 0 and turned.
 bool turns(const Model& model);
+
+/// The elements that are unknown in a frame: those that were not measured, and where axes are turned those that they are
+/// mixed with.
+Elements unknown_elements(const Model& model, Frame frame = Frame::xy);
 
 /// The model with the azimuths as they are: to compare with other programs, whatever it was fitted to.
 Model as_printed(Model model);

@@ -12,7 +12,8 @@ namespace mmbrdf {
 
 class PreparedIncidence;
 
-/// A model at one wavelength: what does not depend on the geometry is done. Holds its own copy of all it needs.
+/// A model at one wavelength: what does not depend on the geometry is done. Holds its own copy of all it needs. Elements
+/// that were not measured are NaN in its matrices: unknown_elements() says which.
 /// Evaluation allocates nothing, locks nothing and may run in many threads at once.
 class PreparedModel {
  public:

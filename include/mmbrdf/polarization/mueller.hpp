@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <string>
 
@@ -26,8 +27,12 @@ struct Element {
   friend bool operator==(const Element&, const Element&) = default;
 };
 
+/// Some of them, in row-major order.
+using Elements = std::bitset<16>;
+
 /// A 4 × 4 real matrix that maps incident to scattered Stokes vectors. As a BRDF its unit is sr⁻¹.
-/// Row = outgoing, column = incoming component, both counted from 0. Plain data: 16 doubles in row-major order.
+/// Row = outgoing, column = incoming component, both counted from 0. Plain data: 16 doubles in row-major order. An element
+/// that was not measured is NaN.
 struct Mueller {
   std::array<double, 16> elements{};
 
@@ -38,6 +43,16 @@ struct Mueller {
 
 /// Of element number 0 … 15 in row-major order: "11", "12" … "44".
 std::string element_name(std::size_t element);
+
+/// "12, 13 and 44" for messages.
+std::string element_names(const Elements& elements);
+
+/// Those that are NaN.
+Elements unknown_elements(const Mueller& m);
+
+/// The elements that a turn of either beam's axes mixes with one of these, and these: 12 and 13, 21 and 31, 24 and 34, 42
+/// and 43, and 22, 23, 32 and 33 belong together.
+Elements turned_into(const Elements& elements);
 
 Mueller identity();
 Mueller diagonal(double m11, double m22, double m33, double m44);
@@ -57,6 +72,10 @@ Mueller rotator(double angle);
 
 /// R(a) from the direction of the double angle: cos 2a and sin 2a. For callers that have no angle, only a vector.
 Mueller rotator(double cos_2a, double sin_2a);
+
+/// R(scattered) M R(incident)ᵀ: the same matrix, in axes of both beams turned by these angles (radians). What is unknown
+/// makes unknown what it is mixed with, as turned_into() says, and no more.
+Mueller rotated(const Mueller& m, double scattered, double incident);
 
 /// A Mᵀ A with A = diag(1, 1, −1, 1): the matrix measured when source and detector change places (Eq. 12).
 /// Elements 13, 23, 34 and their transposes change sign. Valid in each of the frames of geometry.hpp.

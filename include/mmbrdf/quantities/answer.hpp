@@ -25,7 +25,7 @@ struct AnswerOptions {
   unsigned long seed = 0;
 };
 
-/// A quantity: no value where it has no meaning, no uncertainty where it is not known.
+/// A quantity: no value where it has no meaning or an element that it needs was not measured, no uncertainty where it is not known.
 struct Answered {
   const Quantity* quantity = nullptr;
   std::optional<double> value = {}, uncertainty = {};  ///< standard (k = 1)
@@ -33,15 +33,16 @@ struct Answered {
   /// Standard uncertainties in first order from each term of the budget alone, then from all. What is left of a
   /// cancellation, such as of a scale in a ratio, is 0. None if there is no budget.
   std::vector<double> parts = {};
+  bool known = true;  ///< the elements that it needs were measured
 };
 
 struct Answer {
-  Mueller elements;                      ///< in sr⁻¹
-  std::optional<Mueller> uncertainties;  ///< of the elements
+  Mueller elements;                      ///< in sr⁻¹; NaN: not measured
+  std::optional<Mueller> uncertainties;  ///< of the elements; NaN as they are
   std::vector<Answered> quantities;      ///< at each geometry the same ones, in their order
   std::optional<Budget> budget;          ///< in the frame sp; none where theta_r has no limit (budget.hpp)
   std::optional<bool> estimable;         ///< nothing outside of the fitted range is
-  bool realizable = false;               ///< f11 > 0, and no coherency eigenvalue below 0
+  std::optional<bool> realizable;        ///< f11 > 0, and no coherency eigenvalue below 0; none: not all was measured
   Outside outside = inside;
 };
 

@@ -20,12 +20,16 @@ struct Quantity {
   bool first_order;  ///< its uncertainty is that of first order, even where there are draws: it is linear in M, or an
                      ///< angle, of which draws have no order
   bool takes_light;
+  Elements needs;  ///< elements that it is made of, with light of all four components
   double (*value)(const Mueller& m_sp, const Stokes& light_sp);
   Mueller (*gradient)(const Mueller& m_sp, const Stokes& light_sp);  ///< derivatives with respect to M_ij
 };
 
 /// In the order of the columns: first those of a matrix alone, then, if asked for, those that take light.
 std::span<const Quantity> quantities(bool with_light = true);
+
+/// Whether a matrix tells it: all elements that it needs for this light were measured.
+bool is_known(const Quantity& quantity, const Mueller& m_sp, const Stokes& light_sp);
 
 /// Throws std::invalid_argument for a name that is not in the table.
 const Quantity& quantity(std::string_view name);

@@ -29,6 +29,7 @@ struct F11Diagnostics {
 struct ModelDiagnostics : F11Diagnostics {
   Extreme margin;        ///< smallest coherency eigenvalue of M / f11: negative is not realizable (Cloude 1986)
   int unrealizable = 0;  ///< how many are negative
+  bool whole = true;     ///< all elements were measured; else neither is known
 };
 
 /// Both throw std::invalid_argument for an invalid model or wavelength, or theta_max not in [0, π/2].

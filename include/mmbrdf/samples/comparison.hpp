@@ -14,6 +14,7 @@ namespace mmbrdf {
 
 /// Differences d of one quantity over all samples.
 struct Difference {
+  long samples = 0;       ///< that have it, and the model too; 0: all else is 0, and nothing is known
   double rms = 0;         ///< √(mean of d²)
   double mean = 0;        ///< with its sign
   double largest = 0;     ///< |d| where it is largest
@@ -54,7 +55,7 @@ std::vector<double> common_wavelengths(const Model& first, const Model& second);
 /// Those of the geometries whose polar angles are within the fitted ranges of both, as far as these are known.
 std::vector<Geometry> common_geometries(const Model& first, const Model& second, std::vector<Geometry> geometries);
 
-/// Root mean square over the 15 normalised elements.
+/// Root mean square over the 15 normalised elements, or those of them that are known; 0 of none.
 double polarization_rms(const Comparison& comparison);
 
 /// The largest difference of all, relative to f11: of f11_relative and the normalised elements.

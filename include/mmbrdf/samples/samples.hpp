@@ -16,11 +16,15 @@ namespace mmbrdf {
 struct Sample {
   double wavelength = 0;  ///< micrometres
   Geometry geometry;
-  double f11 = 0;      ///< unpolarized BRDF in sr⁻¹
-  Mueller normalized;  ///< f_ij / f11; element 11 is 1
+  double f11 = 0;      ///< unpolarized BRDF in sr⁻¹; NaN: not measured
+  Mueller normalized;  ///< f_ij / f11; element 11 is 1; NaN: not measured
   /// Standard uncertainties: element 11 of f11 in sr⁻¹, the others of f_ij / f11. 0: not known.
   Mueller uncertainty{};
 };
+
+/// What is not measured in a sample, or in none of several.
+Elements not_measured(const Sample& sample);
+Elements not_measured(std::span<const Sample> samples);
 
 /// Whether the uncertainty of any of its elements is known.
 bool has_uncertainty(const Sample& sample);
@@ -55,7 +59,7 @@ std::size_t wavelength_index(std::span<const double> wavelengths, double wavelen
 std::vector<Sample> at_wavelengths(std::span<const Sample> samples, std::span<const double> wavelengths);
 
 /// Throws std::invalid_argument, with the sample's number from 1, for a wavelength that is not positive, an invalid
-/// geometry, a number that is not finite or an uncertainty below 0.
+/// geometry, an infinite number, an uncertainty that is not finite or below 0, or a sample of which nothing is measured.
 void require_valid(std::span<const Sample> samples);
 
 /// What is measured at azimuths that are larger by `angle` (radians) if sample and beams are turned together: matrix and

@@ -48,6 +48,7 @@ struct PreparedPattern {
   DiscMapping mapping;
   ReflectanceTable reflectance;
   Validity validity;
+  Elements unknown;  ///< in the frame xy
 
   std::size_t modes() const { return terms_end.size() - 1; }
 };
@@ -78,6 +79,7 @@ struct Evaluation {
   static KernelModel<double> model(const PreparedModel& prepared);
   static KernelModel<double> model(const PreparedIncidence& prepared);
   static const PreparedPattern& pattern(const PreparedModel& prepared);
+  static const PreparedPattern& pattern(const PreparedIncidence& prepared);
 };
 
 }  // namespace mmbrdf

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What was not measured is unknown, not zero: samples.hpp, fit.hpp, model.hpp.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "given/cases.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/files/model_file.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/batch.hpp"
+#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/answer.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+
+using namespace mmbrdf;
+
+namespace {
+
+constexpr Frame frames[] = {Frame::xy, Frame::sp, Frame::scattering_plane};
+const Elements row_and_column_4 = 0x8888 | 0xf000, all_but_f11 = 0xfffe;
+
+std::vector<Sample> without(const Elements& elements, std::vector<Sample> samples) {
+  for (Sample& sample : samples)
+    for (std::size_t e = 1; e < 16; ++e)
+      if (elements[e]) sample.normalized.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  return samples;
+}
+
+std::vector<Sample> of_ptfe(double speckle = 0.006) {
+  return simulate(material("ptfe-532"), std::array{0.532}, random_geometries(300, 3), speckle, 1);
+}
+
+Geometry a_geometry() { return in_degrees(between(0, 75), between(-180, 180), between(0, 75), between(-180, 180)); }
+
+/// The coefficients of the blocks that `some` has are the same bits as those of the same blocks of `all`.
+void expect_same_blocks(const Model& some, const Model& all) {
+  for (const FittedBlock& fitted : some.blocks) {
+    const auto same = std::ranges::find_if(
+        all.blocks, [&](const FittedBlock& other) { return other.block.name == fitted.block.name; });
+    ASSERT_NE(same, all.blocks.end());
+    EXPECT_EQ(fitted.coefficients, same->coefficients) << fitted.block.name;
+    EXPECT_EQ(fitted.covariance, same->covariance) << fitted.block.name;
+  }
+}
+
+}  // namespace
+
+TEST(NotMeasured, ElementsLeaveTheBlocksOfTheOthersAsTheyAreToTheLastBit) {
+  for (const Elements& elements : {all_but_f11, row_and_column_4})
+    for (const Family family : {Family::isotropic, Family::germer2017, Family::anisotropic})
+      for (const Weights weights : {Weights::none, Weights::speckle}) {
+        // Sums over other blocks round f11, which the noise is relative to, in another way.
+        if (family == Family::anisotropic && weights == Weights::speckle) continue;
+        const std::vector<Sample> all = of_ptfe(), some = without(elements, all);
+        const Basis basis{family, {3, 2}};
+        FitOptions options;
+        options.minimum_norm = true;
+        const Model model = fit(some, basis, options, weights).model;
+        EXPECT_EQ(model.not_measured, elements);
+        SCOPED_TRACE(to_string(family) + " " + to_string(weights) + " " + element_names(elements));
+        expect_same_blocks(model, fit(all, basis, options, weights).model);
+      }
+}
+
+TEST(NotMeasured, ElementsLeaveTheMixedModelOfTheOthersAsItIs) {
+  const std::vector<Sample> all = of_ptfe();
+  const Model whole = fit_sample(all, {Family::isotropic, {5, 3}}).model;
+  for (const Elements& elements : {all_but_f11, row_and_column_4}) {
+    const FitResult fitted = fit_sample(without(elements, all), {Family::isotropic, {5, 3}});
+    ASSERT_TRUE(fitted.model.posterior) << fitted.warnings[0];
+    expect_same_blocks(fitted.model, whole);
+    const Geometry g = in_degrees(45, 0, 30, 150);
+    const MuellerCovariance u = prepare_uncertainty(fitted.model, 0.532).evaluate(g),
+                            u_whole = prepare_uncertainty(whole, 0.532).evaluate(g);
+    for (std::size_t e = 0; e < 16; ++e)
+      for (std::size_t other = 0; other < 16; ++other)
+        if (elements[e] || elements[other])
+          EXPECT_TRUE(std::isnan(u(e, other)));
+        else
+          EXPECT_EQ(u(e, other), u_whole(e, other)) << e << " " << other;
+  }
+}
+
+TEST(NotMeasured, ElementsOfSomeSamplesCostTheirRowsAndNoMore) {
+  std::vector<Sample> samples =
+      simulate(random_model(Family::isotropic, {3, 2}, 0, 5), std::array{0.5}, random_geometries(400, 4), 0, 1);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    samples[s] = without(Elements(s * 40503 & 0xfffe), {samples[s]})[0];  // about half of them, others each time
+  samples[7].f11 = std::numeric_limits<double>::quiet_NaN();
+  const FitResult fitted = fit(samples, {Family::isotropic, {3, 2}});
+  EXPECT_EQ(fitted.elements[0].rows, 399);
+  EXPECT_TRUE(fitted.model.not_measured.none());
+  EXPECT_LT(largest_difference(fitted.model, random_model(Family::isotropic, {3, 2}, 0, 5)), 1e-11);
+}
+
+RC_GTEST_PROP(NotMeasured, ElementsAreDeterminedByOthersOfTheirBlock, ()) {
+  // By reciprocity and rotation one element of each block is enough; of 22, 23, 32 and 33, with complex functions, one
+  // real part and one imaginary.
+  const Model truth = random_model(Family::isotropic, {2, 2}, 0, *rc::gen::inRange<std::uint64_t>(0, 1000));
+  Elements kept;
+  for (const std::vector<std::size_t>& block :
+       {std::vector<std::size_t>{0}, {1, 2, 4, 8}, {3, 12}, {5, 10}, {6, 9}, {7, 11, 13, 14}, {15}})
+    kept.set(*rc::gen::elementOf(block));
+  const std::vector<Sample> some = without(~kept, simulate(truth, std::array{0.5}, random_geometries(300, 1), 0, 1));
+  const FitResult fitted = fit(some, {Family::isotropic, {2, 2}});
+  RC_ASSERT(fitted.model.not_measured.none());
+  RC_ASSERT(largest_difference(fitted.model, truth) < 1e-11);
+}
+
+TEST(NotMeasured, AccumulatorsMergeAndAreSentAsOnesOfAllElements) {
+  const std::vector<Sample> samples = without(row_and_column_4, of_ptfe());
+  const Basis basis{Family::isotropic, {3, 2}};
+  FitAccumulator first(basis), second(basis);
+  first.add(std::span(samples).first(100));
+  second.add(std::span(samples).subspan(100));
+  first.merge(FitAccumulator::from_state(basis, second.state()));
+  const Model model = first.solve().model;
+  EXPECT_EQ(model.not_measured, row_and_column_4);
+  EXPECT_LT(largest_difference(model, fit(samples, basis).model), 1e-12);
+}
+
+RC_GTEST_PROP(NotMeasured, IsNaNInEveryFrameWhereAxesMixItAndNowhereElse, ()) {
+  const Model whole = random_model(Family::isotropic, {2, 2}, 0, 1);
+  const Elements elements = *rc::gen::element(Elements(0x0116), Elements(0x1008), Elements(0x0660), Elements(0x6880),
+                                              row_and_column_4, all_but_f11);
+  Model some = whole;
+  some.not_measured = elements;
+  std::erase_if(some.blocks, [&](const FittedBlock& b) { return elements[b.block.elements.front().index()]; });
+  const Geometry g = a_geometry();
+  for (const Frame frame : frames) {
+    const Elements unknown = unknown_elements(some, frame);
+    const Mueller f = prepare(some, 0.5).evaluate(g, frame), all = prepare(whole, 0.5).evaluate(g, frame),
+                  of_incidence = prepare(some, 0.5).at(g.incident).evaluate(g.reflected, frame);
+    RC_ASSERT(unknown_elements(f) == unknown);
+    RC_ASSERT(unknown_elements(of_incidence) == unknown);
+    for (std::size_t e = 0; e < 16; ++e)
+      if (!unknown[e]) RC_ASSERT(std::abs(f.elements[e] - all.elements[e]) < 1e-12);
+  }
+}
+
+TEST(NotMeasured, ElementsAreNaNInBatchesOfBothPrecisionsAndAtManyWavelengths) {
+  Model model = random_model(Family::isotropic, {2, 2}, 1, 1);
+  model.not_measured = row_and_column_4;
+  std::erase_if(model.blocks, [](const FittedBlock& b) { return row_and_column_4[b.block.elements.front().index()]; });
+  const std::vector<Geometry> geometries = random_geometries(100, 1);
+  const std::vector<double> wavelengths(100, 0.6);
+  std::vector<Mueller> out(100);
+  evaluate(prepare(model, 0.5), geometries, out, {.wavelengths = wavelengths});
+  for (const Mueller& f : out) EXPECT_EQ(unknown_elements(f), row_and_column_4);
+  const std::vector<float> x(10, 0.F), z(10, 1.F);
+  std::vector<float> single(160);
+  evaluate(prepare(model, 0.5), VectorGeometries<float>{{x, x, z}, {x, x, z}}, single);
+  for (std::size_t i = 0; i < 160; ++i) EXPECT_EQ(std::isnan(single[i]), row_and_column_4[i % 16]);
+}
+
+TEST(NotMeasured, QuantitiesAreKnownIfAllTheirElementsAre) {
+  const std::vector<Sample> linear = without(row_and_column_4, of_ptfe());
+  const Model model = fit(linear, {Family::isotropic, {3, 2}}).model;
+  const Answers answers(model, {.frame = Frame::sp, .light = Stokes{1, 1, 0, 0}});
+  const Model whole = fit(of_ptfe(), {Family::isotropic, {3, 2}}).model;
+  const Answers of_whole(whole, {.frame = Frame::sp, .light = Stokes{1, 1, 0, 0}});
+  const Geometry g = in_degrees(45, 0, 60, 120);
+  const Answer a = answers.at(0.532).at(g), all = of_whole.at(0.532).at(g);
+  EXPECT_FALSE(a.realizable);
+  for (std::size_t q = 0; q < a.quantities.size(); ++q) {
+    const std::string_view name = a.quantities[q].quantity->name;
+    const bool known = name.starts_with("f_") || name == "depolarization_ratio" || name == "scattered_S1" ||
+                       name == "scattered_S2" || name == "scattered_S3" || name == "orientation_deg";
+    EXPECT_EQ(a.quantities[q].known, known) << name;
+    ASSERT_EQ(a.quantities[q].value.has_value(), known) << name;
+    if (!known) continue;
+    EXPECT_NEAR(*a.quantities[q].value, *all.quantities[q].value, 1e-13 * std::abs(*all.quantities[q].value) + 1e-15);
+    EXPECT_NEAR(*a.quantities[q].uncertainty, *all.quantities[q].uncertainty, 1e-9 * *all.quantities[q].uncertainty);
+  }
+}
+
+TEST(NotMeasured, ElementsAreKeptByModelFiles) {
+  for (const bool of_sample : {false, true}) {
+    const std::vector<Sample> samples = without(row_and_column_4, of_ptfe());
+    const Model model = (of_sample ? fit_sample(samples) : fit(samples, {Family::isotropic, {3, 2}})).model;
+    const Model read = model_from_json(to_json(model), "model.json");
+    EXPECT_EQ(read.not_measured, row_and_column_4);
+    EXPECT_EQ(to_json(read), to_json(model));
+  }
+}
+
+TEST(NotMeasured, ElementsAreNotCompared) {
+  const std::vector<Sample> all = of_ptfe(), some = without(row_and_column_4, all);
+  const Comparison found = compare(material("ptfe-532"), some), of_all = compare(material("ptfe-532"), all);
+  for (std::size_t e = 1; e < 16; ++e) {
+    EXPECT_EQ(found.normalized[e].samples, row_and_column_4[e] ? 0 : 300);
+    EXPECT_EQ(found.normalized[e].rms, row_and_column_4[e] ? 0 : of_all.normalized[e].rms);
+  }
+  const Model model = fit(some, {Family::isotropic, {3, 2}}).model;
+  EXPECT_EQ(compare(model, all).normalized[15].samples, 0);
+  EXPECT_EQ(compare(model, all).normalized[1].samples, 300);
+}
+
+TEST(NotMeasured, F11IsRefused) {
+  std::vector<Sample> samples = of_ptfe();
+  for (Sample& sample : samples) sample.f11 = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(message_of([&] { fit(samples); }), "f11 is not measured in any sample");
+  samples[3].normalized = diagonal(1, 0, 0, 0);
+  samples[3].normalized.elements.fill(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(message_of([&] { fit(samples); }), "sample 4: nothing is measured");
+}
+
+TEST(NotMeasured, ModelsWithModesOfTheirOwnElementsAreRefused) {
+  Model model = random_model(Family::isotropic, {2, 2}, 0, 1);
+  model.not_measured.set(15);
+  EXPECT_EQ(message_of([&] { prepare(model, 0.5); }),
+            "model: element 44 is said not to be measured, but block 44 has modes");
+}
+
+TEST(NotMeasured, PartsOfABlockMakeTheUncertaintyThatOfTheNoise) {
+  const FitResult fitted = fit_sample(without(Elements(0x0004), of_ptfe()));
+  EXPECT_FALSE(fitted.model.posterior);
+  ASSERT_FALSE(fitted.warnings.empty());
+  EXPECT_NE(fitted.warnings[0].find("of the elements 12,13,21,31, which belong together, some were not measured"),
+            std::string::npos);
+}

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What was not measured is nan, in data and in models."""
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+GEOMETRY = (45, 0, 30, 120)
+
+
+@pytest.fixture(scope="module")
+def nine():
+    """The elements of linear states."""
+    data = mmbrdf.simulate(mmbrdf.material("ptfe-532"), 532, mmbrdf.random_geometries(300, seed=1), speckle=0.006)
+    mueller = data.mueller.copy()
+    mueller[:, 3, :] = mueller[:, :, 3] = np.nan
+    g = data.geometry
+    return mmbrdf.Dataset(532, *g, mueller)
+
+
+def test_elements_are_unknown_in_a_model_and_in_all_that_is_asked_of_it(nine):
+    model = mmbrdf.fit(nine).model
+    assert model.not_measured == ["14", "24", "34", "41", "42", "43", "44"]
+    unknown = np.zeros((4, 4), bool)
+    unknown[3, :] = unknown[:, 3] = True
+    for frame in ("xy", "sp", "scattering_plane"):
+        assert np.array_equal(np.isnan(model.evaluate(532, *GEOMETRY, frame=frame)), unknown)
+        u = model.evaluate_uncertainty(532, *GEOMETRY, frame=frame)
+        assert np.array_equal(np.isnan(u), unknown)
+    assert mmbrdf.model_diagnostics(model).margin is None
+    assert "44" not in mmbrdf.compare(model, nine).normalized
+
+
+def test_elements_are_not_written_and_are_missing_when_read_again(nine, tmp_path):
+    nine.save(tmp_path / "nine.csv")
+    header = (tmp_path / "nine.csv").read_text().splitlines()[0]
+    assert header.endswith(",f11,m12,m13,m21,m22,m23,m31,m32,m33")
+    again = mmbrdf.read_samples(tmp_path / "nine.csv")
+    assert np.array_equal(again.normalized, nine.normalized, equal_nan=True)
+
+
+def test_f11_must_be_there():
+    mueller = np.full((4, 4), np.nan)
+    with pytest.raises(ValueError, match="M11 = nan"):
+        mmbrdf.Dataset(532, 45, 0, 30, 180, mueller)
