@@ -11,6 +11,7 @@
 #include "basis/support.hpp"
 #include "fitting/mixed_fit.hpp"
 #include "fitting/row_variance.hpp"
+#include "fitting/undetermined.hpp"
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
@@ -34,45 +35,10 @@ constexpr Named<Covariance> covariance_names[] = {
 constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sample"}, {Uncertainty::noise, "noise"}};
 
 constexpr std::size_t most_supports = 32;  // sets of directions in a model: of more, only what all of them have
-constexpr double involved = 1e-6;          // least part of a free combination for which a mode is named
-constexpr std::size_t most_named = 24;     // modes in a message of one line
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
 std::string nanometres(double wavelength) { return shortest(in_nanometres(wavelength)); }
-
-/// "11(7,7,5,-5)", and the power of the wavelength where there are several.
-std::string short_name(const Block& block, std::size_t coefficient, std::size_t count) {
-  const Mode& mode = block.modes[coefficient % block.modes.size()];
-  std::string name = to_string(mode.function);
-  char separator = '(';
-  for (const int order : {mode.n, mode.m, mode.k, mode.l}) {
-    name += separator;
-    name += std::to_string(order);
-    separator = ',';
-  }
-  name += ')';
-  if (count > block.modes.size()) name.append("p").append(std::to_string(coefficient / block.modes.size()));
-  return name;
-}
-
-/// What the data leave free of a block, or nothing. In one plane it is half of the modes, and their names say nothing.
-std::string undetermined(const Block& block, const Solution& solution, Sides sides) {
-  const std::size_t n = solution.x.size(), free = n - size(solution.rank);
-  if (free == 0) return "";
-  const std::string rank =
-      "; block " + block.name + ": rank " + std::to_string(solution.rank) + " of " + std::to_string(n);
-  if (sides == plane_of_incidence) return rank;
-  std::string names;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    double part = 0;
-    for (std::size_t f = 0; f < free; ++f) part = std::max(part, std::abs(solution.null_space[f * n + i]));
-    if (part > involved && ++count <= most_named) names.append(" ").append(short_name(block, i, n));
-  }
-  if (count > most_named) names.append(" and ").append(std::to_string(count - most_named)).append(" more");
-  return rank + ", " + std::to_string(free) + " combinations are free of the modes (n,m,k,l)" + names;
-}
 
 Mueller ones() {
   Mueller result;
@@ -272,39 +238,6 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   if (takes_own_reflectance(options) && row_variance(result.solutions.front(), options.covariance))
     add_own_reflectance_covariance(result, options, known, nullptr);
   return result;
-}
-
-/// "5,4": the highest of f11 and of the others, each apart, or "" if order 0 is too much.
-std::string FitAccumulator::determined_orders(const FitOptions& options) const {
-  const int powers = chosen_powers(options);
-  SvdCache known;
-  const Elements unknown = not_measured();
-  const auto determines = [&](const Orders& orders, bool f11) {
-    const FitAccumulator lower = at_orders(orders);
-    const auto full = [](const Solution& s) { return size(s.rank) == s.x.size(); };
-    for (std::size_t b = f11 ? 0 : 1; b < (f11 ? 1 : lower.blocks_.size()); ++b)
-      if (!unknown[lower.blocks_[b].elements.front().index()] &&
-          !full(lower.block_solution(b, powers, {}, options.rank_tolerance, known)))
-        return false;
-    return !f11 || !takes_own_reflectance(options) || std::ranges::all_of(lower.wavelengths_, [&](const auto& at) {
-      return full(at.second.elements[0].solve(options.rank_tolerance, &known));
-    });
-  };
-  Orders orders = basis_.orders;
-  while (orders.f11 >= 0 && !determines({orders.f11, 0}, true)) --orders.f11;
-  while (orders.other >= 0 && !determines({0, orders.other}, false)) --orders.other;
-  if (orders.f11 < 0 || orders.other < 0) return "";
-  return std::to_string(orders.f11) + "," + std::to_string(orders.other);
-}
-
-void FitAccumulator::require_determined(const std::string& refusal, const std::string& free,
-                                        const FitOptions& options) const {
-  if (free.empty()) return;
-  const std::string orders = determined_orders(options);
-  throw std::invalid_argument((sides_ == plane_of_incidence ? "measured in one plane only, that of incidence: " : "") +
-                              refusal + free + "; choose lower orders" +
-                              (orders.empty() ? "" : " (up to " + orders + " they do)") +
-                              ", or ask for the solution of minimum norm");
 }
 
 void FitAccumulator::require_covered(const ReflectanceTable& table) const {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mmbrdf/fitting/fit.hpp"
+#include "numerics/svd_cache.hpp"
 
 namespace mmbrdf {
 
@@ -55,6 +56,39 @@ FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
     }
   }
   return result;
+}
+
+/// "5,4": the highest of f11 and of the others, each apart, or "" if order 0 is too much.
+std::string FitAccumulator::determined_orders(const FitOptions& options) const {
+  const int powers = chosen_powers(options);
+  SvdCache known;
+  const Elements unknown = not_measured();
+  const auto determines = [&](const Orders& orders, bool f11) {
+    const FitAccumulator lower = at_orders(orders);
+    const auto full = [](const Solution& s) { return static_cast<std::size_t>(s.rank) == s.x.size(); };
+    for (std::size_t b = f11 ? 0 : 1; b < (f11 ? 1 : lower.blocks_.size()); ++b)
+      if (!unknown[lower.blocks_[b].elements.front().index()] &&
+          !full(lower.block_solution(b, powers, {}, options.rank_tolerance, known)))
+        return false;
+    return !f11 || !takes_own_reflectance(options) || std::ranges::all_of(lower.wavelengths_, [&](const auto& at) {
+      return full(at.second.elements[0].solve(options.rank_tolerance, &known));
+    });
+  };
+  Orders orders = basis_.orders;
+  while (orders.f11 >= 0 && !determines({orders.f11, 0}, true)) --orders.f11;
+  while (orders.other >= 0 && !determines({0, orders.other}, false)) --orders.other;
+  if (orders.f11 < 0 || orders.other < 0) return "";
+  return std::to_string(orders.f11) + "," + std::to_string(orders.other);
+}
+
+void FitAccumulator::require_determined(const std::string& refusal, const std::string& free,
+                                        const FitOptions& options) const {
+  if (free.empty()) return;
+  const std::string orders = determined_orders(options);
+  throw std::invalid_argument((sides_ == plane_of_incidence ? "measured in one plane only, that of incidence: " : "") +
+                              refusal + free + "; choose lower orders" +
+                              (orders.empty() ? "" : " (up to " + orders + " they do)") +
+                              ", or ask for the solution of minimum norm");
 }
 
 }  // namespace mmbrdf

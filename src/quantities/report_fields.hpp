@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the parts of a report are made of.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/quantities/report.hpp"
+#include "mmbrdf/quantities/trust.hpp"
+
+namespace mmbrdf {
+
+using Json = nlohmann::ordered_json;
+using Warnings = std::vector<std::string>;
+
+/// A field of the report, and what there is to warn of in it.
+struct Field {
+  Json value = Json::array();
+  Warnings warnings{};
+};
+
+inline std::string at(const Geometry& geometry) { return place_line(geometry); }
+
+inline std::string count_of(std::size_t count, const std::string& what) {
+  return counted(static_cast<long>(count), what);
+}
+
+inline std::string nm(double wavelength) { return nanometre_list(std::array{wavelength}); }
+
+inline void add(Json& report, const std::string& name, Field field) {
+  report[name] = std::move(field.value);
+  for (std::string& warning : field.warnings) report["warnings"].push_back(std::move(warning));
+}
+
+/// All that samples say of a model, and of themselves.
+void add_samples(Json& report, const Model& model, const ReportedSamples& data);
+
+}  // namespace mmbrdf

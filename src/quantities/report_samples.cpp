@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What samples say of a model, and of themselves. Part of report.hpp.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/fitting/leverage.hpp"
+#include "mmbrdf/fitting/symmetry.hpp"
+#include "mmbrdf/quantities/conventions.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
+#include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/noise.hpp"
+#include "quantities/report_fields.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+Field data_field(const Model& model, const ReportedSamples& data) {
+  Field field{{{"name", data.name},
+               {"samples", data.samples.size()},
+               {"wavelengths", nanometre_list(wavelengths(data.samples))},
+               {"residuals and noise", "of the model as it is"},
+               {"chi_squared", "of fits of its basis to these samples, weighted by their uncertainties"},
+               {"conventions, symmetries, repeats, leverage and outliers",
+                "of fits of its basis to these samples, without weights"}}};
+  RangeCount range;
+  for (const Sample& s : data.samples) range.add(outside(model.validity, s.wavelength, s.geometry));
+  if (range.outside > 0) field.warnings.push_back(range.line("sample") + ": residuals there are of extrapolations");
+  return field;
+}
+
+Json difference_json(const std::string& element, const std::string& unit, const Difference& d) {
+  return {{"element", element},  {"unit", unit},         {"rms", d.rms},
+          {"mean", d.mean},      {"largest", d.largest}, {"wavelength_nm", nanometres(d.wavelength)},
+          {"at", at(d.geometry)}};
+}
+
+Json residuals_json(const Comparison& comparison) {
+  Json rows = Json::array();
+  rows.push_back(difference_json("11", "sr^-1", comparison.f11));
+  rows.push_back(difference_json("11", "f11", comparison.f11_relative));
+  for (std::size_t e = 1; e < 16; ++e)
+    if (comparison.normalized[e].samples > 0)
+      rows.push_back(difference_json(element_name(e), "f11", comparison.normalized[e]));
+  return rows;
+}
+
+Field conventions(const Model& model, std::span<const Sample> samples) {
+  const std::vector<ConventionFit> fits = convention_fits(samples, orders(model), model.mapping);
+  Field field;
+  for (const auto& [read_as, rms] : fits) field.value.push_back({{"read_as", read_as}, {"rms", rms}});
+  if (std::string line = convention_warning(fits); !line.empty()) field.warnings.push_back(line);
+  return field;
+}
+
+/// The tests of a symmetry; `what` is what the data are said to break.
+Field symmetry(const std::vector<FTest>& tests, const std::string& what) {
+  Field field;
+  for (const FTest& test : tests) {
+    field.value.push_back({{"block", test.block},
+                           {"rows", test.rows},
+                           {"more_coefficients", test.extra},
+                           {"rms", test.rms},
+                           {"rms_without", test.rms_extended},
+                           {"F", test.f},
+                           {"p", test.p}});
+    if (test.p < significant_p && test.rms_extended < (1 - noticeable_fall) * test.rms)
+      field.warnings.push_back("the data break " + what + " in block " + test.block + ": F = " + rounded(test.f, 3) +
+                               ", and without it the rms falls from " + rounded(test.rms, 3) + " to " +
+                               rounded(test.rms_extended, 3));
+  }
+  return field;
+}
+
+Field noise(const Model& model, std::span<const Sample> samples) {
+  Field field;
+  for (const double wavelength : wavelengths(samples)) {
+    const std::vector<Sample> here = at_wavelengths(samples, std::array{wavelength});
+    try {
+      const auto& [law, covariance, rows] = estimate_noise(here, residuals(model, here));
+      field.value.push_back({{"wavelength_nm", nanometres(wavelength)},
+                             {"scale", law.scale},
+                             {"u_scale", law.scale * std::sqrt(covariance[0])},
+                             {"exponent_cos_theta_i", law.incident_exponent},
+                             {"u_exponent_i", std::sqrt(covariance[4])},
+                             {"exponent_cos_theta_r", law.reflected_exponent},
+                             {"u_exponent_r", std::sqrt(covariance[8])}});
+    } catch (const std::invalid_argument& error) {
+      field.warnings.push_back("the law of the noise at " + nm(wavelength) + " is not known: " + error.what());
+    }
+  }
+  return field;
+}
+
+/// A fit of the same basis to these samples.
+FitResult refitted(const Model& model, std::span<const Sample> samples, Weights weights) {
+  FitOptions options;
+  options.minimum_norm = true;
+  if (!model.reflectance.values.empty() && wavelengths(samples).size() > 1)
+    options.reflectance = ReflectanceTable{model.reflectance.wavelengths, model.reflectance.values};
+  return fit(samples, {model.family, orders(model), model.mapping, model.rotation}, options, weights);
+}
+
+bool knows_all_uncertainties(const Sample& sample) {
+  const Elements unknown = not_measured(sample);
+  for (std::size_t e = 0; e < 16; ++e)
+    if (!unknown[e] && !(sample.uncertainty.elements[e] > 0)) return false;
+  return true;
+}
+
+/// And what the samples say against themselves.
+Field chi_squared(const FitResult& fitted) {
+  Field field{"the samples do not state the uncertainties of all their elements: what chi^2 would be is not known",
+              data_warnings(fitted)};
+  if (fitted.weights != Weights::data) return field;
+  field.value = Json::array();
+  long freedom = 0;
+  for (std::size_t b = 0; b < fitted.solutions.size(); ++b) {
+    const Solution& solution = fitted.solutions[b];
+    field.value.push_back({{"block", fitted.model.blocks[b].block.name},
+                           {"degrees_of_freedom", solution.degrees_of_freedom()},
+                           {"chi_squared_per_dof", solution.variance()}});
+    freedom += b > 0 ? solution.degrees_of_freedom() : 0;
+  }
+  field.value.push_back({{"block", "all but 11"},
+                         {"degrees_of_freedom", freedom},
+                         {"chi_squared_per_dof", chi_squared_per_dof(fitted).others}});
+  return field;
+}
+
+Field leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
+  Field field;
+  for (const SampleDiagnostics::Leverage& block : diagnostics.leverage) {
+    const double largest = block.values[block.largest];
+    field.value.push_back({{"block", block.block},
+                           {"rank", block.rank},
+                           {"largest_leverage", largest},
+                           {"sample", block.largest + 1},
+                           {"at", at(samples[block.largest].geometry)}});
+    if (largest > high_leverage)
+      field.warnings.push_back("sample " + std::to_string(block.largest + 1) + " decides block " + block.block +
+                               " almost alone where it is: its leverage is " + fixed(largest, 2));
+  }
+  return field;
+}
+
+Field outlier_field(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
+  const std::vector<Outlier> found = outliers(diagnostics, outlier_threshold);
+  Field field;
+  for (const Outlier& outlier : std::span(found).first(std::min(found.size(), listed_outliers))) {
+    const Sample& sample = samples[outlier.sample];
+    field.value.push_back({{"sample", outlier.sample + 1},
+                           {"element", element_name(outlier.element)},
+                           {"studentized", outlier.studentized},
+                           {"wavelength_nm", nanometres(sample.wavelength)},
+                           {"at", at(sample.geometry)}});
+  }
+  if (!found.empty())
+    field.warnings.push_back(count_of(found.size(), "element") + " of samples lie more than " +
+                             shortest(outlier_threshold) + " standard deviations off; the largest are listed");
+  return field;
+}
+
+/// What repeats say of the misfit: a table, or the sentence that there are none.
+Field repeats(std::span<const Sample> samples, const FitResult& fitted) {
+  Field field;
+  for (const LackOfFit& test : lack_of_fit(samples, fitted)) {
+    if (test.repeats == 0) return {"no geometry was measured twice: repeats would tell noise from misfit"};
+    field.value.push_back({{"block", test.block},
+                           {"repeats", test.repeats},
+                           {"pure_error", test.pure_error},
+                           {"misfit", test.misfit},
+                           {"F", test.f},
+                           {"p", test.p}});
+    if (test.p < significant_p && test.misfit > (1 + noticeable_fall) * test.pure_error)
+      field.warnings.push_back("the model misses block " + test.block +
+                               " by more than repeats scatter: F = " + rounded(test.f, 3) + ", " +
+                               rounded(test.misfit, 3) + " against " + rounded(test.pure_error, 3));
+  }
+  return field;
+}
+
+}  // namespace
+
+void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
+  add(report, "data", data_field(model, data));
+  const Comparison compared = compare(model, data.samples);
+  Field differences{residuals_json(compared)};
+  if (compared.dark > 0) differences.warnings.push_back(dark_line(compared));
+  add(report, "residuals", std::move(differences));
+  const FitResult unweighted = refitted(model, data.samples, Weights::none);
+  const bool weighs = std::ranges::all_of(data.samples, knows_all_uncertainties);
+  add(report, "chi_squared", chi_squared(weighs ? refitted(model, data.samples, Weights::data) : unweighted));
+  add(report, "conventions", conventions(model, data.samples));
+  const SymmetryTests tests = symmetry_tests(data.samples, orders(model), model.mapping);
+  add(report, "reciprocity", symmetry(tests.reciprocity, "reciprocity"));
+  add(report, "mirror_symmetry", symmetry(tests.mirror, "mirror symmetry"));
+  add(report, "dependence_on_phi_i", symmetry(tests.azimuth, "isotropy"));
+  if (tests.one_azimuth)
+    report["dependence_on_phi_i"] =
+        "the source has one azimuth in these data: whether the sample is isotropic cannot be told";
+  add(report, "noise", noise(model, data.samples));
+  add(report, "repeats", repeats(data.samples, unweighted));
+  const SampleDiagnostics diagnostics = sample_diagnostics(data.samples, unweighted);
+  add(report, "leverage", leverage(diagnostics, data.samples));
+  add(report, "outliers", outlier_field(diagnostics, data.samples));
+}
+
+}  // namespace mmbrdf
