@@ -75,7 +75,9 @@ std::vector<RawMeasurement> parsed_raw(const std::string& text, const StateCount
 }
 
 TEST(Readings, OfReferencesAreReadBackToTheSameBits) {
-  const ReferenceFile file = some_references();
+  ReferenceFile file = some_references();
+  file.references.back().s_exceeds_p = 1;
+  file.references.back().delta_sign = -1;
   std::ostringstream out;
   write_references(out, file);
   const ReferenceFile back = parsed_references(out.str());

@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "basis/rows.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
@@ -75,6 +76,29 @@ TEST(FitCovariance, CanBeSavedAndUsedHoweverLittleTheDataDetermine) {
       EXPECT_NO_THROW(require_semidefinite(model_from_json(to_json(model), "model"))) << seed;
     }
   }
+}
+
+// White's, with n / (n − p): a diffuser, so that p = 1, with two directions of other residuals.
+TEST(FitCovariance, RowByRowCountsTheCoefficientsThatWereFitted) {
+  const std::vector<Sample> samples = turned_about_the_normal(
+      simulate(random_model(Family::isotropic, {3, 2}, 0, 1), std::array{0.5}, random_geometries(12, 5), 0.01, 3), 0.2);
+  const FitResult found = fitted(samples, {Family::isotropic, {2, 0}}, Covariance::sandwich);
+  const std::vector<double>& inverse = found.solutions[0].inverse;
+  const auto p = found.solutions[0].x.size(), n = samples.size();
+  const Rows rows(found.model.blocks[0].block.modes, Family::isotropic);
+  std::vector<double> expected(p * p);
+  for (std::size_t s = 0; s < n; ++s) {
+    const auto& [i, r] = samples[s].geometry;
+    std::vector<double> x(p), gx(p);
+    rows.add(0, functions_at(i, 2, DiscMapping::lambert), functions_at(r, 2, DiscMapping::lambert), x.data());
+    for (std::size_t a = 0; a < p; ++a)
+      for (std::size_t b = 0; b < p; ++b) gx[a] += inverse[a * p + b] * x[b];
+    const double squared = std::pow(found.residuals[s](0, 0), 2) * static_cast<double>(n) / static_cast<double>(n - p);
+    for (std::size_t a = 0; a < p; ++a)
+      for (std::size_t b = 0; b < p; ++b) expected[a * p + b] += squared * gx[a] * gx[b];
+  }
+  for (std::size_t i = 0; i < p * p; ++i)
+    EXPECT_NEAR(found.model.blocks[0].covariance[i], expected[i], 1e-9 * expected[0]);
 }
 
 // Rows x all alike, with residuals r: (n / (n − 1)) Σ r² / (n xᵀx)² × x xᵀ, and so is s² (XᵀX)⁺.

@@ -81,6 +81,14 @@ std::map<std::string, double> coverage(const Model& a, const Model& b, const std
   return coverage(stated(a, 0.532, at), stated(b, 0.532, at));
 }
 
+TEST(RealSamples, KeepTheCountsOfReadingsOfWhichSomeWereRepeated) {
+  std::vector<Sample> samples = simulate(material("ptfe-532"), std::array{0.532}, random_geometries(100, 3), 0.006, 1);
+  samples.insert(samples.end(), {samples[4], samples[4], samples[7]});
+  const Model model = fit_sample(samples, {Family::isotropic, {3, 2}}).model;
+  ASSERT_TRUE(model.posterior);
+  EXPECT_EQ(model_from_json(to_json(model), "model.json").posterior->data().readings, model.posterior->data().readings);
+}
+
 TEST(RealSamples, IntervalsOfAFitHoldInAnIndependentMeasurement) {
   if (published(random_set).empty()) GTEST_SKIP() << absent(random_set);
   const std::vector<Sample> first = published_at(grid, 0.532), second = published_at(random_set, 0.532);

@@ -144,6 +144,9 @@ TEST(SymmetryTests, SayThatOneAzimuthTellsNothingOfOthers) {
   EXPECT_TRUE(found.one_azimuth);
   EXPECT_TRUE(found.azimuth.empty());
   EXPECT_FALSE(symmetry_tests(exact(60), {2, 1}).one_azimuth);
+  std::vector<Sample> whole_turn = samples;
+  for (std::size_t s = 0; s < samples.size(); s += 2) whole_turn[s].geometry.incident.phi += 2 * std::numbers::pi;
+  EXPECT_TRUE(symmetry_tests(whole_turn, {2, 1}).one_azimuth);
 }
 
 // p is uniform in [0, 1] if the errors are normal and independent. Of 40 × 16 tests 5 % are 32, with a standard

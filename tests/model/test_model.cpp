@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,6 +35,11 @@ TEST(ReflectanceTable, IsLinearBetweenItsNodesAndConstantBeyond) {
   EXPECT_EQ(table.at(50), 0.1);
   EXPECT_EQ((ReflectanceTable{{0.6}, {0.3}}).at(0.1), 0.3);
   EXPECT_EQ(ReflectanceTable{}.at(0.5), 1);
+  for (const double wavelength : {0.1, 0.4, 0.45, 0.5, 0.7, 0.8, 50.0}) {
+    const std::vector<double> weights = table.weights(wavelength);
+    EXPECT_NEAR(std::inner_product(weights.begin(), weights.end(), table.values.begin(), 0.0), table.at(wavelength),
+                1e-15);
+  }
 }
 
 TEST(ReflectanceTable, ThatIsNoneIsRefused) {

@@ -3,6 +3,7 @@
 
 import copy
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -117,6 +118,11 @@ def test_reflectances_and_their_uncertainties(ptfe):
     unpolarized = mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 60)
     assert polarized.mean() == pytest.approx(unpolarized, rel=1e-13)
     assert mmbrdf.hemispherical_directional_reflectance(ptfe, 532, 60) == pytest.approx(unpolarized, rel=1e-13)
+    with warnings.catch_warnings():  # theta_i is fitted up to 75 degrees, theta_r to 81.9
+        warnings.simplefilter("error", mmbrdf.ExtrapolationWarning)
+        mmbrdf.hemispherical_directional_reflectance(ptfe, 532, 80)
+    with pytest.warns(mmbrdf.ExtrapolationWarning):
+        mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 80)
     u = mmbrdf.directional_hemispherical_uncertainty(ptfe, 532, 60)
     assert 1e-5 < u < 1e-2 and mmbrdf.hemispherical_directional_uncertainty(ptfe, 532, 60) == pytest.approx(u, rel=1e-9)
     assert 0.95 < mmbrdf.bihemispherical_reflectance(ptfe, 532) < 1

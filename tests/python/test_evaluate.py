@@ -326,3 +326,5 @@ def test_geometries_that_vary_together_share_an_axis(ptfe):
     np.testing.assert_array_equal(named.theta_i_deg, [10, 20, 30])
     np.testing.assert_array_equal(named.theta_r_deg, [30, 20, 10])
     assert named.name == "uncertainty"
+    with_terms = ptfe.evaluate_uncertainty(532, 10, 0, 30, 180, terms={"scale": 0.003}, as_xarray=True)
+    assert json.loads(with_terms.attrs["terms"]) == {"scale": 0.003}

@@ -40,6 +40,10 @@ def test_readings_and_matrices_are_each_others_inverse(random_matrices):
     np.testing.assert_allclose(readings, ideal.analyzer @ random_matrices @ ideal.generator.T, rtol=0, atol=1e-15)
     np.testing.assert_allclose(ideal.reduce(readings), random_matrices, rtol=0, atol=1e-14)
     assert ideal.covariance(np.ones((5, 5))).shape == (16, 16)
+    uneven = mmbrdf.Polarimeter(ideal.generator, np.vstack([ideal.analyzer, ideal.analyzer[:1]]))
+    np.testing.assert_allclose(
+        uneven.readings(random_matrices), uneven.analyzer @ random_matrices @ uneven.generator.T, rtol=0, atol=1e-15
+    )
     with pytest.raises(ValueError, match=r"readings: its shape \(4, 4\) does not end in \(5, 5\)"):
         ideal.reduce(np.ones((4, 4)))
     with pytest.raises(ValueError, match="generator"):

@@ -165,6 +165,7 @@ TEST(Budget, RefusesTermsThatMakeNoSense) {
     return message_of([&] { effects(term, ptfe.prepared, g); });
   };
   EXPECT_EQ(of({"plaque", ErrorOf::scale, -0.1}, oblique), "uncertainty -0.1 of plaque, must be in [0, 10]");
+  EXPECT_EQ(of({"plaque", ErrorOf::scale, std::nan("")}, oblique), "uncertainty nan of plaque, must be in [0, 10]");
   EXPECT_EQ(of({"arm", ErrorOf::theta_r, 0.1}, {{}, {std::acos(0.0), 0}}),
             "theta_r = 90 degrees, where no measurement tells f11 and a term theta_r is infinite");
   EXPECT_THROW(effects({"plaque", ErrorOf::scale, 0.1}, ptfe.prepared, {{2, 0}, {}}), std::invalid_argument);
