@@ -2,6 +2,7 @@
 // How far a model, samples and a fit can be trusted, and how far they are from each other.
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <variant>
 
 #include "fit.hpp"
@@ -80,11 +81,13 @@ void bind_model_diagnostics(py::module_& m) {
         const double wavelength = model.wavelength(nm);
         const ModelDiagnostics d =
             without_gil([&] { return model_diagnostics(model.model(), wavelength, radians(theta_max)); });
-        const auto of_whole = [&](const py::object& value) { return d.whole ? value : py::object(py::none()); };
-        return record("ModelDiagnostics", nanometres(d.wavelength), degrees(d.theta_max), d.geometries,
-                      of_whole(py::cast(d.margin.value)), of_whole(geometry_object(d.margin.geometry)),
-                      of_whole(py::cast(d.unrealizable)), d.f11.value, geometry_object(d.f11.geometry),
-                      d.not_positive_f11, d.dhr, degrees(d.dhr_theta_i));
+        const double nan = std::nan("");
+        const ModelDiagnostics::Extreme margin =
+            d.whole ? d.margin : ModelDiagnostics::Extreme{nan, {{nan, nan}, {nan, nan}}};
+        return record("ModelDiagnostics", nanometres(d.wavelength), degrees(d.theta_max), d.geometries, margin.value,
+                      geometry_object(margin.geometry),
+                      d.whole ? py::object(py::cast(d.unrealizable)) : py::object(py::none()), d.f11.value,
+                      geometry_object(d.f11.geometry), d.not_positive_f11, d.dhr, degrees(d.dhr_theta_i));
       },
       py::arg("model"), py::arg("wavelength_nm") = py::none(), py::arg("theta_max_deg") = 90.0,
       "Where a model is not physical, in steps of 2.5 and 7.5 degrees up to theta_max_deg: ModelDiagnostics.");

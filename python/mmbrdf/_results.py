@@ -219,7 +219,7 @@ class ModelDiagnostics(_NamedTuple):
     """Where a model is not physical, on a grid of directions up to theta_max_deg.
 
     margin, margin_at            smallest coherency eigenvalue / f11, and where; unrealizable: how many are negative;
-                                 None where elements were not measured
+                                 nan and None where elements were not measured
     f11, f11_at                  smallest, in sr^-1; not_positive_f11: how many are not positive
     dhr, dhr_theta_i_deg         largest directional-hemispherical reflectance, and its angle of incidence
     """
@@ -227,8 +227,8 @@ class ModelDiagnostics(_NamedTuple):
     wavelength_nm: float
     theta_max_deg: float
     geometries: int
-    margin: float | None
-    margin_at: Geometry | None
+    margin: float
+    margin_at: Geometry
     unrealizable: int | None
     f11: float
     f11_at: Geometry

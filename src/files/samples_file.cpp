@@ -31,16 +31,22 @@ double measured_or_unknown(const CsvReader& reader, int column) {
   return measured(reader, column);
 }
 
-/// A column that may be one of this element, which else is not measured: M12, f12, F_R12 …
-void refuse_like(const CsvReader& reader, std::size_t element) {
+/// Refuses a column that may be of an element which else is not measured, or of none: M12, f12, F_R12, m99 …
+void require_no_likeness(const CsvReader& reader, const std::array<int, 16>& columns) {
   for (const std::string& column : reader.columns()) {
     std::string name;
     for (const char c : column)
       if (c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    for (const char* prefix : {"m", "f", "fr"})
-      if (name == prefix + element_name(element))
-        throw reader.error("column " + shown_name(column) + ": is it " + sample_element(element) +
-                           ", the element divided by f11? Columns of other names are not read");
+    const std::size_t digits = name.find_first_of("0123456789");
+    const std::string letters = name.substr(0, digits);
+    if ((letters != "m" && letters != "f" && letters != "fr") || name.size() != letters.size() + 2) continue;
+    std::size_t e = 0;
+    while (e < 16 && name.substr(digits) != element_name(e)) ++e;
+    if (e == 0 || (e < 16 && columns[e] >= 0)) continue;
+    throw reader.error("column " + shown_name(column) + ": " +
+                       (e < 16 ? "is it " + sample_element(e) + ", the element divided by f11? "
+                               : "elements are called m12 ... m44. ") +
+                       "Columns of other names are not read");
   }
 }
 
@@ -61,8 +67,8 @@ std::array<int, 16> element_columns(const CsvReader& reader, int& m11) {
     const std::string published = std::string("f_r").append(own, 1).append("/f_r11");
     const std::string_view names[] = {own, published};
     columns[e] = reader.find(names);
-    if (columns[e] < 0) refuse_like(reader, e);
   }
+  require_no_likeness(reader, columns);
   return columns;
 }
 
@@ -78,7 +84,7 @@ std::array<int, 16> uncertainty_columns(const CsvReader& reader, const std::arra
   int some = -1;  // of which the uncertainty is there
   for (std::size_t e = 0; e < columns.size(); ++e) {
     if (columns[e] >= 0 && elements[e] < 0) throw reader.error("column " + names[e] + ", but no " + sample_element(e));
-    if (columns[e] >= 0) some = static_cast<int>(e);
+    if (columns[e] >= 0 && some < 0) some = static_cast<int>(e);
   }
   for (std::size_t e = 0; e < columns.size(); ++e)
     if (some >= 0 && elements[e] >= 0 && columns[e] < 0)

@@ -147,7 +147,10 @@ Answer PreparedAnswers::at(const Geometry& geometry) const {
     a.estimable = !leaves_known_range(a.outside) && uncertainty->estimable(geometry);
     if (has_limit(options.terms, geometry)) {
       a.budget = budget(model, *uncertainty, options.terms, geometry, Frame::sp);
-      a.uncertainties = standard_uncertainty(change_frame(a.budget->total, geometry, Frame::sp, options.frame));
+      a.uncertainties = standard_uncertainty(
+          unknown_elements(m_sp).none()
+              ? change_frame(a.budget->total, geometry, Frame::sp, options.frame)
+              : budget(model, *uncertainty, options.terms, geometry, options.frame).total);  // sp mixes more
       if (!draws.empty()) drawn_sp = drawn(draws, model, options.terms, geometry, Frame::sp, options.seed);
     }
   }

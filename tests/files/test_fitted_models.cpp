@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -53,6 +54,16 @@ struct Case {
     if (of_sample) weights = one_of(2) ? Weights::speckle : Weights::none;
     if (one_of(3) == 0) options.powers = static_cast<int>(one_of(wavelengths));
     if (one_of(3) == 0) options.reflectance = ReflectanceTable{{0.3, 1.2}, {0.9, 0.95}};
+    if (one_of(3) == 0) forget_elements(one_of(2) == 0);
+  }
+
+  /// Those of row and column 4, or any.
+  void forget_elements(bool of_linear_states) {
+    const Elements some = of_linear_states ? 0xf888 : engine() & 0xfffe;
+    for (Sample& sample : samples)
+      for (std::size_t e = 1; e < 16; ++e)
+        if (some[e] && (of_linear_states || one_of(4) > 0))
+          sample.normalized.elements[e] = std::numeric_limits<double>::quiet_NaN();
   }
 
   std::size_t one_of(std::size_t count) { return engine() % count; }
@@ -76,27 +87,30 @@ struct Case {
   Geometry geometry() { return {{1.5 * part(), 6 * part()}, {1.5 * part(), 6 * part()}}; }
 };
 
-void expect_finite(const auto& numbers, const char* what) {
-  for (const double x : numbers) EXPECT_TRUE(std::isfinite(x)) << what;
+/// Finite, and NaN where they were not measured.
+void expect_known(const Mueller& m, const Elements& unknown, const char* what) {
+  for (std::size_t e = 0; e < 16; ++e)
+    EXPECT_TRUE(unknown[e] ? std::isnan(m.elements[e]) : std::isfinite(m.elements[e])) << what << " " << e;
 }
 
 /// Evaluates, analyzes and integrates.
 void use(const Model& model, Case& from) {
   const int draws = model.posterior ? 0 : 20;
+  const Elements unknown = unknown_elements(model);
   const Answers answers(model, {.light = Stokes{1, 0.3, 0, 0.1}, .draws = draws});
   for (const double wavelength : {from.samples.front().wavelength, 0.43}) {
     const PreparedModel prepared = prepare(model, wavelength);
     const PreparedAnswers here = answers.at(wavelength);
     for (const Geometry& g : {from.samples.front().geometry, from.geometry()}) {
-      expect_finite(prepared.evaluate(g).elements, "element");
+      expect_known(prepared.evaluate(g), unknown, "element");
       const Answer answer = here.at(g);
-      if (answer.uncertainties) expect_finite(answer.uncertainties->elements, "uncertainty of an element");
+      if (answer.uncertainties) expect_known(*answer.uncertainties, unknown, "uncertainty of an element");
       for (const Answered& q : answer.quantities)
         for (const auto& number : {q.value, q.uncertainty, q.low, q.high})
           EXPECT_TRUE(std::isfinite(number.value_or(0))) << q.quantity->name;
     }
     const Average mean = average(prepared, Aperture::cone({0.3, 0}, 0.02), Aperture::direction({0.5, 1}));
-    expect_finite(mean.mueller.elements, "mean");
+    expect_known(mean.mueller, unknown, "mean");
     EXPECT_TRUE(std::isfinite(directional_hemispherical_reflectance(model, wavelength, {0.2, 0})));
     if (!answers.unknown_uncertainty().empty()) continue;
     EXPECT_GE(prepare_uncertainty(model, wavelength).directional_hemispherical_reflectance({0.2, 0}), 0);

@@ -173,6 +173,14 @@ TEST(Samples, WithUncertaintiesAreWrittenAndReadTheSame) {
   EXPECT_EQ(samples_in(out.str())[0].uncertainty, samples[0].uncertainty);
 }
 
+TEST(Samples, WithUncertaintiesOfManyDigitsAreReadBackToTheSameBits) {
+  Sample sample{0.532, {{0.1, 0.2}, {0.3, 0.4}}, 0.3, diagonal(1, 0, 0, 0)};
+  for (std::size_t e = 0; e < 16; ++e) sample.uncertainty.elements[e] = 1.0 / static_cast<double>(300 + 7 * e);
+  std::ostringstream out;
+  write_samples(out, {{sample}});
+  EXPECT_EQ(samples_in(out.str())[0].uncertainty, sample.uncertainty);
+}
+
 TEST(Samples, OfWhichOnlySomeHaveUncertaintiesAreNotWritten) {
   const Folder folder;
   const std::vector<Sample> samples{samples_in(with_columns(uncertainty_names, uncertainty_values))[0],
@@ -187,7 +195,8 @@ TEST(Samples, WithUncertaintiesThatAreWrongAreRefusedWithFileLineAndValue) {
     return complaint([&] { samples_in(with_columns(names, values)); });
   };
   const std::string names = uncertainty_names, values = uncertainty_values;
-  EXPECT_TRUE(says(refusal(",u_f11", ",0.1"), {"d.csv:1: column u_f11, but no u_m12: ", "all sixteen"}));
+  EXPECT_TRUE(
+      says(refusal(",u_f11", ",0.1"), {"d.csv:1: column u_f11, but no u_m12: ", "all elements that are there"}));
   EXPECT_TRUE(says(refusal(names.substr(6), values.substr(5)), {"d.csv:1: column u_m12, but no u_f11: "}));
   EXPECT_TRUE(
       says(refusal(names, values.substr(0, values.rfind(',')) + ",-0.1"), {"d.csv:2: u_m44: -0.1: ", "negative"}));
@@ -237,7 +246,10 @@ TEST(Samples, ThatAreWrongAreRefusedWithFileLineAndValue) {
       {"lambda,thetai,thetar,phir,f11\n", {"d.csv:1: no column phi_i_deg"}},
       {"thetai,phi,thetar,phir,f11\n", {"d.csv:1: no column wavelength_nm"}},
       {"lambda,thetai,phi,thetar,phir\n", {"d.csv:1: no column f11"}},
-      {"lambda,thetai,phi,thetar,phir,f11,m12\n", {"d.csv:1: no column m13"}},
+      {"lambda,thetai,phi,thetar,phir,f11,M12\n", {"d.csv:1: column M12: is it m12"}},
+      {"lambda,thetai,phi,thetar,phir,f11,f_r12\n", {"d.csv:1: column f_r12: is it m12"}},
+      {"lambda,thetai,phi,thetar,phir,f11,m51\n", {"d.csv:1: column m51: elements are called m12 ... m44"}},
+      {"lambda,thetai,phi,thetar,phir,f11,u_m12\n", {"d.csv:1: column u_m12, but no m12"}},
       {"lambda,thetai,phi,thetar,phir,m11,m12\n", {"d.csv:1: column m11, but no f11"}},
   };
   for (const auto& [text, parts] : cases) EXPECT_TRUE(says(complaint([&, &file = text] { samples_in(file); }), parts));

@@ -77,7 +77,7 @@ TEST(Answer, HasNoValueWhereAQuantityHasNoMeaningAndNoUncertaintyWhereItIsNotKno
   for (double& coefficient : dark.blocks.front().coefficients) coefficient = -coefficient;
   const Answer a = Answers(dark).at(1.064).at(grazing);
   ASSERT_LT(a.elements(0, 0), 0);
-  EXPECT_FALSE(a.realizable);
+  EXPECT_EQ(a.realizable, false);
   for (const Answered& q : a.quantities) EXPECT_EQ(q.value.has_value(), q.quantity->first_order) << q.quantity->name;
   Model silent = least_squares("ptfe-532");
   silent.blocks.front().covariance.clear();

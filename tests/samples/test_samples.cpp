@@ -22,6 +22,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Sample sample_at(double wavelength, double f11 = 0.3) { return {wavelength, {{0.1, 0}, {0.2, 1}}, f11, identity()}; }
 
@@ -101,8 +102,8 @@ TEST(Samples, ThatAreInvalidAreRefusedWithTheirNumber) {
   EXPECT_EQ(refusal([](Sample& s) { s.wavelength = -0.5; }), "sample 3: wavelength = -500 nm, must be positive");
   EXPECT_EQ(refusal([](Sample& s) { s.geometry.reflected.theta = radians(91); }),
             "sample 3: theta_r = 91 degrees, must be in 0...90");
-  EXPECT_EQ(refusal([](Sample& s) { s.f11 = nan_value; }), "sample 3: f11 = nan, must be finite");
-  EXPECT_EQ(refusal([](Sample& s) { s.normalized(1, 3) = nan_value; }), "sample 3: m24 = nan, must be finite");
+  EXPECT_EQ(refusal([](Sample& s) { s.f11 = infinite; }), "sample 3: f11 = inf, must be finite");
+  EXPECT_EQ(refusal([](Sample& s) { s.normalized(1, 3) = -infinite; }), "sample 3: m24 = -inf, must be finite");
   EXPECT_EQ(refusal([](Sample& s) { s.uncertainty(0, 0) = nan_value; }),
             "sample 3: u_f11 = nan, must be finite and not negative");
   EXPECT_EQ(refusal([](Sample& s) { s.uncertainty(3, 3) = -0.1; }),
