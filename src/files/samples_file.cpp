@@ -180,8 +180,8 @@ void write_samples(const std::string& path, std::span<const Sample> samples) {
 void write_samples(std::ostream& out, std::span<const Sample> samples) {
   require_valid(samples);
   const bool with_uncertainties = have_uncertainties(samples);
-  const Elements never = samples.empty() ? Elements{} : not_measured(samples);
-  if (never[0]) throw std::invalid_argument("f11 is not measured in any sample, and a file needs its column");
+  Elements never = samples.empty() ? Elements{} : not_measured(samples);
+  never.reset(0);  // a file needs the column of f11
   out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
   for (const char* prefix : {"", "u_"})
     for (std::size_t e = 0; e < 16 && (*prefix == 0 || with_uncertainties); ++e)

@@ -125,6 +125,9 @@ std::vector<std::vector<double>> Goniometer::readings(const PreparedModel& model
     const double cosine = std::cos(geometry.reflected.theta);
     if (!(cosine > 1e-9)) throw std::invalid_argument("theta_r is 90 degrees");
     const Mueller m = options_.solid_angle * cosine * model.evaluate(geometry, Frame::scattering_plane);
+    if (const Elements unknown = unknown_elements(m); unknown.any())
+      throw std::invalid_argument("readings are of whole matrices, and the model does not know " +
+                                  element_names(unknown));
     std::vector<double> one = mmbrdf::readings(polarimeter_, m);
     disturb(one, options_.speckle * std::sqrt(std::cos(geometry.incident.theta) / cosine), 1, engine);
     result.push_back(std::move(one));

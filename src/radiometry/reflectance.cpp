@@ -32,7 +32,12 @@ double value_with(const std::vector<double>& slopes, const Model& model, double 
   return model.reflectance.at(wavelength) * std::inner_product(a.begin(), a.end(), slopes.begin(), 0.0);
 }
 
-double dot(const Stokes& a, const Stokes& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
+/// What has no part may be unknown.
+double dot(const Stokes& of_model, const Stokes& light) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += light[i] == 0 ? 0 : of_model[i] * light[i];
+  return sum;
+}
 
 }  // namespace
 

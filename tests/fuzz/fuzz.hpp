@@ -48,6 +48,13 @@ inline bool all_finite(std::span<const double> numbers) {
   return true;
 }
 
+/// But for elements that were not measured, which are NaN.
+inline bool all_finite(const Mueller& m, const Elements& unknown) {
+  for (std::size_t e = 0; e < 16; ++e)
+    if (unknown[e] ? !std::isnan(m.elements[e]) : !std::isfinite(m.elements[e])) return false;
+  return true;
+}
+
 /// Evaluates it at one of its wavelengths, with uncertainties where it knows them.
 inline void require_usable(const Model& model) {
   const std::vector<double> wavelengths = known_wavelengths(model);
@@ -55,10 +62,12 @@ inline void require_usable(const Model& model) {
   const auto prepared = unless_refused([&] { return prepare(model, wavelength); });  // its powers may be too large
   if (!prepared) return;
   for (const Geometry& g : {Geometry{}, Geometry{{0.5, 0}, {1, 2}}, Geometry{{1.5, 1}, {1.5, -2}}})
-    require(all_finite(prepared->evaluate(g).elements), "a finite model has finite matrices");
+    require(all_finite(prepared->evaluate(g), unknown_elements(model)), "a finite model has finite matrices");
   if (!knows_uncertainty(model)) return;
   const auto uncertainty = unless_refused([&] { return prepare_uncertainty(model, wavelength); });  // not semidefinite
-  if (uncertainty) require(all_finite(uncertainty->evaluate({{0.5, 0}, {1, 2}}).values), "and finite covariances");
+  if (uncertainty)
+    require(all_finite(standard_uncertainty(uncertainty->evaluate({{0.5, 0}, {1, 2}})), unknown_elements(model)),
+            "and finite uncertainties");
 }
 
 }  // namespace mmbrdf::fuzz

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -51,6 +52,7 @@ std::vector<BudgetLine> budgets_of(const Options& options, const Model& model, c
   const Mueller f = prepared.evaluate(geometry, options.frame);
   std::vector<BudgetLine> lines;
   for (std::size_t e = 0; e < 16; ++e) {
+    if (std::isnan(f.elements[e])) continue;  // not measured
     const bool divided = options.normalized && e > 0;
     Mueller slope;
     slope.elements[e] = divided ? 1 / f(0, 0) : 1;

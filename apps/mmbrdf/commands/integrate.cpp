@@ -74,9 +74,11 @@ std::optional<UncertainModel> prepared_of(const Model& model, double wavelength,
   return knows_uncertainty(model) ? std::optional(uncertain(model, wavelength, terms_from(terms))) : std::nullopt;
 }
 
-void add_uncertainty(IntegratedRow& row, ExpandedUncertainty u) {
-  row.uncertainties.push_back(u.uncertainty);
-  row.budgets.push_back(std::move(u));
+/// Without a budget where something that was not measured has a part in it.
+void add_uncertainty(IntegratedRow& row, std::vector<Contribution> parts) {
+  const double u = standard_uncertainty(parts);
+  row.uncertainties.push_back(u);
+  row.budgets.push_back(std::isnan(u) ? ExpandedUncertainty{{}, u} : expanded(std::move(parts)));
 }
 
 /// Of two apertures, whose largest polar angles make up `extreme`: much of them must be supported, as far as they are
@@ -111,8 +113,8 @@ IntegratedRow hemispherical_row(const AtWavelength& at, Integral quantity, doubl
                       : hemispherical_directional_reflectance(at.model, at.wavelength, beam, p.light)};
   }
   if (at.uncertain)
-    add_uncertainty(row, expanded(dhr ? directional_hemispherical_budget(*at.uncertain, beam, p.light)
-                                      : hemispherical_directional_budget(*at.uncertain, beam, p.light)));
+    add_uncertainty(row, dhr ? directional_hemispherical_budget(*at.uncertain, beam, p.light)
+                             : hemispherical_directional_budget(*at.uncertain, beam, p.light));
   return row;
 }
 
@@ -122,7 +124,7 @@ IntegratedRow bihemispherical_row(const AtWavelength& at) {
   if (unsupported_share(at.model.validity, at.wavelength) > much_unsupported)
     row.outside = static_cast<Outside>(row.outside | outside_directions);
   row.values = {bihemispherical_reflectance(at.model, at.wavelength)};
-  if (at.uncertain) add_uncertainty(row, expanded(bihemispherical_budget(*at.uncertain)));
+  if (at.uncertain) add_uncertainty(row, bihemispherical_budget(*at.uncertain));
   return row;
 }
 
@@ -169,7 +171,7 @@ IntegratedRow average_row(const AtWavelength& at, Integral quantity, const Sides
     for (std::size_t e = 0; e < elements; ++e) {
       Mueller slope;
       slope.elements[e] = factor;
-      add_uncertainty(row, expanded(contributions(budget, slope)));
+      add_uncertainty(row, contributions(budget, slope));
     }
   }
   return row;

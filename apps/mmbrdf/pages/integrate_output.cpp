@@ -147,10 +147,13 @@ std::string matrices(const Integrated& result) {
     const auto value = [&](std::size_t e) { return std::abs(row.values[e]) < 5e-9 ? 0 : row.values[e]; };
     const auto u = [&](std::size_t e) { return row.uncertainties[e] < 1e-15 ? 0 : row.uncertainties[e]; };
     text += "wavelength " + (row.wavelength_nm ? brief(*row.wavelength_nm) + " nm" : "unknown") +
-            ", validity: " + to_string(row.outside) + "\n" +
-            in_lines([&](std::size_t e) { return known ? to_place_of(value(e), u(e)) : format("%.8f", value(e)); });
+            ", validity: " + to_string(row.outside) + "\n" + in_lines([&](std::size_t e) {
+              if (std::isnan(row.values[e])) return std::string("-");
+              return known ? to_place_of(value(e), u(e)) : format("%.8f", value(e));
+            });
     text += "standard uncertainties";
-    text += known ? "\n" + in_lines([&](std::size_t e) { return to_place_of(u(e), u(e)); }) : " not known\n";
+    text += known ? "\n" + in_lines([&](std::size_t e) { return std::isnan(u(e)) ? "-" : to_place_of(u(e), u(e)); })
+                  : " not known\n";
   }
   return text;
 }

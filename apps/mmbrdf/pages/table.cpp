@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pages/table.hpp"
 
+#include <cmath>
+
 namespace mmbrdf::program {
 
 namespace {
 
-Json cell(const Table::Row& row, std::size_t column) { return column < row.size() ? row[column] : Json(); }
+/// Null for what is unknown, too.
+Json cell(const Table::Row& row, std::size_t column) {
+  if (column >= row.size() || (row[column].is_number_float() && std::isnan(row[column].get<double>()))) return {};
+  return row[column];
+}
 
 /// Words where the column has numbers.
 std::string padded(const Column& column, const std::string& words) {

@@ -60,7 +60,8 @@ class Goniometer {
   std::vector<double> readings(const Mueller& m, unsigned long seed) const;
 
   /// Readings of a model, with noise and speckle: for each geometry those of F · solid_angle · cos θr in
-  /// Frame::scattering_plane. Throws std::invalid_argument as PreparedModel::evaluate does, and where θr is 90 degrees.
+  /// Frame::scattering_plane. Throws std::invalid_argument as PreparedModel::evaluate does, where θr is 90
+  /// degrees, and for a model that does not know all elements.
   std::vector<std::vector<double>> readings(const PreparedModel& model, std::span<const Geometry> geometries,
                                             unsigned long seed) const;
 
