@@ -103,3 +103,11 @@ def test_a_projection_on_the_isotropic_basis_is_near(published):
     assert nearest.family == "isotropic"
     f = [m.evaluate(532, 45, 0, [0, 30, 60], 180) for m in (model, nearest)]
     assert np.abs(f[0] - f[1]).max() < 0.01
+
+
+def test_coefficients_of_blocks_are_those_of_the_file_power_by_power(tmp_path):
+    model = mmbrdf.material("ptfe")
+    model.save(tmp_path / "m.json")
+    for block, saved in zip(model.blocks, json.loads((tmp_path / "m.json").read_text())["blocks"]):
+        expected = np.reshape(saved["coefficients"], (model.powers + 1, len(saved["modes"])))
+        np.testing.assert_array_equal(block.coefficients, expected)

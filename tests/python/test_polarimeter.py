@@ -293,3 +293,8 @@ def test_a_fit_without_degrees_of_freedom_has_no_place_for_an_instrument(chain, 
     command = [os.environ["MMBRDF_PROGRAM"], "fit", "data.csv", "--orders", "1,0", "--instrument", "instrument.json"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (1, f"mmbrdf: data.csv: {refused.value}\n")
+
+
+def test_a_quarter_wave_retarder_at_45_degrees_makes_linear_light_circular():
+    light = mmbrdf.retarder(90, 45) @ [1, 1, 0, 0]
+    np.testing.assert_allclose(np.abs(light), [1, 0, 0, 1], rtol=0, atol=1e-15)
