@@ -450,6 +450,18 @@ TEST(Model, RefusesVectorsThatAreNoDirections) {
   }
 }
 
+TEST(Model, RefusesVectorsBelowTheSurfaceAsTheyWereGivenInEveryFrame) {
+  const PreparedModel model = prepare(diffuser({1}), 1);
+  const Vector3 up{0, 0, 1}, down{0, 0.6, -0.8}, hardly_down{1, 0, -1e-12};
+  for (const Frame frame : every_frame) {
+    const auto refusal = [&](const Vector3& i, const Vector3& r) {
+      return message_of([&] { model.evaluate(i, r, frame); });
+    };
+    EXPECT_EQ(refusal(down, up), "(0, 0.6, -0.8) is not a unit vector with z >= 0");
+    EXPECT_EQ(refusal(up, hardly_down), "(1, 0, -1e-12) is not a unit vector with z >= 0");
+  }
+}
+
 TEST(Model, RefusesASpanWithAnotherSizeBeforeItWrites) {
   const PreparedModel model = prepare(diffuser({1}), 1);
   const PreparedIncidence incidence = model.at(Direction{});

@@ -285,6 +285,12 @@ def test_terms_of_type_b_add_to_the_uncertainty(ptfe):
             ptfe.evaluate_uncertainty(*question, terms=wrong)
 
 
+@pytest.mark.parametrize("term", ["scale", "theta_i_deg", "theta_r_deg", "azimuth_deg", "calibration"])
+def test_a_term_that_is_no_number_is_refused(term, ptfe):
+    with pytest.raises(ValueError, match=f"uncertainty nan of {term}, must be in"):
+        ptfe.evaluate_uncertainty(532, 45, 0, 30, 180, terms={term: np.nan})
+
+
 def test_draws_scatter_as_the_covariance_says(ptfe):
     question = (532, 45, 0, [20, 40], 180)
     draws = ptfe.evaluate_draws(2000, 1, *question)
