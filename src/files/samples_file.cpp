@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 
@@ -31,19 +32,33 @@ double measured_or_unknown(const CsvReader& reader, int column) {
   return measured(reader, column);
 }
 
-/// Refuses a column that may be of an element which else is not measured, or of none: M12, f12, F_R12, m99 …
+/// The digits of a name that is like one of an element: M12, f_12, "m12 [-]", S12, mueller12, F12/F11 … Else nothing.
+std::string like_an_element(const std::string& column) {
+  std::string name;
+  for (const char c : column)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::size_t digits = name.find_first_of("0123456789");
+  if (digits == std::string::npos || digits + 2 > name.size()) return "";
+  const std::string letters = name.substr(0, digits), rest = name.substr(digits + 2);
+  const auto is_one_of = [](const std::string& word, std::initializer_list<const char*> words) {
+    return std::ranges::find(words, word) != words.end();
+  };
+  return is_one_of(letters, {"m", "f", "s", "fr", "mm", "mueller"}) &&
+                 is_one_of(rest, {"", "1", "f11", "fr11", "m11", "s11", "percent"})
+             ? name.substr(digits, 2)
+             : "";
+}
+
+/// Refuses such a column of an element which else is not measured, or of none.
 void require_no_likeness(const CsvReader& reader, const std::array<int, 16>& columns) {
-  for (const std::string& column : reader.columns()) {
-    std::string name;
-    for (const char c : column)
-      if (c != '_') name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    const std::size_t digits = name.find_first_of("0123456789");
-    const std::string letters = name.substr(0, digits);
-    if ((letters != "m" && letters != "f" && letters != "fr") || name.size() != letters.size() + 2) continue;
+  for (std::size_t c = 0; c < reader.columns().size(); ++c) {
+    const std::string digits = like_an_element(reader.columns()[c]);
+    if (digits.empty() || std::ranges::find(columns, static_cast<int>(c)) != columns.end()) continue;
     std::size_t e = 0;
-    while (e < 16 && name.substr(digits) != element_name(e)) ++e;
+    while (e < 16 && digits != element_name(e)) ++e;
     if (e == 0 || (e < 16 && columns[e] >= 0)) continue;
-    throw reader.error("column " + shown_name(column) + ": " +
+    throw reader.error("column " + shown_name(reader.columns()[c]) + ": " +
                        (e < 16 ? "is it " + sample_element(e) + ", the element divided by f11? "
                                : "elements are called m12 ... m44. ") +
                        "Columns of other names are not read");

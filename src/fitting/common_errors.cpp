@@ -143,7 +143,7 @@ Elements missing(std::span<const Sample> samples) {
 std::vector<SampleChanges> instrument_errors(const Reduction& reduction, std::span<const Sample> samples) {
   std::vector<SampleChanges> result;
   if (const Elements unknown = missing(samples); unknown.any())
-    throw std::invalid_argument("not measured in all samples: " + element_names(unknown) +
+    throw std::invalid_argument("missing in some samples or all: " + element_names(unknown) +
                                 "; what errors of the instrument do is known of whole matrices only");
   for (const Sample& sample : samples) {
     const Mueller m = change_frame(sample.normalized, sample.geometry, Frame::xy, Frame::scattering_plane);

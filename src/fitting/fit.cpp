@@ -8,7 +8,6 @@
 #include <string>
 
 #include "basis/spectral.hpp"
-#include "basis/support.hpp"
 #include "fitting/mixed_fit.hpp"
 #include "fitting/row_variance.hpp"
 #include "fitting/undetermined.hpp"
@@ -33,8 +32,6 @@ constexpr Named<Covariance> covariance_names[] = {
     {Covariance::residuals, "residuals"}, {Covariance::sandwich, "sandwich"}, {Covariance::given, "given"}};
 
 constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sample"}, {Uncertainty::noise, "noise"}};
-
-constexpr std::size_t most_supports = 32;  // sets of directions in a model: of more, only what all of them have
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
@@ -90,9 +87,7 @@ FitAccumulator::FitAccumulator(const Basis& basis)
 FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
   const auto near = wavelengths_.lower_bound(wavelength - wavelength_resolution);
   if (near != wavelengths_.end() && near->first <= wavelength + wavelength_resolution) return near->second;
-  using Grid = DirectionPairs::Grid;
   AtWavelength& fresh = wavelengths_[wavelength];
-  fresh.measured = DirectionPairs(basis_.family == Family::anisotropic ? Grid::anisotropic : Grid::isotropic);
   for (const int block : block_of_)
     fresh.elements.emplace_back(block < 0 ? 1 : static_cast<int>(blocks_[size(block)].modes.size()));
   return fresh;
@@ -106,10 +101,13 @@ void FitAccumulator::merge(const FitAccumulator& other) {
       ours.elements[e].merge(theirs.elements[e]);
       ours.weight[e] += theirs.weight[e];
     }
-    ours.measured.merge(theirs.measured);
+    for (const auto& [elements, where] : theirs.measured) {
+      Measured& measured = measured_of(ours, elements);
+      measured.pairs.merge(where.pairs);
+      measured.theta_i_max = std::max(measured.theta_i_max, where.theta_i_max);
+      measured.theta_r_max = std::max(measured.theta_r_max, where.theta_r_max);
+    }
   }
-  theta_i_max_ = std::max(theta_i_max_, other.theta_i_max_);
-  theta_r_max_ = std::max(theta_r_max_, other.theta_r_max_);
   sides_ = static_cast<Sides>(sides_ | other.sides_);
   samples_ += other.samples_;
 }
@@ -160,6 +158,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
       require_determined("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
                              "reflectance it is to be divided by; give a reflectance table",
                          free, options);
+    if (solution.rows == 0) throw std::invalid_argument("f11 is not measured at " + nanometres(wavelength) + " nm");
     const double dhr = std::inner_product(slopes.begin(), slopes.end(), solution.x.begin(), 0.0);
     if (!(dhr > 0))
       throw std::invalid_argument("the normal-incidence reflectance at " + nanometres(wavelength) +
@@ -192,7 +191,7 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
   if (options.covariance == Covariance::sandwich)
     throw std::invalid_argument("a sandwich covariance needs the samples again, and an accumulator keeps none");
   FitResult result = solved(options);
-  result.model.validity.supported = support();
+  result.model.validity.supported = support(result.model);
   return result;
 }
 
@@ -208,7 +207,6 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   model.mapping = basis_.mapping;
   model.rotation = basis_.rotation;
   model.powers = powers;
-  model.validity = {{}, theta_i_max_, theta_r_max_};
   for (const auto& [wavelength, at] : wavelengths_) model.validity.wavelengths.push_back(wavelength);
   if (takes_own_reflectance(options)) model.reflectance = own_reflectance(options, known);
   if (options.reflectance) model.reflectance = {options.reflectance->wavelengths, options.reflectance->values};
@@ -216,12 +214,16 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   require_covered(model.reflectance);
   model.not_measured = not_measured();
   if (model.not_measured[0]) throw std::invalid_argument("f11 is not measured in any sample");
+  set_angles(model.validity, model.not_measured);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (model.not_measured[blocks_[b].elements.front().index()]) continue;
     Solution solution = block_solution(b, powers, model.reflectance, options.rank_tolerance, known);
     if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution, sides_);
     for (const Element& element : blocks_[b].elements)
       result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
+    for (const Element& element : blocks_[b].elements)
+      if (result.elements[element.index()].rows == 0 && !determines(solution, blocks_[b], basis_, element.index()))
+        model.not_measured.set(element.index());
     FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
                        solution.condition(), solution.null_space, solution.rows};
     if (const std::optional<double> variance = row_variance(solution, options.covariance)) {
@@ -242,41 +244,6 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
 
 void FitAccumulator::require_covered(const ReflectanceTable& table) const {
   for (const auto& [wavelength, at] : wavelengths_) require_reaches(table, wavelength);
-}
-
-std::vector<SupportedPairs> FitAccumulator::support() const {
-  std::vector<std::pair<double, DirectionPairs>> measured;  // where it changes: the last before and the first behind
-  for (auto at = wavelengths_.begin(); at != wavelengths_.end(); ++at) {
-    const bool as_before = at != wavelengths_.begin() && std::prev(at)->second.measured == at->second.measured;
-    const bool as_behind = std::next(at) != wavelengths_.end() && std::next(at)->second.measured == at->second.measured;
-    if (!as_before || !as_behind) measured.emplace_back(at->first, at->second.measured);
-  }
-  if (measured.size() == 2 && measured[0].second == measured[1].second) measured.pop_back();
-  if (measured.size() > most_supports) {
-    for (const auto& [wavelength, pairs] : measured) measured.front().second.keep(pairs);
-    measured.resize(1);
-  }
-  const int order = std::max({support_order, basis_.orders.f11, basis_.orders.other});
-  std::vector<SupportedPairs> result;
-  for (const auto& [wavelength, pairs] : measured)
-    result.push_back({wavelength, supported(pairs, order, basis_.mapping)});
-  const auto complete = [&](const SupportedPairs& one) { return one.pairs.reach(theta_i_max_, theta_r_max_); };
-  return std::ranges::all_of(result, complete) ? std::vector<SupportedPairs>{} : result;
-}
-
-/// Without a row, and without a block that has one.
-Elements FitAccumulator::not_measured() const {
-  const auto has_rows = [&](std::size_t e) {
-    return std::ranges::any_of(wavelengths_, [e](const auto& at) { return at.second.elements[e].rows() > 0; });
-  };
-  Elements result;
-  for (std::size_t e = 0; e < 16; ++e) {
-    const int block = block_of_[e];
-    result[e] = block < 0 ? !has_rows(e) : std::ranges::none_of(blocks_[size(block)].elements, [&](const Element& one) {
-      return has_rows(one.index());
-    });
-  }
-  return result;
 }
 
 ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const double> x,
@@ -311,7 +278,7 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
     result = accumulator.solved(options);
     result.noise = std::move(noise);
   }
-  result.model.validity.supported = accumulator.support();
+  result.model.validity.supported = accumulator.support(result.model);
   result.weights = weights;
   result.sample_weights = list;
   result.residuals = residuals(result.model, samples);
@@ -334,6 +301,7 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
 FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOptions& options, Weights weights) {
   if (options.covariance == Covariance::given && weights != Weights::data)
     throw std::invalid_argument("covariance given is that of the samples' own uncertainties: it takes weights data");
+  if (!samples.empty() && not_measured(samples)[0]) throw std::invalid_argument("f11 is not measured in any sample");
   if (options.uncertainty == Uncertainty::noise) return FitAccumulator::of_noise(samples, basis, options, weights);
   std::string reason;
   if (const std::string without = no_mixed_model(samples, basis, options.covariance, weights); !without.empty())

@@ -36,8 +36,6 @@ FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
   Basis basis = basis_;
   basis.orders = orders;
   FitAccumulator result(basis);
-  result.theta_i_max_ = theta_i_max_;
-  result.theta_r_max_ = theta_r_max_;
   result.sides_ = sides_;
   result.samples_ = samples_;
   for (std::size_t e = 0; e < 16; ++e) {

@@ -54,8 +54,9 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
 std::vector<Elements> unknown_of(std::span<const Sample> samples, bool turns) {
   std::vector<Elements> result;
   for (const Sample& sample : samples) {
-    const bool turned = turns && sample.geometry.incident.phi != 0;
-    result.push_back(turned ? turned_into(not_measured(sample)) : not_measured(sample));
+    const double turn = turns ? sample.geometry.incident.phi : 0;
+    const Elements elements = not_measured(sample);
+    result.push_back(turn == 0 || elements.none() ? elements : turned_into(elements, turn, -turn));
   }
   if (std::ranges::none_of(result, [](const Elements& elements) { return elements.any(); })) result.clear();
   return result;
@@ -164,11 +165,14 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const Muelle
     found->groups.push_back({at, std::move(list)});
   }
   for (const Folding& folding : all) folding.fold(*this);
-  for (const Sample& sample : samples) {
-    theta_i_max_ = std::max(theta_i_max_, sample.geometry.incident.theta);
-    theta_r_max_ = std::max(theta_r_max_, sample.geometry.reflected.theta);
-    sides_ = static_cast<Sides>(sides_ | side(sample.geometry));
-    slot(sample.wavelength).measured.add(sample.geometry);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const Geometry& geometry = samples[s].geometry;
+    sides_ = static_cast<Sides>(sides_ | side(geometry));
+    const Elements elements = unknown.empty() ? ~Elements{} : with_their_blocks(~unknown[s]);
+    Measured& measured = measured_of(slot(samples[s].wavelength), elements.to_ulong());
+    measured.pairs.add(geometry);
+    measured.theta_i_max = std::max(measured.theta_i_max, geometry.incident.theta);
+    measured.theta_r_max = std::max(measured.theta_r_max, geometry.reflected.theta);
   }
   samples_ += static_cast<long>(samples.size());
 }

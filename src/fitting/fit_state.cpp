@@ -12,8 +12,8 @@
 #include "text/numbers.hpp"
 
 //   the basis: family, both orders, mapping, rotation
-//   samples, largest θi, largest θr, sides,   then for each wavelength, rising: λ,
-//   the bits of where was measured, six bytes in each number,
+//   samples, sides,   then for each wavelength, rising: λ, in how many ways it was measured,
+//   for each: the bits of the elements, rising, largest θi, largest θr, the bits of the directions, six bytes in a number,
 //   then for each element, row-major: the sum of its weights, and the state of its triangle
 
 namespace mmbrdf {
@@ -73,10 +73,14 @@ DirectionPairs pairs_from(Reader& reader, const DirectionPairs& like) {
 
 std::vector<double> FitAccumulator::state() const {
   std::vector<double> result = numbers_of(basis_);
-  result.insert(result.end(), {static_cast<double>(samples_), theta_i_max_, theta_r_max_, static_cast<double>(sides_)});
+  result.insert(result.end(), {static_cast<double>(samples_), static_cast<double>(sides_)});
   for (const auto& [wavelength, at] : wavelengths_) {
     result.push_back(wavelength);
-    for (const double number : numbers_of(at.measured)) result.push_back(number);
+    result.push_back(static_cast<double>(at.measured.size()));
+    for (const auto& [elements, where] : at.measured) {
+      result.insert(result.end(), {static_cast<double>(elements), where.theta_i_max, where.theta_r_max});
+      for (const double number : numbers_of(where.pairs)) result.push_back(number);
+    }
     for (std::size_t e = 0; e < 16; ++e) {
       result.push_back(at.weight[e]);
       const std::vector<double> triangle = at.elements[e].state();
@@ -94,11 +98,9 @@ FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const do
   if (!std::ranges::equal(reader.next(ours.size()), ours))
     throw std::invalid_argument("a state of a fit with another basis");
   const double samples = reader.next("a number of samples", most);
-  if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 4))
+  if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 2))
     throw std::invalid_argument("a state of a fit with a number of samples " + shortest(samples));
   result.samples_ = static_cast<long>(samples);
-  result.theta_i_max_ = reader.next("a largest theta_i", std::numbers::pi / 2);
-  result.theta_r_max_ = reader.next("a largest theta_r", std::numbers::pi / 2);
   result.sides_ = static_cast<Sides>(reader.next("sides of the plane of incidence", 7));
   while (!reader.at_end()) {
     const double wavelength = reader.next(1).front();
@@ -106,7 +108,14 @@ FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const do
     if (!result.wavelengths_.empty() && wavelength <= result.wavelengths_.rbegin()->first + wavelength_resolution)
       throw std::invalid_argument("a state of a fit whose wavelengths do not rise");
     AtWavelength& at = result.slot(wavelength);
-    at.measured = pairs_from(reader, at.measured);
+    for (double ways = reader.next("ways of measuring", 65536); ways >= 1; --ways) {
+      const auto elements = static_cast<unsigned long>(reader.next("elements", 65535));
+      if (!at.measured.empty() && elements <= at.measured.rbegin()->first)
+        throw std::invalid_argument("a state of a fit whose elements do not rise");
+      const double theta_i = reader.next("a largest theta_i", std::numbers::pi / 2),
+                   theta_r = reader.next("a largest theta_r", std::numbers::pi / 2);
+      at.measured[elements] = {pairs_from(reader, DirectionPairs(result.grid())), theta_i, theta_r};
+    }
     for (std::size_t e = 0; e < 16; ++e) {
       at.weight[e] = reader.next("a sum of weights", std::numeric_limits<double>::max());
       const int unknowns = at.elements[e].unknowns();

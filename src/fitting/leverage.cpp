@@ -96,7 +96,9 @@ SampleDiagnostics sample_diagnostics(std::span<const Sample> samples, const FitR
   const Model& model = result.model;
   const int order = std::max(orders(model).f11, orders(model).other);
   SampleDiagnostics diagnostics;
-  diagnostics.studentized.resize(samples.size());
+  Mueller unknown;  // until a block tells
+  unknown.elements.fill(std::numeric_limits<double>::quiet_NaN());
+  diagnostics.studentized.resize(samples.size(), unknown);
   std::vector<FittedRows> blocks;
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
     blocks.emplace_back(model.blocks[b], result.solutions[b], model.family);

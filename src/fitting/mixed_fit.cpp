@@ -251,7 +251,7 @@ std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, 
   const Elements unknown = not_measured(samples);
   for (const Sample& sample : samples)
     if (const Elements here = not_measured(sample); here != unknown)
-      return "not measured in all samples: " + element_names(here & ~unknown);
+      return "missing in some samples: " + element_names(here & ~unknown);
   const std::vector<Block> generous_blocks = blocks(basis.family, generous_orders);
   for (const Block& block : generous_blocks)
     for (const Element& element : block.elements)
@@ -346,7 +346,7 @@ FitResult FitAccumulator::of_sample(std::span<const Sample> samples, const Basis
             accumulator.element_fit(element.index(), fitted.coefficients, result.model.reflectance);
     }
     result.model.posterior = mixed.posterior;
-    result.model.validity.supported = accumulator.support();
+    result.model.validity.supported = accumulator.support(result.model);
     result.model.reflectance.covariance.clear();
     result.model.reflectance.covariance_with_f11.clear();
     break;

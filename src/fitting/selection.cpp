@@ -352,16 +352,22 @@ Selection select_model(std::span<const Sample> samples, std::span<const Partitio
   Selection result;
   const Deciding by = deciding(partitions);
   result.powers = options.powers->first;
+  const bool f11_alone = (~not_measured(samples)).count() == 1;
   for (const bool is_f11 : {true, false}) {
+    if (!is_f11 && f11_alone) break;
     PartSelection& part = is_f11 ? result.f11 : result.other;
     part = try_all(all, folds, partitions, options, {is_f11});
     refuse_what_explodes(part, *options.powers, by.order);
     result.powers = std::max(result.powers, powers_for(part, *options.powers, by.powers).value_or(0));
   }
-  for (PartSelection* part : {&result.f11, &result.other}) recommend(*part, partitions, result.powers, by.order);
-  if (result.f11.recommended && result.other.recommended)
+  recommend(result.f11, partitions, result.powers, by.order);
+  if (f11_alone)
+    result.other.reason = "not measured";
+  else
+    recommend(result.other, partitions, result.powers, by.order);
+  if (result.f11.recommended && (f11_alone || result.other.recommended))
     result.orders = Orders{result.f11.candidates[*result.f11.recommended].order,
-                           result.other.candidates[*result.other.recommended].order};
+                           f11_alone ? 0 : result.other.candidates[*result.other.recommended].order};
   return result;
 }
 

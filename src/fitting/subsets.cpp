@@ -45,11 +45,11 @@ void require_same_length(const PolarizedCurve& curve, const PolarizedCurve& refe
 }
 
 SubsetSplit split(std::span<const Sample> samples, const Partition& partition, const SubsetQuestion& question) {
+  const SubsetFits fits = fit_parts(parts(samples, partition), question.basis, question.fit, question.weights);
   constexpr unsigned s_and_p = 1U << 0 | 1U << 1 | 1U << 4 | 1U << 5;
-  if (const Elements missing = turned_into(not_measured(samples)) & Elements(s_and_p); missing.any())
+  if (const Elements missing = unknown_elements(fits.whole, Frame::sp) & Elements(s_and_p); missing.any())
     throw std::invalid_argument(not_measured_line(missing) +
                                 "; subsets are compared by f_ss, f_sp, f_ps and f_pp, which need them");
-  const SubsetFits fits = fit_parts(parts(samples, partition), question.basis, question.fit, question.weights);
   SubsetSplit result;
   for (const Model& part : fits.parts)
     result.curves.push_back(polarized_curve(part, question.wavelength, question.geometries));

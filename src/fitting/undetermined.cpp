@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "basis/rows.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -42,6 +46,27 @@ std::string undetermined(const Block& block, const Solution& solution, Sides sid
   }
   if (count > most_named) names.append(" and ").append(std::to_string(count - most_named)).append(" more");
   return rank + ", " + std::to_string(free) + " combinations are free of the modes (n,m,k,l)" + names;
+}
+
+bool determines(const Solution& solution, const Block& block, const Basis& basis, std::size_t element) {
+  constexpr double limit = 1e-8;  // theory 4.7
+  constexpr int directions = 50;  // more than a function of the block has zeros in common with others
+  const std::size_t n = solution.x.size(), free = n - static_cast<std::size_t>(solution.rank),
+                    modes = block.modes.size();
+  if (free == 0) return true;
+  const Rows rows(block.modes, basis.family);
+  const int order = std::max(basis.orders.f11, basis.orders.other);
+  for (const auto& [i, r] : random_geometries(directions, 1)) {
+    std::vector<double> row(modes);
+    rows.add(element, functions_at(i, order, basis.mapping), functions_at(r, order, basis.mapping), row.data());
+    const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
+    for (std::size_t first = 0; first < free * n; first += modes)  // of each combination the part of each power
+      if (std::abs(std::inner_product(row.begin(), row.end(),
+                                      solution.null_space.begin() + static_cast<std::ptrdiff_t>(first), 0.0)) >
+          limit * length)
+        return false;
+  }
+  return true;
 }
 
 }  // namespace mmbrdf

@@ -185,7 +185,14 @@ double degree_of_polarization(const Mueller& m, const Stokes& incident) {
 }
 
 PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp) {
-  const auto [x, exponent] = scaled(m_sp);
+  Mueller needed;
+  for (const Element& element : {Element{0, 0}, {0, 1}, {1, 0}, {1, 1}})
+    needed.elements[element.index()] = m_sp.elements[element.index()];
+  if (unknown_elements(needed).any()) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    return {unknown, unknown, unknown, unknown};
+  }
+  const auto [x, exponent] = scaled(needed);
   const auto f = [&x = x, e = exponent](double a, double b) {
     return bounded(std::ldexp((x(0, 0) + a * x(0, 1) + b * x(1, 0) + a * b * x(1, 1)) / 2, e));
   };

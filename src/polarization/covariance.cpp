@@ -26,19 +26,6 @@ MuellerCovariance transformed_once(const MuellerCovariance& covariance, const Mu
   return result;
 }
 
-/// The elements of left · M · right to which these of M contribute.
-Elements parts_of(const Elements& elements, const Mueller& left, const Mueller& right) {
-  Elements result;
-  for (std::size_t e = 0; e < 16; ++e) {
-    if (!elements[e]) continue;
-    Mueller one;
-    one.elements[e] = 1;
-    one = left * one * right;
-    for (std::size_t to = 0; to < 16; ++to) result[to] = result[to] || one.elements[to] != 0;
-  }
-  return result;
-}
-
 }  // namespace
 
 void require_valid(const MuellerCovariance& covariance) {
@@ -62,12 +49,6 @@ Mueller standard_uncertainty(const MuellerCovariance& covariance) {
   return result;
 }
 
-Elements unknown_elements(const MuellerCovariance& covariance) {
-  Elements result;
-  for (std::size_t e = 0; e < 16; ++e) result[e] = std::isnan(covariance(e, e));
-  return result;
-}
-
 void set_unknown(MuellerCovariance& covariance, const Elements& elements) {
   for (std::size_t e = 0; e < 16; ++e)
     for (std::size_t other = 0; other < 16 && elements[e]; ++other)
@@ -75,15 +56,7 @@ void set_unknown(MuellerCovariance& covariance, const Elements& elements) {
 }
 
 MuellerCovariance transformed(const MuellerCovariance& covariance, const Mueller& left, const Mueller& right) {
-  const Elements unknown = unknown_elements(covariance);
-  if (unknown.none()) return transformed_once(transformed_once(covariance, left, right), left, right);
-  MuellerCovariance known = covariance;
-  for (std::size_t i = 0; i < 256; ++i)
-    if (unknown[i / 16] || unknown[i % 16]) known.values[i] = 0;
-  known = transformed_once(transformed_once(known, left, right), left, right);
-  set_unknown(known, left == identity() && right == identity() ? unknown
-                                                               : turned_into(unknown | parts_of(unknown, left, right)));
-  return known;
+  return transformed_once(transformed_once(covariance, left, right), left, right);
 }
 
 MuellerCovariance normalized(const MuellerCovariance& covariance, const Mueller& m) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -41,6 +42,14 @@ Signs signs(StokesConvention convention) {
   throw std::invalid_argument("no convention has the number " + std::to_string(static_cast<int>(convention)));
 }
 
+/// a x + b y. What is unknown has no part where its coefficient is the rounding of 0, as at turns by 90 degrees.
+double sum(double a, double x, double b, double y) {
+  constexpr double rounding = 1e-12;
+  const double result = a * x + b * y;
+  if (!std::isnan(result)) return result;
+  return std::isnan(x) && std::abs(a) < rounding ? b * y : std::isnan(y) && std::abs(b) < rounding ? a * x : result;
+}
+
 Signs signs(StokesConvention from, StokesConvention to) {
   Signs product = signs(from);
   const Signs second = signs(to);
@@ -61,6 +70,13 @@ Elements turned_into(const Elements& elements) {
   for (const Elements group : together)
     if ((group & elements).any()) result |= group;
   return result;
+}
+
+Elements turned_into(const Elements& elements, double scattered, double incident) {
+  Mueller m;
+  for (std::size_t e = 0; e < 16; ++e)
+    if (elements[e]) m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  return unknown_elements(rotated(m, scattered, incident));
 }
 
 Elements unknown_elements(const Mueller& m) {
@@ -148,13 +164,13 @@ Mueller rotated(const Mueller& m, double scattered, double incident) {
   const double c_in = std::cos(2 * incident), s_in = std::sin(2 * incident);
   Mueller rows = m;
   for (int j = 0; j < 4; ++j) {
-    rows(1, j) = c_out * m(1, j) + s_out * m(2, j);
-    rows(2, j) = c_out * m(2, j) - s_out * m(1, j);
+    rows(1, j) = sum(c_out, m(1, j), s_out, m(2, j));
+    rows(2, j) = sum(c_out, m(2, j), -s_out, m(1, j));
   }
   Mueller result = rows;
   for (int i = 0; i < 4; ++i) {
-    result(i, 1) = c_in * rows(i, 1) + s_in * rows(i, 2);
-    result(i, 2) = c_in * rows(i, 2) - s_in * rows(i, 1);
+    result(i, 1) = sum(c_in, rows(i, 1), s_in, rows(i, 2));
+    result(i, 2) = sum(c_in, rows(i, 2), -s_in, rows(i, 1));
   }
   return result;
 }

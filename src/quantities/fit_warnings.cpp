@@ -41,6 +41,20 @@ std::string sides_warning(const FitResult& result) {
               : "");
 }
 
+/// Samples that lack elements reach beyond the range, which is where all were measured.
+std::string range_warning(const Validity& validity, std::span<const Sample> samples) {
+  constexpr double edge = 1e-6;
+  double theta_i = 0, theta_r = 0;
+  for (const Sample& sample : samples) {
+    theta_i = std::max(theta_i, sample.geometry.incident.theta);
+    theta_r = std::max(theta_r, sample.geometry.reflected.theta);
+  }
+  if (theta_i <= validity.theta_i_max.value_or(theta_i) + edge &&
+      theta_r <= validity.theta_r_max.value_or(theta_r) + edge)
+    return "";
+  return "not all elements were measured beyond " + angles_line(validity) + ": there the model is called extrapolated";
+}
+
 std::string chi_squared_warning(const FitResult& result) {
   const auto [f11, others] = chi_squared_per_dof(result);
   if (result.weights != Weights::data || !(std::max(f11, others) > high_chi_squared)) return "";
@@ -114,6 +128,7 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
   if (share > 0) add(warnings, unsupported_line(model.validity, emptiest));
   add(warnings, energy_line(brightest, where(brightest)));
   add(warnings, not_positive_line(darkest, where(darkest)));
+  add(warnings, range_warning(model.validity, samples));
   if (!samples.empty()) add(warnings, convention_warning(samples, orders(model), model.mapping));
   return warnings;
 }

@@ -146,7 +146,7 @@ std::string unsupported_line(const Validity& validity, double wavelength) {
   for (const std::string& part :
        {missing_part("phi_r - phi_i", phi), missing_part("theta_i", theta_i), missing_part("theta_r", theta_r)})
     if (!part.empty()) parts += (parts.empty() ? ", most at " : ", at ") + part;
-  return "no samples support " + rounded(100 * all.share(), 2) +
+  return "no samples support " + (all.share() < 0.995 ? rounded(100 * all.share(), 2) : "100") +
          " % of the pairs of directions within the fitted angles" + parts + (parts.empty() ? "" : " degrees") +
          ": what is said there is an extrapolation";
 }

@@ -70,8 +70,14 @@ struct PreparedUncertainty::Blocks {
   MuellerCovariance in_frame(const MuellerCovariance& covariance, const Geometry& geometry, Frame frame) const {
     const auto [left, right] = to_frame(geometry, frame);
     MuellerCovariance result = transformed(covariance, left, right);
-    if (unknown.any()) set_unknown(result, frame == Frame::xy ? unknown : turned_into(unknown));
+    set_unknown(result, unknown_in(geometry, frame));
     return result;
+  }
+
+  Elements unknown_in(const Geometry& geometry, Frame frame) const {
+    if (unknown.none()) return {};
+    const FrameAngles angles = angles_to_xy(geometry, frame);
+    return turned_into(unknown, -angles.scattered, -angles.incident);
   }
 
   /// As the modes are asked.
@@ -216,8 +222,9 @@ MuellerGradient PreparedUncertainty::gradient(std::span<const WeightedGeometry> 
       for (Index e = 0; e < 16; ++e) sum(e, q) += column.elements[static_cast<std::size_t>(e)];
     }
   }
+  Elements unknown;
+  for (const auto& [geometry, weight] : geometries) unknown |= blocks_->unknown_in(geometry, frame);
   MuellerGradient result;
-  const Elements unknown = frame == Frame::xy ? blocks_->unknown : turned_into(blocks_->unknown);
   for (Index e = 0; e < 16; ++e)
     for (Index q = 0; q < sum.cols(); ++q)
       result.values.push_back(unknown[static_cast<std::size_t>(e)] ? std::numeric_limits<double>::quiet_NaN()

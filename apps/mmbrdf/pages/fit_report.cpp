@@ -107,10 +107,11 @@ void print_text(const FitReport& report) {
                     : "");
   if (knows_scale(report.result)) {
     const ReducedChiSquared reduced = chi_squared_per_dof(report.result);
-    std::cout << format("%-34s %.3g\n%-34s %.3g\n", "chi^2/dof of f11", reduced.f11,
-                        ("chi^2/dof of the " + std::to_string(polarized_elements(report.result)) + " others").c_str(),
-                        reduced.others)
-              << format("%-34s ", "uncertainties of the model from") << source_of_uncertainties(report.covariance)
+    std::cout << format("%-34s %.3g\n", "chi^2/dof of f11", reduced.f11);
+    if (const long count = polarized_elements(report.result); count > 0)
+      std::cout << format("%-34s %.3g\n", ("chi^2/dof of the " + std::to_string(count) + " others").c_str(),
+                          reduced.others);
+    std::cout << format("%-34s ", "uncertainties of the model from") << source_of_uncertainties(report.covariance)
               << '\n';
   }
   std::cout << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';

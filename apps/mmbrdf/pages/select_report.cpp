@@ -112,7 +112,8 @@ void print_text(const SelectReport& report) {
   const bool divided = report.wavelengths.size() > 1 || report.options.reflectance;
   for (const auto& [name, part] : parts(report.selection)) {
     const bool is_f11 = part == &report.selection.f11;
-    std::cout << (!is_f11 ? "\nThe 15 others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
+    if (part->candidates.empty()) continue;  // not measured
+    std::cout << (!is_f11 ? "\nThe others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
     std::cout << text(table(report, *part));
     for (const Candidate& one : part->candidates) {
       if (!one.refusal.empty()) {

@@ -157,10 +157,15 @@ class FitAccumulator {
   std::array<ElementFit, 16> misfit(const Model& model) const;
 
  private:
+  struct Measured {  // where
+    DirectionPairs pairs;
+    double theta_i_max = 0, theta_r_max = 0;
+    friend bool operator==(const Measured&, const Measured&) = default;
+  };
   struct AtWavelength {
-    std::vector<LeastSquares> elements;  // 16, in row-major order, over the modes of the element's block
-    std::array<double, 16> weight{};     // Σ w
-    DirectionPairs measured;
+    std::vector<LeastSquares> elements;          // 16, in row-major order, over the modes of the element's block
+    std::array<double, 16> weight{};             // Σ w
+    std::map<unsigned long, Measured> measured;  // by the elements that were, with those of their blocks
   };
 
   struct Design;   // modes of elements: fit_rows.cpp
@@ -172,7 +177,12 @@ class FitAccumulator {
                             Weights weights);
   static FitResult of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options, Weights weights);
   FitResult solved(const FitOptions& options) const;
-  std::vector<SupportedPairs> support() const;
+  DirectionPairs::Grid grid() const;
+  Measured& measured_of(AtWavelength& at, unsigned long elements) const;
+  Elements with_their_blocks(const Elements& elements) const;
+  std::vector<Measured> measured_at(const AtWavelength& at, const Elements& not_measured) const;
+  void set_angles(Validity& validity, const Elements& not_measured) const;
+  std::vector<SupportedPairs> support(const Model& model) const;
   Solution block_solution(std::size_t block, int powers, const ReflectanceTable& reflectance, double rank_tolerance,
                           SvdCache& known) const;
   void add_own_reflectance_covariance(FitResult& result, const FitOptions& options, SvdCache& known,
@@ -194,7 +204,6 @@ class FitAccumulator {
   std::array<int, 16> block_of_{};  // −1: no block feeds the element
   std::shared_ptr<const std::vector<Design>> designs_;
   std::map<double, AtWavelength> wavelengths_;
-  double theta_i_max_ = 0, theta_r_max_ = 0;
   Sides sides_ = no_side;
   long samples_ = 0;
 };

@@ -84,7 +84,7 @@ struct PartSelection {
 };
 
 struct Selection {
-  PartSelection f11, other;
+  PartSelection f11, other;      ///< other: without candidates, and order 0, where f11 alone was measured
   std::optional<Orders> orders;  ///< recommended; none if one part has no recommendation
   int powers = 0;
 };

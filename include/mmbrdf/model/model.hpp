@@ -106,9 +106,9 @@ struct Model {
                             ///< enter an evaluation
   int powers = 0;           ///< highest power of the wavelength
   std::vector<FittedBlock> blocks;
-  Elements
-      not_measured{};  ///< of whose blocks no sample tells: there are none of them, and these elements are unknown,
-                       ///< NaN, wherever the model is asked. All other elements without modes are 0
+  /// Of which no sample tells: they are unknown, NaN, wherever the model is asked, and a block of none but such is absent.
+  /// All other elements without modes are 0.
+  Elements not_measured{};
   ReflectanceTable reflectance;
   Validity validity;
   std::optional<Posterior>

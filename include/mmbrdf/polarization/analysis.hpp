@@ -49,6 +49,7 @@ struct PolarizedBrdf {
 /// f_ab = (M11 + a M12 + b M21 + a b M22) / 2 of a matrix in the sp frame, a = +1 for incident s, −1 for p, and b so
 /// for the scattered light: what a polarizer in front of the source and another in front of the detector leave
 /// (theory 6.1). None is negative for a realizable matrix, and ss + sp + ps + pp = 2 M11.
+/// NaN where one of the four elements was not measured; of the others nothing is asked.
 PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp);
 
 /// Hermitian, 4 × 4, row-major. In units of M.

@@ -23,12 +23,10 @@ void require_valid(const MuellerCovariance& covariance);
 /// Of each element: the square roots of the covariance's diagonal.
 Mueller standard_uncertainty(const MuellerCovariance& covariance);
 
-/// The elements whose variance is NaN, because they were not measured; and what makes them so.
-Elements unknown_elements(const MuellerCovariance& covariance);
+/// Makes all covariances of these elements NaN: they were not measured.
 void set_unknown(MuellerCovariance& covariance, const Elements& elements);
 
-/// Covariance of the elements of left · M · right, from that of the elements of M. What an unknown one becomes part of is
-/// unknown.
+/// Covariance of the elements of left · M · right, from that of the elements of M, all of which must be known.
 MuellerCovariance transformed(const MuellerCovariance& covariance, const Mueller& left, const Mueller& right);
 
 /// Covariance of M11 and of the other elements divided by it, from that of the elements of M. Throws

@@ -54,6 +54,10 @@ Elements unknown_elements(const Mueller& m);
 /// and 43, and 22, 23, 32 and 33 belong together.
 Elements turned_into(const Elements& elements);
 
+/// Those that a turn of both beams' axes by these angles (radians) makes unknown where these are: fewer at multiples of 45
+/// degrees.
+Elements turned_into(const Elements& elements, double scattered, double incident);
+
 Mueller identity();
 Mueller diagonal(double m11, double m22, double m33, double m44);
 Mueller operator*(const Mueller& a, const Mueller& b);
@@ -74,7 +78,7 @@ Mueller rotator(double angle);
 Mueller rotator(double cos_2a, double sin_2a);
 
 /// R(scattered) M R(incident)ᵀ: the same matrix, in axes of both beams turned by these angles (radians). What is unknown
-/// makes unknown what it is mixed with, as turned_into() says, and no more.
+/// makes unknown what it is mixed with, and no more.
 Mueller rotated(const Mueller& m, double scattered, double incident);
 
 /// A Mᵀ A with A = diag(1, 1, −1, 1): the matrix measured when source and detector change places (Eq. 12).
