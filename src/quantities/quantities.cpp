@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -38,22 +39,30 @@ constexpr Quantity polarized(std::string_view name, std::string_view meaning) {
           [](M, S) { return co_and_cross_polarized_gradients().*slopes; }};
 }
 
-/// f_ss + f_pp > 0.
-double co_polarized(M m) {
-  const PolarizedBrdf f = co_and_cross_polarized(m);
-  if (!(f.ss + f.pp > 0)) throw std::invalid_argument("f_ss + f_pp = " + shortest(f.ss + f.pp) + ", must be positive");
-  return f.ss + f.pp;
+/// (f_ss + f_pp) / 2 > 0; half of it is never beyond the largest double.
+double half_co_polarized(const PolarizedBrdf& f) {
+  const double half = f.ss / 2 + f.pp / 2;
+  if (!(half > 0)) throw std::invalid_argument("f_ss + f_pp = " + shortest(2 * half) + ", must be positive");
+  return half;
+}
+
+double bounded(double x) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  return std::clamp(x, -largest, largest);
 }
 
 double depolarization_ratio(M m) {
   depolarization(m);  // refuses M11 that is not positive
   const PolarizedBrdf f = co_and_cross_polarized(m);
-  return (f.sp + f.ps) / co_polarized(m);
+  return bounded((f.sp / 2 + f.ps / 2) / half_co_polarized(f));
 }
 
 Mueller depolarization_ratio_gradient(M m) {
   const PolarizedBrdfGradients g = co_and_cross_polarized_gradients();
-  return (1 / co_polarized(m)) * (g.sp + g.ps - depolarization_ratio(m) * (g.ss + g.pp));
+  const double half = half_co_polarized(co_and_cross_polarized(m));
+  Mueller slopes = g.sp + g.ps - depolarization_ratio(m) * (g.ss + g.pp);
+  for (double& slope : slopes.elements) slope = bounded(slope / 2 / half);
+  return slopes;
 }
 
 /// M · light, of light that can exist.

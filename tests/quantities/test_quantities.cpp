@@ -5,6 +5,8 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -48,6 +50,17 @@ TEST(Quantities, HaveTheDepolarizationRatioOfTheTextbook) {
   EXPECT_EQ(ratio.value(identity(), {}), 0);
   EXPECT_EQ(message_of([&] { ratio.value(diagonal(1, -1, -1, 1), {}); }), "f_ss + f_pp = 0, must be positive");
   EXPECT_THROW(ratio.value(diagonal(-1, 2, 0, 0), {}), std::invalid_argument);
+}
+
+// What light of opposite polarizations leaves nearly nothing of: the ratio is beyond the largest double, and so was half
+// of its gradient.
+TEST(Quantities, HaveAFiniteDepolarizationRatioOfTheLargestMatricesThereAre) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  const Quantity& ratio = quantity("depolarization_ratio");
+  EXPECT_EQ(ratio.value(diagonal(largest, 0, 0, 0), {}), 1);
+  const Mueller nearly = diagonal(largest, -std::nextafter(largest, 0), 0, 0);
+  EXPECT_TRUE(std::isfinite(ratio.value(nearly, {})));
+  for (const double slope : ratio.gradient(nearly, {}).elements) EXPECT_TRUE(std::isfinite(slope));
 }
 
 // The half of unpolarized light that a polarizer along s lets through is s-polarized: (1, 1, 0, 0) / 2.
