@@ -16,6 +16,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "given/published.hpp"
@@ -414,7 +415,6 @@ TEST(Analysis, RefusesNumbersThatAreNotFiniteAndNamesTheElement) {
     EXPECT_THROW(diattenuation(m), std::invalid_argument);
     EXPECT_THROW(polarizance(m), std::invalid_argument);
     EXPECT_THROW(degree_of_polarization(m, {1, 0, 0, 0}), std::invalid_argument);
-    EXPECT_THROW(co_and_cross_polarized(m), std::invalid_argument);
     EXPECT_THROW(coherency(m), std::invalid_argument);
     EXPECT_THROW(coherency_eigenvalues(m), std::invalid_argument);
     EXPECT_THROW(realizability_margin(m), std::invalid_argument);
@@ -428,6 +428,22 @@ TEST(Analysis, RefusesNumbersThatAreNotFiniteAndNamesTheElement) {
     } catch (const std::invalid_argument& error) {
       EXPECT_NE(std::string(error.what()).find("M34"), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST(Analysis, CoAndCrossPolarizedBrdfsAskForFourElementsAndAreUnknownWithoutThem) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  Mueller m = diagonal(1, 0.5, unknown, unknown);
+  m(0, 2) = unknown;
+  EXPECT_EQ(co_and_cross_polarized(m).ss, 0.75);
+  EXPECT_EQ(co_and_cross_polarized(m).sp, 0.25);
+  for (double* element : {&m(0, 0), &m(0, 1), &m(1, 0), &m(1, 1)}) {
+    const double known = std::exchange(*element, unknown);
+    const PolarizedBrdf f = co_and_cross_polarized(m);
+    for (const double value : {f.ss, f.sp, f.ps, f.pp}) EXPECT_TRUE(std::isnan(value));
+    *element = std::numeric_limits<double>::infinity();
+    EXPECT_THROW(co_and_cross_polarized(m), std::invalid_argument);
+    *element = known;
   }
 }
 
