@@ -48,3 +48,10 @@ def several_models(name: str, value: Any) -> list[Model]:
     for model in models:
         require(name, model, Model)
     return models
+
+
+def require_measured(source: object, elements: Iterable[str] | None = None) -> None:
+    """Refuses a model that does not know these elements, or all: what is drawn needs them."""
+    unknown = [e for e in getattr(source, "not_measured", []) if elements is None or e in elements]
+    if unknown:
+        raise ValueError(f"not measured, and needed here: {', '.join(unknown)}")

@@ -103,15 +103,17 @@ def _model_pictures(model: Model, wavelength_nm: float | None, theta_i_deg: floa
     )
     yield '<div class="pair">'
     bands = ", with bands of k = 2" if model.has_covariance else ""
-    yield _picture(
-        plot.in_plane_curves(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
-        f"Co- and cross-polarized BRDF in the plane of incidence, {at}{bands}.",
-        "svg",
-    )
-    yield _picture(
-        plot.realizability_map(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
-        f"Smallest coherency eigenvalue / f11, {at}: a matrix where it is negative cannot exist.",
-    )
+    if not {"12", "21", "22"} & set(model.not_measured):
+        yield _picture(
+            plot.in_plane_curves(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
+            f"Co- and cross-polarized BRDF in the plane of incidence, {at}{bands}.",
+            "svg",
+        )
+    if not model.not_measured:
+        yield _picture(
+            plot.realizability_map(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
+            f"Smallest coherency eigenvalue / f11, {at}: a matrix where it is negative cannot exist.",
+        )
     yield "</div>"
 
 

@@ -32,6 +32,21 @@ def test_elements_are_unknown_in_a_model_and_in_all_that_is_asked_of_it(nine):
     assert "44" not in mmbrdf.compare(model, nine).normalized
 
 
+def test_elements_leave_no_picture_of_what_needs_them_and_no_gap_in_a_report(nine, tmp_path):
+    model = mmbrdf.fit(nine, orders=(4, 3)).model
+    mmbrdf.report(model, nine, tmp_path / "nine.html")
+    assert (tmp_path / "nine.html").read_text().count("<figure>") > 2
+    mmbrdf.plot.in_plane_curves(model, 532)
+    with pytest.raises(ValueError, match="^not measured, and needed here: 14, 24"):
+        mmbrdf.plot.realizability_map(model, 532, 45)
+    scalar = nine.mueller.copy()
+    scalar[:, :, 1:] = scalar[:, 1:, :] = np.nan
+    model = mmbrdf.fit(mmbrdf.Dataset(532, *nine.geometry, scalar), orders=(4, 3)).model
+    mmbrdf.report(model, None, tmp_path / "f11.html")
+    with pytest.raises(ValueError, match="^not measured, and needed here: 12, 21, 22$"):
+        mmbrdf.plot.in_plane_curves(model, 532)
+
+
 def test_elements_are_not_written_and_are_missing_when_read_again(nine, tmp_path):
     nine.save(tmp_path / "nine.csv")
     header = (tmp_path / "nine.csv").read_text().splitlines()[0]

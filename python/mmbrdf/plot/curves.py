@@ -11,7 +11,7 @@ from matplotlib.ticker import MultipleLocator
 
 import mmbrdf
 
-from .._arguments import number, own_wavelength, require, several_models
+from .._arguments import number, own_wavelength, require, require_measured, several_models
 from . import disc, labels
 
 if TYPE_CHECKING:
@@ -62,6 +62,7 @@ def in_plane_curves(
     is grey. Returns the figure and its axes; the four lines are drawn in the order of ``COMPONENTS``.
     """
     require("model", model, mmbrdf.Model)
+    require_measured(model, ("12", "21", "22"))
     wavelength_nm, theta_i_deg = own_wavelength(model, wavelength_nm), number("theta_i_deg", theta_i_deg)
     angles = np.arange(-90.0, 91.0) if theta_r_deg is None else np.asarray(theta_r_deg, float)
     geometry = in_plane(theta_i_deg, phi_i_deg, angles)

@@ -10,6 +10,7 @@ from matplotlib.colors import Normalize
 
 import mmbrdf
 
+from .._arguments import require_measured
 from . import disc, labels
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ def depolarization_map(
     colour scale; without them it spans what the disc has within the fitted range. Where f11 is not positive, as models
     may have it near grazing angles, there is none. Returns the figure and its axes.
     """
+    require_measured(source)
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     image = disc.matrices(source, wavelength_nm, theta_i_deg, phi_i_deg, "xy", samples)
     values = _where_positive(image.values, mmbrdf.depolarization)
@@ -75,6 +77,7 @@ def realizability_map(
     Directions are red where it or f11 is negative. Wavelength in nm, angles in degrees. Returns the figure and its
     axes.
     """
+    require_measured(source)
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     image = disc.matrices(source, wavelength_nm, theta_i_deg, phi_i_deg, "xy", samples)
     values = _where_positive(image.values, mmbrdf.realizability_margin)
