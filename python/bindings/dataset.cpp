@@ -6,7 +6,9 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "mmbrdf/files/samples_file.hpp"
@@ -103,9 +105,20 @@ std::string representation(const Dataset& data) {
   return text + (has_uncertainty(data) ? ", with uncertainties>" : ">");
 }
 
-DatasetPointer samples_of(const std::filesystem::path& path) {
+DatasetPointer samples_of(const std::filesystem::path& path, const ColumnNames& columns, bool skip_incomplete,
+                          const std::optional<std::string>& frame, const std::string& convention) {
+  SampleTable table{columns, skip_incomplete, {}, convention_from(convention)};
+  if (frame) table.frame = frame_from(*frame);
   require_readable(path);
-  return without_gil([&] { return pointer(read_samples(path)); });
+  return without_gil([&] {
+    std::ifstream in = open_input(path);
+    SampleReader reader(in, path, table);
+    std::vector<Sample> samples;
+    for (Sample sample; reader.next(sample);) samples.push_back(sample);
+    DatasetPointer data = pointer(std::move(samples));
+    data->read_as = reader.understood();
+    return data;
+  });
 }
 
 py::object geometry_of(const std::vector<Geometry>& geometries) {
@@ -199,6 +212,9 @@ void bind_class(py::module_& m) {
   c.def("__len__", [](const Dataset& d) { return d.samples.size(); })
       .def("__getitem__", chosen, py::arg("which"))
       .def("__repr__", representation)
+      .def_property_readonly(
+          "read_as", [](const Dataset& d) { return d.read_as; },
+          "What of the table that it was read from is not as in the project's own, in words")
       .def_property_readonly("wavelengths_nm", wavelengths_nm, "The distinct wavelengths, rising")
       .def_property_readonly(
           "geometry",
@@ -226,9 +242,13 @@ void bind_class(py::module_& m) {
 }
 
 void bind_samples(py::module_& m) {
-  m.def("read_samples", samples_of, py::arg("path"),
-        "A Dataset from CSV in the published layout or the project's own. Raises OSError for a file that cannot be "
-        "read,\nwith line and column for one that holds something else.");
+  m.def("read_samples", samples_of, py::arg("path"), py::kw_only(), py::arg("columns") = ColumnNames{},
+        py::arg("skip_incomplete") = false, py::arg("frame") = py::none(), py::arg("convention") = "germer2017",
+        "A Dataset from a table: the published layout, the project's own, or as other programs write it; read_as says "
+        "what was\nunderstood. columns has other names, as in {'theta_i_deg': 'AOI'}, or numbers from 1; "
+        "skip_incomplete passes over rows\nwith NA or NaN, or without an angle or wavelength; frame and convention are "
+        "those of the matrices: xy, or sp of f_ss ... f_pp.\nRaises OSError for a file that cannot be read, with line "
+        "and column for one that holds something else.");
   m.def(
       "_holds_samples",
       [](const std::filesystem::path& path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bindings.hpp"
@@ -14,6 +15,7 @@ namespace mmbrdf::python {
 struct Dataset : std::enable_shared_from_this<Dataset> {
   explicit Dataset(std::vector<Sample> its_samples) : samples(std::move(its_samples)) {}
   std::vector<Sample> samples;
+  std::string read_as = {};  ///< what of the table was not as in the project's own
 };
 using DatasetPointer = std::shared_ptr<Dataset>;
 

@@ -13,23 +13,6 @@ namespace mmbrdf::python {
 
 namespace {
 
-constexpr std::array<std::pair<StokesConvention, const char*>, 6> conventions{
-    {{StokesConvention::germer2017, "germer2017"},
-     {StokesConvention::s_first_right, "s_first_right"},
-     {StokesConvention::p_first_left, "p_first_left"},
-     {StokesConvention::p_first_right, "p_first_right"},
-     {StokesConvention::p_first_left_handed_axes_left, "p_first_left_handed_axes_left"},
-     {StokesConvention::p_first_left_handed_axes_right, "p_first_left_handed_axes_right"}}};
-
-StokesConvention convention_from(const std::string& name) {
-  std::string known;
-  for (const auto& [convention, its] : conventions) {
-    if (name == its) return convention;
-    known += (known.empty() ? "" : ", ") + std::string(its);
-  }
-  throw std::invalid_argument("convention '" + name + "' is not one of " + known);
-}
-
 py::object changed_frame(const Given& mueller, const Given& theta_i, const Given& phi_i, const Given& theta_r,
                          const Given& phi_r, const std::string& from, const std::string& to) {
   const Frame before = frame_from(from), after = frame_from(to);

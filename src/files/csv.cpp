@@ -8,23 +8,15 @@
 #include <filesystem>
 #include <fstream>
 #include <istream>
+#include <optional>
 #include <system_error>
+#include <utility>
 
+#include "files/table_layout.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
-
-using Names = std::span<const std::string_view>;
-
-// Own names first, then those of the published data and of its README, then others in use.
-constexpr std::string_view nanometre_names[] = {"wavelength_nm"};
-constexpr std::string_view micrometre_names[] = {"wavelength_um", "lambda", "lambda_um"};
-constexpr std::string_view theta_i_names[] = {"theta_i_deg", "thetai", "thetai_deg"};
-constexpr std::string_view phi_i_names[] = {"phi_i_deg", "phi", "phii", "phii_deg"};
-constexpr std::string_view theta_r_names[] = {"theta_r_deg", "thetar", "thetar_deg"};
-constexpr std::string_view phi_r_names[] = {"phi_r_deg", "phir", "phir_deg"};
-constexpr std::array<Names, 4> angle_names = {theta_i_names, phi_i_names, theta_r_names, phi_r_names};
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
@@ -42,12 +34,14 @@ bool is_control(char c) {
   return (byte < 0x20 && c != '\t') || byte == 0x7f;
 }
 
-Direction direction(const CsvReader& reader, int theta_column, int phi_column) {
-  const double theta = reader.number(theta_column), phi = reader.number(phi_column);
-  if (std::abs(theta) > 90)
-    throw reader.error(reader.columns()[static_cast<std::size_t>(theta_column)] + ": " +
-                       printable(reader.field(theta_column), 40) + " degrees; a polar angle is at most 90");
-  return direction_from_degrees(theta, phi);
+bool is_positive_integer(const std::string& text) {
+  return !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos && text != "0";
+}
+
+std::string without_comment_marks(std::string_view line) {
+  line = trimmed(line);
+  while (!line.empty() && (line.front() == '#' || line.front() == '%')) line = trimmed(line.substr(1));
+  return std::string(line);
 }
 
 }  // namespace
@@ -72,18 +66,91 @@ CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::m
     throw error("no commas in the header line " + in_quotes(fields_[0]) + ": values must be separated by commas");
   if (is_number(fields_[0]))
     throw error("no header line: instead of a column's name there is the number " + printable(fields_[0], 40));
-  for (const std::string_view field : fields_) {
-    if (!field.empty() && std::find(columns_.begin(), columns_.end(), field) != columns_.end())
-      throw error("two columns have the name " + in_quotes(field));
-    columns_.emplace_back(field);
+  columns_.assign(fields_.begin(), fields_.end());
+  keys_ = columns_;
+  require_distinct_columns();
+}
+
+CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& columns)
+    : in_(in), name_(std::move(name)), line_(longest_line + 1) {
+  layout_.foreign = true;
+  std::string header, comment;
+  while (header.empty() && read_line()) {
+    const std::string_view content = trimmed(text_);
+    if (content.empty()) continue;
+    (content.front() == '#' || content.front() == '%' ? comment : header) = content;
   }
+  if (header.empty()) throw std::runtime_error(name_ + ": empty file, without a header line");
+  const long header_line = line_number_;
+  layout_.separator = separator_of(header);
+  split(header, layout_.separator, fields_);
+  if (is_number(plain_number(fields_[0]).value_or(std::string(fields_[0])))) {
+    const std::size_t count = fields_.size();
+    comment = without_comment_marks(comment);
+    split(comment, separator_of(comment), fields_);
+    layout_.header_comment = fields_.size() == count && !fields_[0].empty();
+    if (layout_.header_comment) {
+      columns_.assign(fields_.begin(), fields_.end());
+    } else {
+      split(header, layout_.separator, fields_);
+      if (columns.empty() || !std::ranges::all_of(columns, [](const auto& c) { return is_positive_integer(c.second); }))
+        throw error("no header line: instead of a column's name there is the number " + printable(fields_[0], 40) +
+                    "; without one, columns need their numbers: wavelength_nm=1,theta_i_deg=2,...");
+      for (std::size_t c = 1; c <= count; ++c) columns_.push_back(std::to_string(c));
+    }
+    split(text_, layout_.separator, fields_);
+    pending_ = line_number_;
+  } else {
+    columns_.assign(fields_.begin(), fields_.end());
+    if (read_row()) {
+      pending_ = line_number_;
+      // What writes row names gives them no name in the header, and quotes or counts them.
+      layout_.row_names = fields_.size() == columns_.size() + 1 && !fields_[0].empty() &&
+                          (header.front() == '"' || fields_[0] == "1" || !is_number(fields_[0]));
+      if (layout_.row_names) columns_.insert(columns_.begin(), "");
+    }
+    line_number_ = header_line;
+  }
+  name_columns(columns);
+}
+
+void CsvReader::require_distinct_columns() const {
+  for (std::size_t c = 0; c < columns_.size(); ++c)
+    if (!columns_[c].empty() && std::find(columns_.begin(), columns_.begin() + static_cast<std::ptrdiff_t>(c),
+                                          columns_[c]) != columns_.begin() + static_cast<std::ptrdiff_t>(c))
+      throw error("two columns have the name " + in_quotes(columns_[c]));
+}
+
+void CsvReader::name_columns(const ColumnNames& columns) {
+  require_distinct_columns();
+  const auto has_lower_case = [](const std::string& name) {
+    return std::ranges::any_of(name, [](unsigned char c) { return std::islower(c) != 0; });
+  };
+  const bool upper_case = std::ranges::none_of(columns_, has_lower_case);
+  for (const std::string& column : columns_) keys_.push_back(column_key(column, upper_case));
+  std::vector<std::string> given = keys_;
+  for (const auto& [own, theirs] : columns) {
+    auto at = static_cast<std::size_t>(std::ranges::find(columns_, theirs) - columns_.begin());
+    if (at == columns_.size() && is_positive_integer(theirs)) at = std::stoul(theirs) - 1;
+    if (at >= columns_.size())
+      throw error("no column " + shown_name(theirs) + ", which is to be " + own + "; there are " +
+                  shown_name(columns_.front()) + " ... " + shown_name(columns_.back()));
+    std::ranges::replace(given, own, "");
+    given[at] = own;
+  }
+  keys_ = std::move(given);
 }
 
 CsvReader::CsvReader(std::istream& in, std::string name, std::vector<std::string> columns)
-    : in_(in), name_(std::move(name)), line_(longest_line + 1), columns_(std::move(columns)) {}
+    : in_(in), name_(std::move(name)), line_(longest_line + 1), columns_(std::move(columns)), keys_(columns_) {}
 
 CsvReader::CsvReader(std::istream& in, const CsvReader& whole, long lines_before)
-    : in_(in), name_(whole.name_), line_(longest_line + 1), line_number_(lines_before), columns_(whole.columns_) {}
+    : in_(in),
+      name_(whole.name_),
+      line_(longest_line + 1),
+      line_number_(lines_before),
+      columns_(whole.columns_),
+      keys_(whole.keys_) {}
 
 std::runtime_error CsvReader::error(const std::string& text) const {
   return std::runtime_error(name_ + ":" + std::to_string(line_number_) + ": " + text);
@@ -92,7 +159,7 @@ std::runtime_error CsvReader::error(const std::string& text) const {
 int CsvReader::find(std::span<const std::string_view> names) const {
   int found = -1;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    if (std::find(names.begin(), names.end(), columns_[c]) == names.end()) continue;
+    if (std::find(names.begin(), names.end(), keys_[c]) == names.end()) continue;
     if (found >= 0)
       throw error("columns " + columns_[static_cast<std::size_t>(found)] + " and " + columns_[c] + " mean the same");
     found = static_cast<int>(c);
@@ -121,6 +188,11 @@ bool CsvReader::read_row() {
   while (read_line()) {
     const std::string_view content = trimmed(text_);
     if (content.empty() || content.front() == '#') continue;
+    if (layout_.foreign) {
+      if (content.front() == '%') continue;
+      split(text_, layout_.separator, fields_);
+      return true;
+    }
     fields_.clear();  // and filled again, in the same memory
     for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + 1) {
       end = text_.find(',', begin);
@@ -132,7 +204,10 @@ bool CsvReader::read_row() {
 }
 
 bool CsvReader::next() {
-  if (!read_row()) return false;
+  if (pending_ > 0)
+    line_number_ = std::exchange(pending_, 0);
+  else if (!read_row())
+    return false;
   if (fields_.size() != columns_.size())
     throw error(std::to_string(columns_.size()) + " fields (" + shown_name(columns_.front()) + " ... " +
                 shown_name(columns_.back()) + ") are needed, there are " + std::to_string(fields_.size()) + ": " +
@@ -140,41 +215,42 @@ bool CsvReader::next() {
   return true;
 }
 
+bool CsvReader::is_missing(int column) const {
+  constexpr std::array<std::string_view, 4> words = {"", "NA", "N/A", "NAN"};
+  const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == b; };
+  return std::ranges::any_of(words,
+                             [&](std::string_view word) { return std::ranges::equal(field(column), word, same); });
+}
+
+double CsvReader::foreign_number(std::string_view field) const {
+  const char decimal = field.find('.') != std::string_view::npos   ? '.'
+                       : field.find(',') != std::string_view::npos ? ','
+                                                                   : '\0';
+  if (decimal != '\0') {
+    if (layout_.decimal == '\0') layout_.decimal = decimal;
+    if (decimal != layout_.decimal || (decimal == '.' && field.find(',') != std::string_view::npos))
+      throw std::invalid_argument(in_quotes(field) + ": a decimal " + (layout_.decimal == '.' ? "point" : "comma") +
+                                  " in one number, and another mark in this one");
+  }
+  const std::optional<std::string> plain = plain_number(field);
+  try {
+    return parse_number(plain ? *plain : field);
+  } catch (const std::invalid_argument&) {
+    return parse_number(field);  // says what stands in the file
+  }
+}
+
 double CsvReader::number(int column) const {
   try {
-    return parse_number(field(column));
+    return layout_.foreign ? foreign_number(field(column)) : parse_number(field(column));
   } catch (const std::invalid_argument& e) {
-    throw error(columns_[static_cast<std::size_t>(column)] + ": " + e.what());
+    const std::string& name = columns_[static_cast<std::size_t>(column)];
+    if (layout_.foreign && is_missing(column))
+      throw error(name + ": " + in_quotes(field(column)) +
+                  ": no value; complete it, or skip incomplete rows; of an element that was not measured the field "
+                  "is empty");
+    throw error(name + ": " + e.what());
   }
-}
-
-GeometryColumns::GeometryColumns(const CsvReader& reader, double wavelength) : wavelength_(wavelength) {
-  const int nanometres = reader.find(nanometre_names), micrometres = reader.find(micrometre_names);
-  if (nanometres >= 0 && micrometres >= 0)
-    throw reader.error("the wavelength is given twice, in nanometres and in micrometres");
-  wavelength_column_ = std::max(nanometres, micrometres);
-  units_per_micrometre_ = nanometres >= 0 ? 1000 : 1;
-  if (wavelength_column_ < 0 && !(wavelength > 0))
-    throw reader.error("no column wavelength_nm (nanometres), nor lambda or wavelength_um (micrometres)");
-  for (std::size_t a = 0; a < angles_.size(); ++a) {
-    angles_[a] = reader.find(angle_names[a]);
-    if (angles_[a] < 0)
-      throw reader.error("no column " + std::string(angle_names[a][0]) + " (nor " + std::string(angle_names[a][1]) +
-                         ")");
-  }
-}
-
-Geometry GeometryColumns::geometry(const CsvReader& reader) const {
-  return {direction(reader, angles_[0], angles_[1]), direction(reader, angles_[2], angles_[3])};
-}
-
-double GeometryColumns::wavelength(const CsvReader& reader) const {
-  if (wavelength_column_ < 0) return wavelength_;
-  const double value = reader.number(wavelength_column_) / units_per_micrometre_;
-  if (!(value > 0))
-    throw reader.error(reader.columns()[static_cast<std::size_t>(wavelength_column_)] + ": " +
-                       printable(reader.field(wavelength_column_), 40) + ": a wavelength must be positive");
-  return value;
 }
 
 }  // namespace mmbrdf

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "text/names.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -22,6 +23,14 @@ Mueller with_signs(const Mueller& m, const Signs& signs) {
       result(i, j) = signs[static_cast<std::size_t>(i)] * signs[static_cast<std::size_t>(j)] * m(i, j);
   return result;
 }
+
+constexpr Named<StokesConvention> convention_names[] = {
+    {StokesConvention::germer2017, "germer2017"},
+    {StokesConvention::s_first_right, "s_first_right"},
+    {StokesConvention::p_first_left, "p_first_left"},
+    {StokesConvention::p_first_right, "p_first_right"},
+    {StokesConvention::p_first_left_handed_axes_left, "p_first_left_handed_axes_left"},
+    {StokesConvention::p_first_left_handed_axes_right, "p_first_left_handed_axes_right"}};
 
 /// D of a convention, relative to this project's.
 Signs signs(StokesConvention convention) {
@@ -185,5 +194,8 @@ Stokes convert(const Stokes& s, StokesConvention from, StokesConvention to) {
   const Signs d = signs(from, to);
   return {d[0] * s[0], d[1] * s[1], d[2] * s[2], d[3] * s[3]};
 }
+
+std::string to_string(StokesConvention convention) { return name_of(convention_names, convention); }
+StokesConvention convention_from(const std::string& name) { return value_of(convention_names, name, "convention"); }
 
 }  // namespace mmbrdf

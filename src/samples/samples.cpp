@@ -52,15 +52,15 @@ void require_valid_elements(const Sample& sample, const std::string& name) {
   }
 }
 
-/// Of turned(m, angle) from those of m, uncorrelated; 0 where one that counts is 0.
-Mueller turned_uncertainty(const Mueller& uncertainty, double angle) {
+/// Of rotated(m, scattered, incident) from those of m, uncorrelated; 0 where one that counts is 0.
+Mueller rotated_uncertainty(const Mueller& uncertainty, double scattered, double incident) {
   Mueller squares;
   std::array<bool, 16> known;
   known.fill(true);
   for (std::size_t from = 0; from < 16; ++from) {
     Mueller unit;
     unit.elements[from] = 1;
-    const Mueller slopes = turned(unit, angle);
+    const Mueller slopes = rotated(unit, scattered, incident);
     for (std::size_t to = 0; to < 16; ++to) {
       const double part = slopes.elements[to] * uncertainty.elements[from];
       squares.elements[to] += part * part;
@@ -154,13 +154,22 @@ void require_valid(std::span<const Sample> samples) {
 Sample turned(const Sample& sample, double angle) {
   Sample result = sample;
   result.normalized = turned(sample.normalized, angle);
-  if (has_uncertainty(sample)) result.uncertainty = turned_uncertainty(sample.uncertainty, angle);
+  if (has_uncertainty(sample)) result.uncertainty = rotated_uncertainty(sample.uncertainty, -angle, angle);
   result.geometry.incident.phi += angle;
   result.geometry.reflected.phi += angle;
   return result;
 }
 
 Sample at_zero_azimuth(const Sample& sample) { return turned(sample, -sample.geometry.incident.phi); }
+
+Sample from_frame(const Sample& sample, Frame frame) {
+  const FrameAngles angles = angles_to_xy(sample.geometry, frame);
+  Sample result = sample;
+  result.normalized = rotated(sample.normalized, angles.scattered, angles.incident);
+  if (has_uncertainty(sample))
+    result.uncertainty = rotated_uncertainty(sample.uncertainty, angles.scattered, angles.incident);
+  return result;
+}
 
 std::vector<std::size_t> grouped(std::span<const double> values, double tolerance) {
   std::vector<std::size_t> order(values.size()), result(values.size());

@@ -26,6 +26,7 @@ struct Options {
   std::string first, second, output;
   std::optional<Grid> grid;
   std::optional<std::vector<double>> wavelengths_nm;
+  SampleTable table;
   std::optional<double> theta_max_deg, tolerance;
   unsigned long seed = 0;
   Format format = Format::text;
@@ -84,7 +85,7 @@ struct Second {
 Model model_of(const std::string& name, const Options& options) {
   if (!is_samples(name)) return open_model(name);
   try {
-    return fit_sample(samples_at(name, options.wavelengths_nm)).model;
+    return fit_sample(samples_at(name, options.wavelengths_nm, options.table)).model;
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(data_name(name) + ": " + error.what());
   }
@@ -102,7 +103,7 @@ Second second_of(const Model& first, const Options& options) {
   if (is_samples(options.second) && !is_samples(options.first)) {
     if (options.grid)
       throw WrongUsage("--grid", "goes with two models; " + data_name(options.second) + " has its own geometries");
-    std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm);
+    std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm, options.table);
     std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
     return {std::move(samples), data_name(options.second)};
   }
@@ -288,6 +289,7 @@ Run compare_command(CLI::App& app, const CommandLine&) {
   add_model(app, o->second, "B").description("The same, or samples (CSV); - is standard input");
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
              "Wavelengths in nm [those of the samples, or of both models]");
+  add_table_options(app, o->table);
   add_option(app, "--grid", o->grid, grid_from, "GRID", "For two models: germer2017 or random:N [germer2017]");
   add_option(app, "--seed", o->seed, seed, "S", "Whole number that chooses the random directions [0]");
   add_option(app, "--theta-max", o->theta_max_deg, number, "DEG", "Only where both polar angles are at most this");

@@ -29,6 +29,7 @@ struct Options {
   FitOptions fit;
   std::optional<Uncertainty> given_uncertainty;
   std::optional<std::vector<double>> wavelengths_nm;
+  SampleTable table;
   std::optional<Weights> given_weights;
   Format format = Format::text;
 };
@@ -57,11 +58,12 @@ void require_valid(const Options& options) {
 }
 
 /// Says who made the model, from what and how.
-void sign(Model& model, const Options& options, long rows, const CommandLine& line) {
+void sign(Model& model, const Options& options, long rows, const std::string& understood, const CommandLine& line) {
   const std::filesystem::path origin = options.output.empty() ? options.data : options.output;
   model.name = options.name.empty() ? origin.stem().string() : options.name;
   model.provenance["data"] = data_name(options.data);
   model.provenance["rows"] = std::to_string(rows);
+  if (!understood.empty()) model.provenance["table"] = understood;
   model.provenance["command"] = line.text({options.data, options.output, options.instrument});
   model.provenance["software"] = software();
   model.provenance["weights"] = to_string(weights(options));
@@ -142,17 +144,18 @@ class Spread {
   std::size_t seen_ = 0, stride_ = 1;
 };
 
-FitResult fitted(const Options& options, long& rows, Spread& some) {
+FitResult fitted(const Options& options, long& rows, Spread& some, std::string& understood) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
-  read_samples_at(options.data, options.wavelengths_nm, [&](std::span<const Sample> samples) {
-    rows += static_cast<long>(samples.size());
-    some.add(samples);
-    if (streams(options))
-      accumulator.add(samples);
-    else
-      all.insert(all.end(), samples.begin(), samples.end());
-  });
+  understood =
+      read_samples_at(options.data, options.wavelengths_nm, options.table, [&](std::span<const Sample> samples) {
+        rows += static_cast<long>(samples.size());
+        some.add(samples);
+        if (streams(options))
+          accumulator.add(samples);
+        else
+          all.insert(all.end(), samples.begin(), samples.end());
+      });
   try {
     if (streams(options)) return accumulator.solve(options.fit);
     FitOptions chosen = options.fit;
@@ -176,8 +179,9 @@ void fit_data(const Options& options, const CommandLine& line) {
   require_valid(options);
   long rows = 0;
   Spread some;
-  FitResult result = fitted(options, rows, some);
-  sign(result.model, options, rows, line);
+  std::string understood;
+  FitResult result = fitted(options, rows, some, understood);
+  sign(result.model, options, rows, understood, line);
   record_noise(result.model, result);
   save_or_warn(result.model, options);
   print({.data = data_name(options.data),
@@ -192,7 +196,8 @@ void fit_data(const Options& options, const CommandLine& line) {
 
 constexpr const char* footer =
     "DATA.csv has the columns of the published data (lambda in micrometres) or wavelength_nm, theta_i_deg, phi_i_deg,\n"
-    "theta_r_deg, phi_r_deg, f11 (in sr^-1), m12 ... m44 (divided by f11); - is standard input.\n"
+    "theta_r_deg, phi_r_deg, f11 (in sr^-1), m12 ... m44 (divided by f11); - is standard input. Tables as numpy, R or\n"
+    "spreadsheets write them, in radians, of brf = pi f or of f_ss, f_sp, f_ps, f_pp are understood, which a note says.\n"
     "Columns that are not there, but for f11, and empty fields were not measured: their elements are unknown.\n"
     "--weights data needs their standard uncertainties too: u_f11, u_m12 ... u_m44.\n"
     "\n"
@@ -225,6 +230,7 @@ void add_basis_options(CLI::App& app, const std::shared_ptr<Options>& o) {
 
 void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Fit these wavelengths only, in nm");
+  add_table_options(app, o->table);
   add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,NM:R...]",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_option(app, "--uncertainty", o->given_uncertainty, uncertainty_from, "NAME",

@@ -21,6 +21,7 @@ namespace {
 struct Options {
   std::string model, data, output;
   std::optional<std::vector<double>> wavelengths_nm;
+  SampleTable table;
   Format format = Format::text;
 };
 
@@ -65,7 +66,7 @@ void report(const Options& options) {
   std::vector<Sample> samples;
   std::optional<ReportedSamples> data;
   if (!options.data.empty()) {
-    samples = samples_at(options.data, options.wavelengths_nm);
+    samples = samples_at(options.data, options.wavelengths_nm, options.table);
     data = {data_name(options.data), samples};
   }
   const Json facts = Json::parse(report_json(model, name, wavelengths, data));
@@ -94,6 +95,7 @@ Run report_command(CLI::App& app, const CommandLine&) {
   add_file(app, "DATA.csv", o->data, " ", "Samples to set beside it; - is standard input");
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
              "Wavelengths in nm to report on [those that were fitted]");
+  add_table_options(app, o->table);
   add_file(app, "-o,--output", o->output, "REPORT", "Where the report goes; - is standard output [-]");
   add_option(app, "--format", o->format, report_format_from, "FORMAT", "markdown or json [markdown]");
   set_footer(app, footer);

@@ -19,6 +19,7 @@ struct Options {
   std::string data;
   SelectionOptions selection;
   std::optional<std::vector<double>> wavelengths_nm;
+  SampleTable table;
   FoldOptions folds;
   Weights weights = Weights::none;
   Format format = Format::text;
@@ -36,7 +37,7 @@ Range orders_range(const std::string& text) {
 
 void select(const Options& options) {
   const std::string name = data_name(options.data);
-  const std::vector<Sample> samples = samples_at(options.data, options.wavelengths_nm);
+  const std::vector<Sample> samples = samples_at(options.data, options.wavelengths_nm, options.table);
   try {
     const Folds left_out = folds(samples, options.folds);
     if (!left_out.note.empty()) note(left_out.note);
@@ -78,6 +79,7 @@ Run select_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Use these wavelengths only, in nm");
+  add_table_options(app, o->table);
   add_option(app, "--basis", o->selection.family, family_from, "NAME",
              "isotropic, germer2017 or anisotropic [isotropic]");
   add_option(app, "--mapping", o->selection.mapping, disc_mapping_from, "NAME",

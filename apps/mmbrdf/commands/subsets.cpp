@@ -25,6 +25,7 @@ struct Options {
   FitOptions fit;
   Weights weights = Weights::none;
   std::optional<double> wavelength_nm;
+  SampleTable table;
   double theta_i_deg = 45;
   std::vector<double> theta_r_deg = range_from("-60:60:1");
   Format format = Format::text;
@@ -183,7 +184,7 @@ Question question(const Options& o) {
   q.basis = o.basis;
   q.fit = o.fit;
   q.weights = o.weights;
-  q.samples = samples_at(o.data, wavelengths_nm);
+  q.samples = samples_at(o.data, wavelengths_nm, o.table);
   q.wavelength = wavelength_of(q.samples, o);
   std::vector<double> theta_r;
   for (const double theta : o.theta_r_deg) theta_r.push_back(radians(theta));
@@ -236,6 +237,7 @@ Run subsets_command(CLI::App& app, const CommandLine&) {
              "Divide by lot as often as this, with seeds S, S+1, ... [1]");
   add_option(app, "--seed", o->division.seed, seed, "S", "Whole number that chooses the lot [0]");
   add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM", "Of the samples, in nm, if there are several");
+  add_table_options(app, o->table);
   add_option(app, "--theta-i", o->theta_i_deg, number, "DEG", "Polar angle of incidence [45]");
   add_option(app, "--range", o->theta_r_deg, range_from, "FROM:TO:STEP", "Polar angles of the detector [-60:60:1]");
   add_basis_option(app, o->basis);

@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <iostream>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
-#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "options/arguments.hpp"
@@ -55,6 +55,21 @@ std::string output_file_name(const std::string& text) {
   return file_name(text);
 }
 
+/// NAME=THEIRS[,NAME=THEIRS…]
+ColumnNames column_names_from(const std::string& text) {
+  ColumnNames result;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const std::size_t equals = part.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == part.size())
+      throw std::invalid_argument("\"" + part + "\": expected NAME=THEIRS, as in theta_i_deg=AOI");
+    if (!result.emplace(part.substr(0, equals), part.substr(equals + 1)).second)
+      throw std::invalid_argument("\"" + part.substr(0, equals) + "\" is given twice");
+  }
+  if (result.empty()) throw std::invalid_argument("\"\": expected NAME=THEIRS, as in theta_i_deg=AOI");
+  return result;
+}
+
 std::string model_name(const std::string& text) {
   if (text.empty()) throw std::invalid_argument("\"\": expected a built-in name or a file");
   return text;
@@ -78,15 +93,16 @@ bool is_samples(const std::string& name) {
 
 std::string data_name(const std::string& path) { return path == "-" ? "standard input" : base_name(path); }
 
-void read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
-                     const std::function<void(std::span<const Sample>)>& use) {
+std::string read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                            const SampleTable& table, const std::function<void(std::span<const Sample>)>& use) {
   constexpr std::size_t some =
       8192;  // the published data come in one piece, so that their wavelengths are folded together
   const std::vector<double> wanted = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
   std::set<double> there;
   std::vector<Sample> samples;
+  std::string understood;
   read_input(path, [&](std::istream& in, const std::string& name) {
-    SampleReader reader(in, name);
+    SampleReader reader(in, name, table);
     for (Sample sample; reader.next(sample);) {
       there.insert(sample.wavelength);
       const auto is_it = [&](double wavelength) { return same_wavelength(wavelength, sample.wavelength); };
@@ -96,6 +112,7 @@ void read_samples_at(const std::string& path, const std::optional<std::vector<do
         samples.clear();
       }
     }
+    understood = reader.understood();
   });
   use(samples);
   for (const double wavelength : wanted) {
@@ -105,11 +122,14 @@ void read_samples_at(const std::string& path, const std::optional<std::vector<do
                                nanometre_list(wanted));
     }
   }
+  if (!understood.empty()) note(data_name(path) + ": " + understood);
+  return understood;
 }
 
-std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm) {
+std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                               const SampleTable& table) {
   std::vector<Sample> all;
-  read_samples_at(path, wavelengths_nm,
+  read_samples_at(path, wavelengths_nm, table,
                   [&](std::span<const Sample> samples) { all.insert(all.end(), samples.begin(), samples.end()); });
   return all;
 }
@@ -175,6 +195,19 @@ void write_output(const std::string& output, const std::function<void(std::ostre
 
 void write_text(const std::string& output, const std::string& text) {
   write_output(output, [&](std::ostream& out) { out << text; });
+}
+
+void add_table_options(CLI::App& app, SampleTable& table) {
+  add_option(app, "--columns", table.columns, column_names_from, "NAME=THEIRS[,...]",
+             "What columns of DATA.csv are that have other names, as\nin theta_i_deg=AOI,f11=BRDF; or their numbers, "
+             "from 1");
+  add_flag(app, "--skip-incomplete", table.skip_incomplete,
+           "Pass over rows with NA or NaN, or without an angle or\nwavelength, and say how many");
+  add_option(app, "--frame", table.frame, frame_from, "FRAME",
+             "In which the matrices of DATA.csv are: xy, sp or\nscattering_plane [xy; sp of f_ss ... f_pp]");
+  add_option(app, "--convention", table.convention, convention_from, "NAME",
+             "Signs of their Stokes vectors: germer2017,\ns_first_right, p_first_left, p_first_right ... "
+             "[germer2017]");
 }
 
 Option add_model(CLI::App& app, std::string& target, const std::string& name) {

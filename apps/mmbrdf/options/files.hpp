@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "options/option.hpp"
@@ -31,13 +32,17 @@ void read_input(const std::string& path, const std::function<void(std::istream&,
 /// What a data file is called in messages and provenance: the last part of its path, or "standard input" for "-".
 std::string data_name(const std::string& path);
 
-/// Hands over the samples of these wavelengths (nm; none given: of all), a few thousand at a time. Throws
-/// std::runtime_error if there are none at one of them.
-void read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
-                     const std::function<void(std::span<const Sample>)>& use);
+/// Hands over the samples of these wavelengths (nm; none given: of all), a few thousand at a time. Returns what of the
+/// table is not as in the project's own, after a note of it. Throws std::runtime_error if there are none at one of them.
+std::string read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                            const SampleTable& table, const std::function<void(std::span<const Sample>)>& use);
 
 /// The same, in memory.
-std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm);
+std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                               const SampleTable& table);
+
+/// --columns, --skip-incomplete, --frame, --convention
+void add_table_options(CLI::App& app, SampleTable& table);
 
 /// Throws std::invalid_argument if writing `output` would overwrite `input`, under whatever names and links. "-" is
 /// standard input. `what` names the input in the message.

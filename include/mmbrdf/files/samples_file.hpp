@@ -5,47 +5,75 @@
 /// Writing replaces a file as a whole: write_file.hpp.
 #pragma once
 
-#include <array>
 #include <iosfwd>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "mmbrdf/files/csv.hpp"
+#include "mmbrdf/geometry/geometry.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
+
+/// What a table of samples does not say itself.
+struct SampleTable {
+  /// Own names, such as "theta_i_deg" or "f11", of columns that are called otherwise: CsvReader.
+  ColumnNames columns = {};
+  /// Whether rows with a field that is NA or NaN, or without an angle or wavelength, are passed over, not refused.
+  bool skip_incomplete = false;
+  /// In which the matrices are. Not given: xy; of f_ss … f_pp, sp.
+  std::optional<Frame> frame = {};
+  StokesConvention convention = StokesConvention::germer2017;
+
+  bool operator==(const SampleTable&) const = default;
+};
+
+class ElementColumns;
 
 /// Samples of a file one at a time, in constant memory: see read_samples.
 class SampleReader {
  public:
   /// Reads the header.
-  SampleReader(std::istream& in, const std::string& name);
+  SampleReader(std::istream& in, const std::string& name, const SampleTable& table = {});
+  ~SampleReader();
   /// The next sample; false at the end.
   bool next(Sample& sample);
 
+  /// What of the table is not as in the project's own, in words: what separates, other names, what f11 was made of, what
+  /// was not read, rows that were passed over. Empty if there is nothing to say.
+  std::string understood() const;
+
  private:
+  bool complete() const;
+
   std::string name_;
+  SampleTable table_;
   CsvReader reader_;
   GeometryColumns geometry_;
-  int m11_ = -1, rotation_;
-  std::array<int, 16> elements_, uncertainties_;  // columns; −1: none
-  long rows_ = 0;
+  std::unique_ptr<const ElementColumns> elements_;
+  int rotation_;
+  std::vector<int> needed_, read_;  // columns
+  long rows_ = 0, passed_over_ = 0;
 };
 
 /// Whether a file begins as one of samples does, and none of a model: its first line, but for empty ones and comments,
-/// with a letter. Throws std::runtime_error for a file that cannot be opened.
+/// with a letter or a quote, or with a number behind a comment that names angles. Throws std::runtime_error for a file that cannot be opened.
 bool holds_samples(const std::string& path);
 
-/// Samples in the layout of the published data, or with the project's own column names (docs/formats.md). Throws
+/// Samples in the layout of the published data, with the project's own column names, or as other programs write tables
+/// (docs/formats.md). Throws
 /// std::runtime_error, as the classes above do, for a file without rows or with elements that are not normalised, and
 /// for uncertainties that are negative or not there for all elements. Without their columns they are 0, not known.
-std::vector<Sample> read_samples(const std::string& path);
-std::vector<Sample> read_samples(std::istream& in, const std::string& name);
+std::vector<Sample> read_samples(const std::string& path, const SampleTable& table = {});
+std::vector<Sample> read_samples(std::istream& in, const std::string& name, const SampleTable& table = {});
 
 /// The project's own columns: wavelength_nm, angles in degrees, f11, m12 … m44, with as many digits as it takes:
 /// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place. Behind them u_f11, u_m12
-/// … u_m44, if the samples have uncertainties. Throws std::invalid_argument for invalid samples, or if only some have.
+/// … u_m44, if the samples have uncertainties. Wavelengths below 10 nm make it wavelength_um, as GeometryColumns ask. Throws std::invalid_argument for invalid samples, or if only some have.
 void write_samples(const std::string& path, std::span<const Sample> samples);
 void write_samples(std::ostream& out, std::span<const Sample> samples);
 

@@ -106,6 +106,10 @@ enum class StokesConvention {
   p_first_left_handed_axes_right,
 };
 
+/// "germer2017", "s_first_right" …; the opposite throws std::invalid_argument for another name.
+std::string to_string(StokesConvention convention);
+StokesConvention convention_from(const std::string& name);
+
 /// D M D, the matrix as another convention writes it. convert(M, c, c) = M, and it is its own inverse with from and to
 /// exchanged.  convert(M, germer2017, s_first_right) changes the sign of elements 14, 24, 34, 41, 42, 43.
 Mueller convert(const Mueller& m, StokesConvention from, StokesConvention to);

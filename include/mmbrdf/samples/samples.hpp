@@ -71,6 +71,10 @@ Sample turned(const Sample& sample, double angle);
 /// u'² = Σ c² u², c the coefficients of the rotation. Where one that counts is not known, neither is the result.
 Sample at_zero_azimuth(const Sample& sample);
 
+/// The sample whose matrix is in a frame, in the xy frame. What is unknown leaves unknown what it is mixed with, and
+/// uncertainties are turned as at_zero_azimuth() does.
+Sample from_frame(const Sample& sample, Frame frame);
+
 /// The group of each value, counted from 0 in rising order: values belong together if no gap between them exceeds the
 /// tolerance. For angles and wavelengths that a file has rounded. The values must be finite.
 std::vector<std::size_t> grouped(std::span<const double> values, double tolerance);

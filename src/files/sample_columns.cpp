@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "files/sample_columns.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::array f11_names = {"f11"sv, "f_r11"sv, "fr11"sv, "brdf"sv, "f11_percent"sv, "brdf_percent"sv};
+constexpr std::array brf_names = {"brf"sv, "reflectance_factor"sv, "brf_percent"sv, "reflectance_factor_percent"sv};
+constexpr std::array f_cos_names = {"f_cos"sv, "brdf_cos"sv};
+constexpr std::array m11_names = {"m11"sv, "f_r11/f_r11"sv};
+constexpr std::array polarized_names = {"f_ss"sv, "f_sp"sv, "f_ps"sv, "f_pp"sv};
+constexpr std::array<std::size_t, 4> polarized_elements = {0, 1, 4, 5};
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+const std::string& column_name(const CsvReader& reader, int column) {
+  return reader.columns()[static_cast<std::size_t>(column)];
+}
+
+/// A value whose square and sums of squares are finite, as any measured one is.
+double measured(const CsvReader& reader, int column) {
+  constexpr double beyond_all = 1e100;
+  const double value = reader.number(column);
+  if (std::abs(value) > beyond_all)
+    throw reader.error(column_name(reader, column) + ": " + printable(reader.field(column), 40) + " is beyond " +
+                       shortest(beyond_all));
+  return value;
+}
+
+/// NaN where there is no column, or the field is empty.
+double measured_or_unknown(const CsvReader& reader, int column) {
+  return column < 0 || reader.field(column).empty() ? unknown : measured(reader, column);
+}
+
+double uncertainty(const CsvReader& reader, int column) {
+  const double value = measured(reader, column);
+  if (value < 0)
+    throw reader.error(column_name(reader, column) + ": " + printable(reader.field(column), 40) +
+                       ": an uncertainty must not be negative");
+  return value;
+}
+
+/// The digits of a name that is like one of an element: M12, f_12, "m12 [-]", S12, mueller12, F12/F11 … Else nothing.
+std::string like_an_element(const std::string& column) {
+  std::string name;
+  for (const char c : column)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::size_t digits = name.find_first_of("0123456789");
+  if (digits == std::string::npos || digits + 2 > name.size()) return "";
+  const std::string letters = name.substr(0, digits), rest = name.substr(digits + 2);
+  const auto is_one_of = [](const std::string& word, std::initializer_list<const char*> words) {
+    return std::ranges::find(words, word) != words.end();
+  };
+  return is_one_of(letters, {"m", "f", "s", "fr", "mm", "mueller"}) &&
+                 is_one_of(rest, {"", "1", "f11", "fr11", "m11", "s11", "percent"})
+             ? name.substr(digits, 2)
+             : "";
+}
+
+/// Refuses such a column of an element which else is not measured, or of none.
+void require_no_likeness(const CsvReader& reader, const std::array<int, 16>& columns) {
+  for (std::size_t c = 0; c < reader.columns().size(); ++c) {
+    const std::string digits = like_an_element(reader.keys()[c]);
+    if (digits.empty() || std::ranges::find(columns, static_cast<int>(c)) != columns.end()) continue;
+    std::size_t e = 0;
+    while (e < 16 && digits != element_name(e)) ++e;
+    if (e == 0 || (e < 16 && columns[e] >= 0)) continue;
+    const std::string shown = shown_name(reader.columns()[c]);
+    throw reader.error("column " + shown + ": " +
+                       (e < 16
+                            ? "is it " + sample_element(e) + ", the element divided by f11? Then call it so (columns " +
+                                  sample_element(e) + "=" + shown + "). "
+                            : "elements are called m12 ... m44. ") +
+                       "Columns of other names are not read");
+  }
+}
+
+double scale(const CsvReader& reader, int column) {
+  return column >= 0 && reader.keys()[static_cast<std::size_t>(column)].ends_with("_percent") ? 0.01 : 1;
+}
+
+std::string with_own_name(const CsvReader& reader, int column, const std::string& own) {
+  const std::string& key = reader.keys()[static_cast<std::size_t>(column)];
+  return "u_" + (key.empty() ? own : key);
+}
+
+/// The columns of standard uncertainties, of all that are measured or of none.
+template <std::size_t count, class Name>
+std::array<int, count> uncertainty_columns(const CsvReader& reader, const std::array<int, count>& values, Name name) {
+  std::array<int, count> columns;
+  int some = -1;  // of which the uncertainty is there
+  for (std::size_t e = 0; e < count; ++e) {
+    const std::string own = "u_" + name(e), as_its_column = values[e] < 0 ? own : with_own_name(reader, values[e], own);
+    const std::string_view names[] = {own, as_its_column};
+    columns[e] = reader.find(names);
+    if (columns[e] >= 0 && values[e] < 0) throw reader.error("column " + own + ", but no " + name(e));
+    if (columns[e] >= 0 && some < 0) some = static_cast<int>(e);
+  }
+  for (std::size_t e = 0; e < count; ++e)
+    if (some >= 0 && values[e] >= 0 && columns[e] < 0)
+      throw reader.error("column u_" + name(static_cast<std::size_t>(some)) + ", but no u_" + name(e) +
+                         ": uncertainties are needed of all elements that are there, or of none");
+  return columns;
+}
+
+}  // namespace
+
+ElementColumns::ElementColumns(const CsvReader& reader) {
+  const auto find = [&](std::span<const std::string_view> names) { return reader.find(names); };
+  const int f11 = find(f11_names), brf = find(brf_names), f_cos = find(f_cos_names);
+  std::string there_are;
+  for (const int column : {f11, brf, f_cos})
+    if (column >= 0) there_are += (there_are.empty() ? "" : " and ") + shown_name(column_name(reader, column));
+  if ((f11 >= 0) + (brf >= 0) + (f_cos >= 0) > 1)
+    throw reader.error("columns " + there_are + ": both say what f11 is, one of them is needed");
+  f11_ = brf >= 0 ? F11::brf : f_cos >= 0 ? F11::f_cos : F11::f;
+  elements_[0] = std::max({f11, brf, f_cos});
+  percent_ = scale(reader, elements_[0]) != 1;
+  for (std::size_t p = 0; p < 4; ++p) polarized_[p] = reader.find(polarized_names[p]);
+  m11_ = find(m11_names);
+  for (std::size_t e = 1; e < 16; ++e) {
+    const std::string own = sample_element(e), percent = own + "_percent";
+    const std::string published = std::string("f_r").append(own, 1).append("/f_r11");
+    const std::string_view names[] = {own, published, percent};
+    elements_[e] = find(names);
+  }
+  const long polarized = std::ranges::count_if(polarized_, [](int column) { return column >= 0; });
+  if (polarized == 4) {
+    for (const std::size_t e : polarized_elements)
+      if (elements_[e] >= 0)
+        throw reader.error("columns f_ss ... f_pp, and " + shown_name(column_name(reader, elements_[e])) +
+                           ", which is made of them: one of the two is needed");
+  } else if (polarized > 0) {
+    throw reader.error("of f_ss, f_sp, f_ps and f_pp all four are needed, there are " + std::to_string(polarized));
+  } else if (elements_[0] < 0 && m11_ >= 0) {
+    throw reader.error(
+        "column m11, but no f11: samples need the unpolarized BRDF f11 in 1/sr, and m12 ... m44 divided "
+        "by it; a table of elements that are not divided cannot be read as samples");
+  } else if (elements_[0] < 0) {
+    throw reader.error(
+        "no column f11 (nor f_r11), the unpolarized BRDF in 1/sr; if it has another name, give that: columns f11=NAME");
+  }
+  std::array<int, 16> there = elements_;
+  if (polarized == 4)
+    for (std::size_t p = 0; p < 4; ++p) there[polarized_elements[p]] = polarized_[p];
+  require_no_likeness(reader, there);
+  uncertainties_ = uncertainty_columns(reader, elements_, sample_element);
+  polarized_uncertainties_ =
+      uncertainty_columns(reader, polarized_, [](std::size_t p) { return std::string(polarized_names[p]); });
+  for (std::size_t e = 0; e < 16; ++e) {
+    scales_[e] = scale(reader, elements_[e]);
+    uncertainty_scales_[e] = scale(reader, uncertainties_[e]);
+  }
+}
+
+void ElementColumns::read_polarized(const CsvReader& reader, Sample& sample) const {
+  std::array<double, 4> f, u{};
+  for (std::size_t p = 0; p < 4; ++p) f[p] = measured(reader, polarized_[p]);
+  for (std::size_t p = 0; p < 4 && polarized_uncertainties_[0] >= 0; ++p)
+    u[p] = uncertainty(reader, polarized_uncertainties_[p]);
+  // M11, M12, M21, M22 = ½ Σ (1, a, b, ab) f_ab, a = +1 for incident s, b for scattered s (theory 6.1).
+  constexpr double signs[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
+  sample.f11 = (f[0] + f[1] + f[2] + f[3]) / 2;
+  if (sample.f11 == 0) throw reader.error("f_ss ... f_pp: their sum is 0, by which elements are to be divided");
+  for (std::size_t k = 0; k < 4; ++k) {
+    double sum = 0, squares = 0;
+    for (std::size_t p = 0; p < 4; ++p) sum += signs[k][p] * f[p];
+    const double m = sum / 2 / sample.f11;
+    for (std::size_t p = 0; p < 4; ++p) {
+      const double slope = k == 0 ? 0.5 : (signs[k][p] - m) / 2 / sample.f11;
+      squares += slope * slope * u[p] * u[p];
+    }
+    sample.normalized.elements[polarized_elements[k]] = m;
+    sample.uncertainty.elements[polarized_elements[k]] = std::sqrt(squares);
+  }
+}
+
+void ElementColumns::read(const CsvReader& reader, Sample& sample) const {
+  double unit = 1;
+  if (f11_ == F11::brf) unit = 1 / std::numbers::pi;
+  if (f11_ == F11::f_cos) {
+    const double cosine = std::cos(sample.geometry.reflected.theta);
+    if (!(cosine > 1e-12)) throw reader.error("f_cos: tells nothing of f11 at theta_r = 90 degrees");
+    unit = 1 / cosine;
+  }
+  sample.uncertainty = {};
+  sample.f11 = unit * scales_[0] * measured_or_unknown(reader, elements_[0]);
+  sample.normalized.elements[0] = 1;
+  for (std::size_t e = 1; e < 16; ++e)
+    sample.normalized.elements[e] = scales_[e] * measured_or_unknown(reader, elements_[e]);
+  if (polarized()) read_polarized(reader, sample);
+  const Elements missing = not_measured(sample);
+  if (missing.all()) throw reader.error("no element is measured: all of these fields are empty");
+  for (std::size_t e = 0; e < 16; ++e)
+    if (uncertainties_[e] >= 0 && !missing[e])
+      sample.uncertainty.elements[e] =
+          uncertainty_scales_[e] * (e == 0 ? unit : 1) * uncertainty(reader, uncertainties_[e]);
+  if (m11_ >= 0 && reader.number(m11_) != 1)
+    throw reader.error("m11: " + printable(reader.field(m11_), 40) +
+                       ": must be 1 next to f11, as elements are divided by it");
+}
+
+std::vector<int> ElementColumns::columns() const {
+  std::vector<int> result;
+  const auto add = [&](const auto& columns) {
+    std::ranges::copy_if(columns, std::back_inserter(result), [](int column) { return column >= 0; });
+  };
+  add(elements_), add(uncertainties_), add(polarized_), add(polarized_uncertainties_), add(std::array{m11_});
+  return result;
+}
+
+std::string ElementColumns::f11_is() const {
+  const std::string percent = percent_ ? " / 100" : "";
+  if (polarized()) return "f11, m12, m21, m22 of f_ss ... f_pp";
+  if (f11_ == F11::brf) return "f11 = brf / pi" + percent;
+  if (f11_ == F11::f_cos) return "f11 = f_cos / cos theta_r" + percent;
+  return percent_ ? "f11 = f11_percent / 100" : "";
+}
+
+}  // namespace mmbrdf

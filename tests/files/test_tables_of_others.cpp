@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables as other programs and people write them: those of numpy (savetxt), R (write.csv, write.csv2, write.table) and
+// Octave (save -ascii, dlmwrite) as their versions 1.24.2, 4.2.2 and 7.3.0 were seen to write them.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "given/cases.hpp"
+#include "given/files.hpp"
+#include "mmbrdf/files/samples_file.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/text/units.hpp"
+
+namespace mmbrdf {
+namespace {
+
+struct Read {
+  std::vector<Sample> samples;
+  std::string understood;
+};
+
+Read read(const std::string& text, const SampleTable& table = {}) {
+  std::istringstream in(text);
+  SampleReader reader(in, "d.csv", table);
+  Read result;
+  for (Sample sample; reader.next(sample);) result.samples.push_back(sample);
+  result.understood = reader.understood();
+  return result;
+}
+
+std::string refusal(const std::string& text, const SampleTable& table = {}) {
+  return complaint([&] { read(text, table); });
+}
+
+const std::string header = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11,m22\n";
+
+/// 532 nm, 45 degrees, 30 degrees at 180, f11 = 0.31, m22 = 0.1: the same however it is written.
+void expect_the_sample(const Read& read, const std::string& understood) {
+  ASSERT_GE(read.samples.size(), 1U);
+  const Sample& s = read.samples[0];
+  EXPECT_EQ(in_nanometres(s.wavelength), 532);
+  EXPECT_NEAR(in_degrees(s.geometry.incident.theta), 45, 1e-12);
+  EXPECT_NEAR(in_degrees(s.geometry.incident.phi), 0, 1e-12);
+  EXPECT_NEAR(in_degrees(s.geometry.reflected.theta), 30, 1e-12);
+  EXPECT_NEAR(std::cos(s.geometry.reflected.phi), -1, 1e-12);
+  EXPECT_NEAR(s.f11, 0.31, 1e-15);
+  EXPECT_NEAR(s.normalized(1, 1), 0.1, 1e-15);
+  EXPECT_EQ(read.understood, understood);
+}
+
+TEST(TablesOfOthers, AreOursWithoutAWordIfTheyAre) {
+  expect_the_sample(read(header + "532,45,0,30,180,0.31,0.1\n"), "");
+}
+
+TEST(TablesOfOthers, HaveTheHeaderOfNumpyInAComment) {
+  expect_the_sample(read("# " + header + "5.320e+02,4.50e+01,0.0e+00,3.0e+01,1.8e+02,3.10e-01,1.00e-01\n"),
+                    "names in a comment");
+  expect_the_sample(
+      read("# wavelength_nm theta_i_deg phi_i_deg theta_r_deg phi_r_deg f11 m22\n532 45 0 30 180 0.31 0.1\n"),
+      "separated by blanks, names in a comment");
+  expect_the_sample(read("% a remark\n% wavelength_nm theta_i_deg phi_i_deg theta_r_deg phi_r_deg f11 m22\n"
+                         "  5.32e+02   4.5e+01   0   3e+01  1.8e+02  3.1e-01  1e-01\n"),
+                    "separated by blanks, names in a comment");
+}
+
+TEST(TablesOfOthers, HaveTheQuotesAndRowNamesOfR) {
+  const std::string quoted = R"("wavelength_nm","theta_i_deg","phi_i_deg","theta_r_deg","phi_r_deg","f11","m22")";
+  expect_the_sample(read(quoted + "\n532,45,0,30,180,0.31,0.1\n"), "");
+  expect_the_sample(read("\"\"," + quoted + "\n\"1\",532,45,0,30,180,0.31,0.1\n"), "");
+  std::string blanks = quoted;
+  std::ranges::replace(blanks, ',', ' ');
+  expect_the_sample(read(blanks + "\n\"1\" 532 45 0 30 180 0.31 0.1\n"), "separated by blanks, row names");
+  expect_the_sample(
+      read("wavelength_nm theta_i_deg phi_i_deg theta_r_deg phi_r_deg f11 m22\na 532 45 0 30 180 0.31 0.1\n"),
+      "separated by blanks, row names");
+  expect_the_sample(read("operator," + header + "\"one, two\",532,45,0,30,180,0.31,0.1\n"), "not read: operator");
+}
+
+TEST(TablesOfOthers, HaveSemicolonsTabsAndDecimalCommas) {
+  std::string semicolons = header, tabs = header;
+  std::ranges::replace(semicolons, ',', ';');
+  std::ranges::replace(tabs, ',', '\t');
+  expect_the_sample(read(semicolons + "532;45;0;30;180;0,31;0,1\r\n"), "separated by semicolons, decimal commas");
+  expect_the_sample(read(tabs + "532\t45\t0\t30\t180\t0.31\t0.1\n"), "separated by tabs");
+  EXPECT_EQ(refusal(semicolons + "532;45;0;30;180;0,31;0,1\n532;45;0;30;180;0.31;0,1\n"),
+            "d.csv:3: f11: '0.31': a decimal comma in one number, and another mark in this one");
+  EXPECT_EQ(refusal(semicolons + "532;45;0;30;180;1.000,31;0,1\n"),
+            "d.csv:2: f11: '1.000,31': a decimal point in one number, and another mark in this one");
+}
+
+TEST(TablesOfOthers, HaveTheExponentsOfFortran) {
+  expect_the_sample(read(header + "5.32D+02,4.5d1,0,3D1,1.8D2,0.31D0,1.0D-01\n"), "");
+}
+
+TEST(TablesOfOthers, HaveNamesInAnyCaseWithUnitsInBrackets) {
+  std::string capitals = header;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(c));
+  expect_the_sample(read(capitals + "532,45,0,30,180,0.31,0.1\n"), "");
+  expect_the_sample(read("Wavelength (nm),Theta_i [deg],phi_i (°),θ_r (degrees),phi_r [deg],f11 "
+                         "[1/sr],m22\n532,45,0,30,180,0.31,0.1\n"),
+                    "'Wavelength (nm)' is wavelength_nm, 'Theta_i [deg]' is theta_i_deg, 'phi_i (°)' is phi_i_deg, "
+                    "'θ_r (degrees)' is theta_r_deg, 'phi_r [deg]' is phi_r_deg, 'f11 [1/sr]' is f11");
+}
+
+// A matrix that is not divided has capitals in most books.
+TEST(TablesOfOthers, AskWhatACapitalElementBesideOtherNamesIs) {
+  std::string mixed = header;
+  mixed.replace(mixed.find("m22"), 3, "M22");
+  EXPECT_EQ(refusal(mixed + "532,45,0,30,180,0.31,0.1\n"),
+            "d.csv:1: column M22: is it m22, the element divided by f11? Then call it so (columns m22=M22). Columns of "
+            "other names are not read");
+  expect_the_sample(read(mixed + "532,45,0,30,180,0.31,0.1\n", {.columns = {{"m22", "M22"}}}), "");
+}
+
+TEST(TablesOfOthers, HaveOtherNamesThatAreGiven) {
+  const SampleTable names{.columns = {{"theta_i_deg", "AOI"}, {"f11", "BRDF (sr)"}}};
+  expect_the_sample(
+      read("wavelength_nm,AOI,phi_i_deg,theta_r_deg,phi_r_deg,BRDF (sr),m22\n532,45,0,30,180,0.31,0.1\n", names),
+      "AOI is theta_i_deg, 'BRDF (sr)' is f11");
+  const SampleTable numbers{.columns = {{"wavelength_nm", "1"},
+                                        {"theta_i_deg", "2"},
+                                        {"phi_i_deg", "3"},
+                                        {"theta_r_deg", "4"},
+                                        {"phi_r_deg", "5"},
+                                        {"f11", "6"},
+                                        {"m22", "7"}}};
+  EXPECT_EQ(read("532 45 0 30 180 0.31 0.1\n", numbers).samples[0].f11, 0.31);
+  EXPECT_EQ(refusal("532 45 0 30 180 0.31 0.1\n"),
+            "d.csv:1: no header line: instead of a column's name there is the number 532; without one, columns need "
+            "their numbers: wavelength_nm=1,theta_i_deg=2,...");
+  EXPECT_EQ(refusal(header + "532,45,0,30,180,0.31,0.1\n", names),
+            "d.csv:1: no column 'BRDF (sr)', which is to be f11; there are wavelength_nm ... m22");
+  EXPECT_EQ(refusal(header + "532,45,0,30,180,0.31,0.1\n", {.columns = {{"albedo", "m22"}}}),
+            "d.csv:1: column albedo = m22: albedo is no name of a column of samples");
+}
+
+TEST(TablesOfOthers, HaveAnglesInRadiansAndRelativeAzimuths) {
+  const std::string radian_row = "532,0.7853981633974483,0,0.5235987755982988,3.141592653589793,0.31,0.1\n";
+  expect_the_sample(read("wavelength_nm,theta_i_rad,phi_i_rad,theta_r_rad,phi_r_rad,f11,m22\n" + radian_row), "");
+  expect_the_sample(read("wavelength_nm,theta_i_deg,theta_r_deg,delta_phi_deg,f11,m22\n532,45,30,180,0.31,0.1\n"), "");
+  EXPECT_EQ(refusal("wavelength_nm,theta_i,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,45,0,30,180,0.31\n"),
+            "d.csv:1: no column theta_i_deg (nor thetai); is theta_i in degrees or radians? Call it theta_i_deg or "
+            "theta_i_rad");
+  EXPECT_EQ(
+      refusal("wavelength,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,45,0,30,180,0.31\n"),
+      "d.csv:1: no column wavelength_nm (nanometres), nor lambda or wavelength_um (micrometres); is wavelength in "
+      "nanometres or micrometres? Call it wavelength_nm or wavelength_um");
+  EXPECT_EQ(refusal("wavelength_nm,theta_i_rad,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,45,0,30,180,0.31\n"),
+            "d.csv:2: theta_i_rad: 45 radians; a polar angle is at most pi/2");
+  EXPECT_EQ(
+      refusal("wavelength_nm,theta_i_deg,theta_i_rad,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,45,1,0,30,180,0.31\n"),
+      "d.csv:1: theta_i_deg is given twice, in degrees and in radians");
+}
+
+TEST(TablesOfOthers, HaveWavelengthsThatCanBe) {
+  const std::string rest = ",theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11\n";
+  EXPECT_EQ(refusal("lambda" + rest + "532,45,0,30,180,0.31\n"),
+            "d.csv:2: lambda: 532000 nm: is lambda in nanometres? Then call it wavelength_nm");
+  EXPECT_EQ(refusal("wavelength_nm" + rest + "0.532,45,0,30,180,0.31\n"),
+            "d.csv:2: wavelength_nm: 0.532 nm: is wavelength_nm in micrometres? Then call it wavelength_um");
+  for (const double wavelength : {118.8, 0.0135, 0.000154}) {
+    const auto samples = read("wavelength_um" + rest + std::to_string(wavelength) + ",45,0,30,180,0.31\n").samples;
+    std::ostringstream written;
+    write_samples(written, samples);
+    EXPECT_NEAR(read(written.str()).samples[0].wavelength, wavelength, 1e-9);
+  }
+}
+
+TEST(TablesOfOthers, HaveReflectanceFactorsCosinesAndPercent) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,", row = "532,45,0,30,180,";
+  const auto f = [](double value) { return std::to_string(value) + ",0.1\n"; };
+  const double pi = std::numbers::pi, cosine = std::cos(radians(30));
+  const auto f11 = [&](const std::string& name, const std::string& value) {
+    return read(first + name + "\n" + row + value + "\n").samples[0].f11;
+  };
+  EXPECT_DOUBLE_EQ(f11("brf", "0.97"), 0.97 / pi);
+  EXPECT_DOUBLE_EQ(f11("BRF [%]", "97"), 0.97 / pi);
+  EXPECT_DOUBLE_EQ(f11("f_cos", "0.26"), 0.26 / cosine);
+  EXPECT_DOUBLE_EQ(f11("f11_percent", "31"), 0.31);
+  EXPECT_DOUBLE_EQ(f11("BRDF", "0.31"), 0.31);
+  const Read brf = read(first + "brf,u_brf\n" + row + "0.97,0.01\n");
+  EXPECT_DOUBLE_EQ(brf.samples[0].uncertainty(0, 0), 0.01 / pi);
+  EXPECT_EQ(brf.understood, "f11 = brf / pi");
+  EXPECT_EQ(refusal(first + "f11,brf\n" + row + f(0.3)),
+            "d.csv:1: columns f11 and brf: both say what f11 is, one of them is needed");
+  EXPECT_EQ(refusal(first + "f_cos\n532,45,0,90,180,0.1\n"),
+            "d.csv:2: f_cos: tells nothing of f11 at theta_r = 90 degrees");
+}
+
+TEST(TablesOfOthers, HaveRowsWithoutAValueRefusedOrPassedOverAndCounted) {
+  const std::string whole = "532,45,0,30,180,0.31,0.1\n";
+  for (const std::string row : {"532,NA,0,30,180,0.31,0.1\n", "532,45,0,,180,0.31,0.1\n", "532,45,0,30,180,NaN,0.1\n",
+                                "NA,NA,NA,NA,NA,NA,NA\n", ",,,,,,\n", "532,45,0,30,180,0.31,n/a\n"}) {
+    EXPECT_TRUE(says(refusal(header + whole + row), {"d.csv:3: ", "no value; complete it, or skip incomplete rows"}))
+        << row << refusal(header + whole + row);
+    const Read kept = read(header + whole + row + whole, {.skip_incomplete = true});
+    EXPECT_EQ(kept.samples.size(), 2U) << row;
+    EXPECT_EQ(kept.understood, "1 incomplete row passed over");
+  }
+  EXPECT_EQ(read(header + "532,45,0,30,180,0.31,\n", {.skip_incomplete = true}).samples.size(), 1U);  // not measured
+  EXPECT_EQ(refusal(header + "NA,NA,NA,NA,NA,NA,NA\n", {.skip_incomplete = true}), "d.csv: no complete row");
+}
+
+/// Matrices of a model in another frame and convention, written and read in it.
+RC_GTEST_PROP(TablesOfOthers, InAnotherFrameAndConventionAreTheSame, ()) {
+  const Frame frame = *rc::gen::element(Frame::xy, Frame::sp, Frame::scattering_plane);
+  const auto convention = *rc::gen::element(StokesConvention::germer2017, StokesConvention::s_first_right,
+                                            StokesConvention::p_first_left, StokesConvention::p_first_right);
+  Sample sample{.wavelength = 0.532,
+                .geometry = {{between(0.05, 1.4), between(-3, 3)}, {between(0.05, 1.4), between(-3, 3)}},
+                .f11 = 0.3,
+                .normalized = {}};
+  for (double& element : sample.normalized.elements) element = between(-1, 1);
+  sample.normalized(0, 0) = 1;
+  Sample other = sample;
+  other.normalized = convert(change_frame(sample.normalized, sample.geometry, Frame::xy, frame),
+                             StokesConvention::germer2017, convention);
+  std::ostringstream written;
+  write_samples(written, std::vector{other});
+  const Read back = read(written.str(), {.frame = frame, .convention = convention});
+  for (std::size_t e = 0; e < 16; ++e)
+    RC_ASSERT(std::abs(back.samples[0].normalized.elements[e] - sample.normalized.elements[e]) < 1e-10);
+  RC_ASSERT(from_frame(sample, Frame::xy).normalized == sample.normalized);
+}
+
+// The four intensities of a matrix in the frame sp (theory 6.1), with an uncertainty that is that of a Monte Carlo draw.
+TEST(TablesOfOthers, HaveBrdfsOfSAndP) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_ss,f_sp,f_ps,f_pp";
+  const Read in_plane = read(first + "\n532,45,0,30,180,0.2,0.1,0.12,0.18\n");
+  const Sample& s = in_plane.samples[0];
+  EXPECT_DOUBLE_EQ(s.f11, 0.3);
+  EXPECT_NEAR(s.normalized(0, 1), (0.2 + 0.1 - 0.12 - 0.18) / 0.6, 1e-15);
+  EXPECT_NEAR(s.normalized(1, 0), (0.2 - 0.1 + 0.12 - 0.18) / 0.6, 1e-15);
+  EXPECT_NEAR(s.normalized(1, 1), (0.2 - 0.1 - 0.12 + 0.18) / 0.6, 1e-15);
+  EXPECT_TRUE(std::isnan(s.normalized(2, 2)));
+  EXPECT_EQ(in_plane.understood, "f11, m12, m21, m22 of f_ss ... f_pp, frame sp");
+  const Sample u =
+      read(first + ",u_f_ss,u_f_sp,u_f_ps,u_f_pp\n532,45,0,30,180,0.2,0.1,0.12,0.18,0.01,0,0,0\n").samples[0];
+  EXPECT_DOUBLE_EQ(u.uncertainty(0, 0), 0.005);
+  EXPECT_NEAR(u.uncertainty(1, 1), 0.01 * (1 - 0.16 / 0.6) / 0.6, 1e-15);
+  EXPECT_EQ(refusal("wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_ss,f_pp\n532,45,0,30,180,0.2,0.18\n"),
+            "d.csv:1: of f_ss, f_sp, f_ps and f_pp all four are needed, there are 2");
+  EXPECT_EQ(refusal(first + ",m22\n532,45,0,30,180,0.2,0.1,0.12,0.18,0.1\n"),
+            "d.csv:1: columns f_ss ... f_pp, and m22, which is made of them: one of the two is needed");
+}
+
+}  // namespace
+}  // namespace mmbrdf
