@@ -36,6 +36,7 @@ Run analyze_command(CLI::App& app, const CommandLine& line);
 Run integrate_command(CLI::App& app, const CommandLine& line);
 Run fit_command(CLI::App& app, const CommandLine& line);
 Run select_command(CLI::App& app, const CommandLine& line);
+Run inspect_command(CLI::App& app, const CommandLine& line);
 Run plan_command(CLI::App& app, const CommandLine& line);
 Run subsets_command(CLI::App& app, const CommandLine& line);
 Run compare_command(CLI::App& app, const CommandLine& line);

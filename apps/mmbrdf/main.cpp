@@ -30,6 +30,7 @@ constexpr Command commands[] = {
     {"evaluate", "Print the Mueller BRDF of a model at one geometry, or at each row of a file.", evaluate_command},
     {"analyze", "Print what the Mueller BRDF of a model says, with uncertainties.", analyze_command},
     {"integrate", "Print reflectances of a model, and its means over finite apertures.", integrate_command},
+    {"inspect", "Say what measured samples are, and what seems to be wrong with them.", inspect_command},
     {"fit", "Fit a model to measured samples and print how well it fits.", fit_command},
     {"plan", "Say what a measurement will tell, before it is made.", plan_command},
     {"select", "Find the orders and powers that measured samples support.", select_command},

@@ -10,6 +10,7 @@
 
 #include "dataset.hpp"
 #include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/text/rounding.hpp"
 
 namespace mmbrdf::python {
@@ -30,6 +31,22 @@ void bind_report(py::module_& m) {
       "What is known about a model, and about samples beside it, as the JSON text that `mmbrdf report --format json`\n"
       "prints: title, warnings, model, fit, realizability, reflectances and, with samples, residuals, symmetries,\n"
       "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
+  m.def(
+      "inspect",
+      [](const Dataset& data) {
+        const Inspection seen = without_gil([&] { return inspect(data.samples); });
+        return record(
+            "Inspection",
+            tuple_of(seen.findings,
+                     [](const Finding& one) { return record("Finding", one.fault, one.evidence, one.remedy); }),
+            seen.f11_residual, seen.unsupported, seen.hole);
+      },
+      py::arg("data"),
+      "What is wrong with samples, as far as they betray it, before they are fitted: an Inspection. Fill values, "
+      "elements\n"
+      "that are not divided, matrices that cannot exist, zeros, repeated rows, wavelengths; by fits of low order to "
+      "the\n"
+      "first wavelength the scale of f11, a cosine too many or too few, folded azimuths, frame and signs.");
   m.def("_to_place_of", &to_place_of, py::arg("value"), py::arg("uncertainty"),
         "A number to the place where two digits of its standard uncertainty end; six digits without one.");
   m.def(

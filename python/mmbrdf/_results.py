@@ -78,6 +78,34 @@ class Selection(_NamedTuple):
         return f"<mmbrdf.Selection: {found}; f11: {self.reason_f11}; others: {self.reason_other}{note}>"
 
 
+class Finding(_NamedTuple):
+    """A fault that samples show: inspect().
+
+    fault     'fill values'
+    evidence  'f11 = -999 in 20 samples: 3, 17, ...', counted from 1
+    remedy    what mends it; '': that depends
+    """
+
+    fault: str
+    evidence: str
+    remedy: str
+
+
+class Inspection(_NamedTuple):
+    """What samples are, seen before they are fitted.
+
+    findings      what seems to be wrong with them; (): nothing
+    f11_residual  rms of f11 - a fit of low order, relative to that of f11: noise and fine structure; 0: no fit
+    unsupported   share of the pairs of directions within their angles that no samples support
+    hole          where most of these are, in words; '': at most a twentieth
+    """
+
+    findings: tuple[Finding, ...]
+    f11_residual: float
+    unsupported: float
+    hole: str
+
+
 class SubsetSplit(_NamedTuple):
     """One division of the samples: each part is fitted apart.
 

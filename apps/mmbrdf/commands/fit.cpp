@@ -129,18 +129,22 @@ class Spread {
  public:
   void add(std::span<const Sample> samples) {
     for (const Sample& sample : samples) {
+      ++number_;
       if (!some_.empty() && !same_wavelength(sample.wavelength, some_.front().wavelength)) continue;
-      if (seen_++ % stride_ == 0) some_.push_back(sample);
+      if (seen_++ % stride_ == 0) some_.push_back(sample), numbers_.push_back(number_);
       if (some_.size() < 2 * most_tried) continue;
-      for (std::size_t i = 0; i < most_tried; ++i) some_[i] = some_[2 * i];
-      some_.resize(most_tried);
+      for (std::size_t i = 0; i < most_tried; ++i) some_[i] = some_[2 * i], numbers_[i] = numbers_[2 * i];
+      some_.resize(most_tried), numbers_.resize(most_tried);
       stride_ *= 2;
     }
   }
   std::span<const Sample> some() const { return some_; }
+  std::span<const long> numbers() const { return numbers_; }  ///< from 1, in the order of the data
 
  private:
   std::vector<Sample> some_;
+  std::vector<long> numbers_;
+  long number_ = 0;
   std::size_t seen_ = 0, stride_ = 1;
 };
 
@@ -190,7 +194,7 @@ void fit_data(const Options& options, const CommandLine& line) {
          .rows = rows,
          .result = result},
         options.format);
-  for (const std::string& warning : fit_warnings(result, some.some())) warn(warning);
+  for (const std::string& warning : fit_warnings(result, some.some(), some.numbers())) warn(warning);
   if (!result.model.posterior) note_free_combinations(result);
 }
 

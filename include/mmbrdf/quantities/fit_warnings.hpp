@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a fit says against itself: whether its data are what they are taken for.
+/// What a fit says against itself, and data before there is one: whether they are what they are taken for.
 #pragma once
 
 #include <span>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/samples/inspection.hpp"
 
 namespace mmbrdf {
 
@@ -37,9 +38,33 @@ std::vector<std::string> data_warnings(const FitResult& result);
 ///   - a directional-hemispherical reflectance above 1 by more than its standard uncertainty: energy_line()
 ///   - f11 that is not positive: not_positive_line()
 ///
-/// and, if there are samples, that they fit better in another frame or with other signs: convention_warning(). These may
-/// be some of those fitted. Takes a few milliseconds for each wavelength and each of the conventions.
-std::vector<std::string> fit_warnings(const FitResult& result, std::span<const Sample> samples = {});
+/// and, if there are samples, what these show (row_findings(), which names them by `numbers`) and that they fit better in
+/// another frame or with other signs: convention_warning(). They may be some of those fitted. Takes a few milliseconds
+/// for each wavelength and each of the conventions.
+std::vector<std::string> fit_warnings(const FitResult& result, std::span<const Sample> samples = {},
+                                      std::span<const long> numbers = {});
 inline constexpr std::size_t most_checked = 12;
+
+/// What data are, seen before they are fitted.
+struct Inspection {
+  std::vector<Finding> findings;  ///< what is wrong with them; empty if nothing seems to be
+  Sides sides = no_side;
+  double f11_residual =
+      0;  ///< rms of f11 − fit of low order, relative to that of f11: noise and fine structure; 0: none
+  double unsupported = 0;  ///< unsupported_share() of that fit
+  std::string hole;        ///< unsupported_line() of it
+};
+
+/// row_findings(), and of fits of low orders (inspected_orders, isotropic, of minimum norm) to the samples of the first
+/// wavelength, most_tried at most, without fill values:
+///
+///   scale of f11             energy_line(): percent, π, a factor
+///   cosine                   f11 is reciprocal after it is divided by cos θr, or multiplied by it: better_convention
+///   azimuths, frame          sides_warning of folded azimuths, convention_warning()
+///   no fit                   why there is none
+///
+/// Each with the option or column that mends it. Throws std::invalid_argument for invalid samples, or none.
+Inspection inspect(std::span<const Sample> samples);
+inline constexpr Orders inspected_orders{4, 3};
 
 }  // namespace mmbrdf

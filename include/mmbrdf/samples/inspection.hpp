@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What a table of samples betrays of itself, row by row and without a model.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mmbrdf/samples/samples.hpp"
+
+namespace mmbrdf {
+
+/// A fault that the data show, and what mends it.
+struct Finding {
+  std::string fault;     ///< "fill values"
+  std::string evidence;  ///< "f11 = -999 in 20 samples: 3, 17, 18, …"
+  std::string remedy;    ///< "leave these rows out"; empty where that depends
+};
+
+/// "fill values: f11 = -999 in 20 samples: 3, 17, …: leave these rows out"
+std::string to_string(const Finding& finding);
+
+/// The median of |f11| of those that are known and not 0; 0 if there are none.
+double typical_f11(std::span<const Sample> samples);
+
+/// Whether the numbers of a sample are no measurement: all that are there are equal, f11 and elements, or an element is
+/// beyond 10, or f11 beyond 10⁴ or below −10 times `typical`.
+bool is_fill(const Sample& sample, double typical);
+
+/// Any of the following that the samples show, in this order. Samples are numbered from 1, or as `numbers` says.
+///
+///   fill values              is_fill() of up to a fifth of the samples
+///   elements not divided     an element beyond 1.5, or fill values in more than a fifth, in more than 1 % of the samples
+///   matrices that cannot exist   smallest coherency eigenvalue below −0.1 f11 in more than 1 % of those whose sixteen
+///                            elements are there
+///   zeros                    an element that is exactly 0 in all samples, of 4 at least
+///   repeated rows            samples that are equal in every number
+///   wavelengths              outside of 0.1 … 20 µm
+///
+/// Throws std::invalid_argument for invalid samples.
+std::vector<Finding> row_findings(std::span<const Sample> samples, std::span<const long> numbers = {});
+
+}  // namespace mmbrdf
