@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -32,6 +33,9 @@ class ModelObject : public std::enable_shared_from_this<ModelObject> {
   /// Micrometres: those of the argument, or the model's own for None.
   double wavelength(const std::optional<double>& wavelength_nm) const;
 
+  /// True once: it is said once of each model that its range is not known.
+  bool is_first_of_unknown_range() const { return !unknown_range_was_said_.exchange(true); }
+
   /// The argument wavelength_nm, or the model's own for None.
   Operand wavelength_operand(const std::optional<Given>& wavelength_nm) const;
 
@@ -44,6 +48,7 @@ class ModelObject : public std::enable_shared_from_this<ModelObject> {
  private:
   Model model_;
   double theta_of_all_;
+  mutable std::atomic<bool> unknown_range_was_said_ = false;
   mutable std::mutex mutex_;
   mutable std::optional<Model> printed_;
   mutable std::map<bool, PreparedModel> prepared_;  // by as_printed

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Models: what they are, where they come from, where they go.
+#include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 
 #include <pybind11/stl.h>
@@ -266,11 +267,16 @@ void require_place(const std::filesystem::path& path) {
 }
 
 void warn_outside(const ModelObject& model, const RangeCount& range) {
+  const auto warn = [](const std::string& text) {
+    const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
+    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+  };
+  if ((range.reasons & unknown_range) && model.is_first_of_unknown_range())
+    warn(unknown_range_line(model.model().name, model.model().validity));
   if (range.outside == 0) return;
   const std::string text = model.model().name + ": " + range.line("question") + " (" + to_string(range.reasons) +
                            "): fitted are " + fitted_range(model.model().validity);
-  const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
-  if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+  warn(text);
 }
 
 ModelClass bind_model(py::module_& m) {

@@ -83,7 +83,7 @@ std::string published_number(double value) {
 }  // namespace
 
 Model read_coefficients(std::istream& in, const std::string& name) {
-  CsvReader reader(in, name, {"i", "j", "n", "m", "k", "l", "p", "a"});
+  CsvReader reader(in, name, {"i", "j", "n", "m", "k", "l", "p", "a"}, ';');  // as SCATMECH takes a remark
   std::map<decltype(key(Mode{}, 0)), CoefficientRow> rows;
   Model model;
   model.name = std::filesystem::path(name).stem().string();

@@ -71,7 +71,8 @@ CsvReader::CsvReader(std::istream& in, std::string name) : in_(in), name_(std::m
   require_distinct_columns();
 }
 
-CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& columns)
+CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& columns,
+                     const std::vector<std::string>& unnamed)
     : in_(in), name_(std::move(name)), line_(longest_line + 1) {
   layout_.foreign = true;
   std::string header, comment;
@@ -93,10 +94,16 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
       columns_.assign(fields_.begin(), fields_.end());
     } else {
       split(header, layout_.separator, fields_);
-      if (columns.empty() || !std::ranges::all_of(columns, [](const auto& c) { return is_positive_integer(c.second); }))
+      if (columns.empty() && !unnamed.empty() && count != unnamed.size())
+        throw error("no header line, and " + std::to_string(count) + " columns; without one they are " +
+                    std::to_string(unnamed.size()) + ": " + unnamed.front() + " ... " + unnamed.back());
+      if (unnamed.empty() && (columns.empty() || !std::ranges::all_of(columns, [](const auto& c) {
+                                return is_positive_integer(c.second);
+                              })))
         throw error("no header line: instead of a column's name there is the number " + printable(fields_[0], 40) +
                     "; without one, columns need their numbers: wavelength_nm=1,theta_i_deg=2,...");
-      for (std::size_t c = 1; c <= count; ++c) columns_.push_back(std::to_string(c));
+      columns_ = unnamed;
+      for (std::size_t c = columns_.size() + 1; c <= count; ++c) columns_.push_back(std::to_string(c));
     }
     split(text_, layout_.separator, fields_);
     pending_ = line_number_;
@@ -141,8 +148,13 @@ void CsvReader::name_columns(const ColumnNames& columns) {
   keys_ = std::move(given);
 }
 
-CsvReader::CsvReader(std::istream& in, std::string name, std::vector<std::string> columns)
-    : in_(in), name_(std::move(name)), line_(longest_line + 1), columns_(std::move(columns)), keys_(columns_) {}
+CsvReader::CsvReader(std::istream& in, std::string name, std::vector<std::string> columns, char remark)
+    : in_(in),
+      name_(std::move(name)),
+      line_(longest_line + 1),
+      remark_(remark),
+      columns_(std::move(columns)),
+      keys_(columns_) {}
 
 CsvReader::CsvReader(std::istream& in, const CsvReader& whole, long lines_before)
     : in_(in),
@@ -186,6 +198,7 @@ bool CsvReader::read_line() {
 
 bool CsvReader::read_row() {
   while (read_line()) {
+    if (remark_ != 0) text_ = text_.substr(0, text_.find(remark_));
     const std::string_view content = trimmed(text_);
     if (content.empty() || content.front() == '#') continue;
     if (layout_.foreign) {

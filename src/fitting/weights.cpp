@@ -59,6 +59,23 @@ Mueller data_weights_of(const Sample& sample, double reflectance) {
   return weights;
 }
 
+/// Refuses a weight beside which the others of its element are nothing, so that one sample would be the fit.
+void require_comparable(std::span<const Sample> samples, std::span<const Mueller> weights) {
+  constexpr double all_others = 1e9;
+  for (std::size_t e = 0; e < 16; ++e) {
+    std::size_t heaviest = 0;
+    for (std::size_t s = 0; s < weights.size(); ++s)
+      if (weights[s].elements[e] > weights[heaviest].elements[e]) heaviest = s;
+    double others = 0;
+    for (std::size_t s = 0; s < weights.size(); ++s)
+      if (s != heaviest) others += weights[s].elements[e];
+    if (others > 0 && weights[heaviest].elements[e] > all_others * others)
+      throw std::invalid_argument("sample " + std::to_string(heaviest + 1) + ": u_" + sample_element(e) + " = " +
+                                  shortest(samples[heaviest].uncertainty.elements[e]) +
+                                  " outweighs all other samples together; is it a fill value?");
+  }
+}
+
 }  // namespace
 
 std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model& model, const NoiseLaw& law) {
@@ -71,6 +88,9 @@ std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Mode
 
 std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& basis,
                                   const ReflectanceTable& reflectance) {
+  if (!samples.empty() && std::ranges::none_of(samples, has_uncertainty))
+    throw std::invalid_argument(
+        "no sample has uncertainties, by which they are to be weighted: columns u_f11, u_m12 ... u_m44");
   std::vector<Mueller> weights;
   for (const Sample& sample : samples) {
     try {
@@ -80,6 +100,7 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
       throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }
   }
+  require_comparable(samples, weights);
   return weights;
 }
 

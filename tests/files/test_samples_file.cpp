@@ -313,6 +313,13 @@ TEST(Coefficients, MayComeInAnyOrderAndLackPowers) {
   EXPECT_EQ(to_coefficients_csv(model).substr(0, 46), "1, 1, 0, 0, 0, 0, 0, 5\n1, 1, 2, 0, 0, 0, 0, 0\n");
 }
 
+// SCATMECH 6c5c179 passes over what is behind a semicolon, anywhere; "#" it refuses, and mmbrdf has always taken it.
+TEST(Coefficients, MayHaveRemarks) {
+  const Model model =
+      coefficients_in("; a remark\n1, 1, 0, 0, 0, 0, 0, 5 ; another\n;\n# one of ours\n1, 1, 2, 0, 0, 0, 0, 7;\n");
+  EXPECT_EQ(model.blocks.at(0).coefficients, (std::vector<double>{5, 7}));
+}
+
 TEST(Coefficients, OfEachPublishedFileAreWrittenAsTheSameBytes) {
   for (const char* name :
        {"PTFE.351.coeff.csv", "PTFE.532.coeff.csv", "PTFE.633.coeff.csv", "PTFE.1064.coeff.csv", "PTFE.coeff.csv"}) {

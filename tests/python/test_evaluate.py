@@ -334,3 +334,13 @@ def test_geometries_that_vary_together_share_an_axis(ptfe):
     assert named.name == "uncertainty"
     with_terms = ptfe.evaluate_uncertainty(532, 10, 0, 30, 180, terms={"scale": 0.003}, as_xarray=True)
     assert json.loads(with_terms.attrs["terms"]) == {"scale": 0.003}
+
+
+def test_a_model_that_does_not_say_where_it_was_fitted_is_warned_of_once(tmp_path):
+    (tmp_path / "published.csv").write_text("1, 1, 0, 0, 0, 0, 0, 0.3\n")
+    model = mmbrdf.load(tmp_path / "published.csv")
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match="does not say to which wavelengths and angles it was fitted"):
+        model.evaluate(2500, 89, 0, 89, 180)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model.evaluate(2500, 89, 0, 89, 180)

@@ -272,6 +272,16 @@ TEST(WeightsOfTheData, NeedTheUncertaintyOfEachElementOfEachSample) {
   std::vector<Sample> samples = with_own_noise(material("ptfe-532"), green, 1);
   samples[6].uncertainty(1, 3) = 0;
   EXPECT_EQ(message_of([&] { fit(samples, {}, {}, Weights::data); }), "sample 7: the uncertainty of m24 is not known");
+  for (Sample& sample : samples) sample.uncertainty = {};
+  EXPECT_EQ(message_of([&] { fit(samples, {}, {}, Weights::data); }),
+            "no sample has uncertainties, by which they are to be weighted: columns u_f11, u_m12 ... u_m44");
+}
+
+TEST(WeightsOfTheData, AreNotThoseOfOneSampleAlone) {
+  std::vector<Sample> samples = with_own_noise(material("ptfe-532"), green, 1);
+  samples[5].uncertainty(0, 1) = 1e-12;
+  EXPECT_EQ(message_of([&] { fit(samples, {}, {}, Weights::data); }),
+            "sample 6: u_m12 = 1e-12 outweighs all other samples together; is it a fill value?");
 }
 
 /// The law of the isotropic fit to the samples of one file, at one wavelength (nm).

@@ -179,7 +179,7 @@ Run convert_command(CLI::App& app, const CommandLine& line) {
              "Record these as the fitted wavelengths, in nm");
   add_option(app, "--angles", o->angles, angles_degrees, "THETA_I,THETA_R",
              "Record these as the largest fitted polar angles, in\ndegrees");
-  add_option(app, "--reflectance", o->reflectance, reflectance_from, "NM:R[,NM:R...]",
+  add_option(app, "--reflectance", o->reflectance, reflectance_from, "NM:R[,...]|FILE",
              "Multiply f11 by these reflectances, each at a\nwavelength in nm, linear between them, in place of the\n"
              "table of IN");
   add_text(app, "--certificate", o->certificate, "THETA:NM:R+-U,...",

@@ -114,7 +114,7 @@ Orders orders_from(const std::string& text) {
   return orders;
 }
 
-ReflectanceTable reflectance_from(const std::string& text) {
+ReflectanceTable typed_reflectance(const std::string& text) {
   std::map<double, double> nodes;
   for (const std::string& part : split(text, ',')) {
     const std::vector<std::string> pair = split(part, ':');
@@ -122,7 +122,7 @@ ReflectanceTable reflectance_from(const std::string& text) {
     double value = 0;
     if (pair.size() != 2 || !read(pair[0], wavelength_nm) || !read(pair[1], value) || !std::isfinite(wavelength_nm) ||
         !std::isfinite(value)) {
-      throw wrong(part, "NM:REFLECTANCE, as in 532:0.984");
+      throw wrong(part, "NM:REFLECTANCE, as in 532:0.984, or a file");
     }
     if (!nodes.emplace(wavelength_nm, value).second)
       throw std::invalid_argument("\"" + part + "\": this wavelength is given twice");

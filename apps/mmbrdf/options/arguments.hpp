@@ -38,10 +38,11 @@ struct AnglesDegrees {
 };
 AnglesDegrees angles_degrees(const std::string& text);
 
-std::vector<double> numbers(const std::string& text);        ///< A[,B…]
-std::vector<double> range_from(const std::string& text);     ///< FROM:TO:STEP, both ends included; at most 100 000
-Orders orders_from(const std::string& text);                 ///< F11,OTHER
-ReflectanceTable reflectance_from(const std::string& text);  ///< NM:R[,NM:R…] in any order, as reflectance_line()
+std::vector<double> numbers(const std::string& text);     ///< A[,B…]
+std::vector<double> range_from(const std::string& text);  ///< FROM:TO:STEP, both ends included; at most 100 000
+Orders orders_from(const std::string& text);              ///< F11,OTHER
+/// NM:R[,NM:R…] in any order, as reflectance_line()
+ReflectanceTable typed_reflectance(const std::string& text);
 
 /// scale=0.3%,source=0.5deg,receiver=0.5deg, each once at most: standard uncertainties. A scale may be a number too.
 DeclaredErrors declared_from(const std::string& text);

@@ -2,6 +2,8 @@
 #include "options/certificate.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <sstream>
 
 #include "mmbrdf/files/csv.hpp"
@@ -42,6 +44,28 @@ std::vector<CertifiedReflectance> read_certificate(std::istream& in, const std::
     result.push_back({micrometres(reader.number(wavelength)), reader.number(value), reader.number(u),
                       radians(theta < 0 ? 8 : reader.number(theta))});
   return result;
+}
+
+ReflectanceTable reflectance_from(const std::string& text) {
+  if (text.find(':') != std::string::npos || !std::filesystem::exists(text)) return typed_reflectance(text);
+  std::map<double, double> nodes;
+  read_input(text, [&](std::istream& in, const std::string& name) {
+    using namespace std::string_view_literals;
+    CsvReader reader(in, name, ColumnNames{}, {"wavelength_nm", "reflectance"});
+    const int wavelength = reader.find("wavelength_nm"sv), value = reader.find("reflectance"sv);
+    if (wavelength < 0 || value < 0)
+      throw reader.error(std::string("no column ") + (wavelength < 0 ? "wavelength_nm" : "reflectance"));
+    if (std::max(reader.find("u_reflectance"sv), reader.find("u"sv)) >= 0)
+      throw reader.error(
+          "uncertainties of the reflectance have no place here; mmbrdf convert --certificate counts them");
+    while (reader.next())
+      if (!nodes.emplace(micrometres(reader.number(wavelength)), reader.number(value)).second)
+        throw reader.error("this wavelength is given twice");
+  });
+  ReflectanceTable table;
+  for (const auto& [at, value] : nodes) table.wavelengths.push_back(at), table.values.push_back(value);
+  require_valid(table);
+  return table;
 }
 
 std::vector<CertifiedReflectance> certificate_from(const std::string& text, const Validity& validity) {

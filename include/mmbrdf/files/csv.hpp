@@ -48,11 +48,13 @@ class CsvReader {
   /// not, names in any case, with units in brackets or behind _; decimal commas where commas do not separate; exponents
   /// with D; a header in a comment before the first row; row names that the header leaves out. `columns` has names for
   /// columns that are called otherwise, or the numbers of all that are needed where there is no header. Throws
-  /// std::runtime_error as above, and for a column of `columns` that is not there.
-  CsvReader(std::istream& in, std::string name, const ColumnNames& columns);
+  /// std::runtime_error as above, and for a column of `columns` that is not there. `unnamed` are the names of all columns
+  /// where there is no header and nothing else is said; empty: a table needs one.
+  CsvReader(std::istream& in, std::string name, const ColumnNames& columns,
+            const std::vector<std::string>& unnamed = {});
 
-  /// A file without a header line, whose columns are these.
-  CsvReader(std::istream& in, std::string name, std::vector<std::string> columns);
+  /// A file without a header line, whose columns are these. What is behind `remark` in a line is passed over; 0: nothing.
+  CsvReader(std::istream& in, std::string name, std::vector<std::string> columns, char remark = 0);
 
   /// Rows of the same file as `whole` that are behind so many lines of it: for pieces of it in several threads.
   CsvReader(std::istream& in, const CsvReader& whole, long lines_before);
@@ -108,6 +110,7 @@ class CsvReader {
   std::vector<char> line_;
   std::string_view text_;
   long line_number_ = 0;
+  char remark_ = 0;
   std::vector<std::string> columns_, keys_;
   std::vector<std::string_view> fields_;
   mutable TableLayout layout_;  // the decimal mark is that of the first number that has one

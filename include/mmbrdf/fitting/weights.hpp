@@ -19,8 +19,9 @@ std::vector<Mueller> noise_weights(std::span<const Sample> samples, const Model&
 std::vector<Mueller> speckle_weights(std::span<const Sample> samples, const Model& model);
 
 /// 1/u² of the samples' uncertainties: for f11 / reflectance (reflectance / u)², and turned as at_zero_azimuth() turns
-/// them where the basis turns samples; 0 for what was not measured. Throws std::invalid_argument, with the sample's number,
-/// for an uncertainty that is not known of what was.
+/// them where the basis turns samples; 0 for what was not measured. Throws std::invalid_argument if no sample has
+/// uncertainties; with the sample's number, for an uncertainty that is not known of what was measured, and for one so small
+/// that its weight is more than 1e9 times those of all other samples together.
 std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& basis = {},
                                   const ReflectanceTable& reflectance = {});
 
