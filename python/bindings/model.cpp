@@ -271,8 +271,8 @@ void warn_outside(const ModelObject& model, const RangeCount& range) {
     const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
     if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
   };
-  if ((range.reasons & unknown_range) && model.is_first_of_unknown_range())
-    warn(unknown_range_line(model.model().name, model.model().validity));
+  const std::string unknown = unknown_range_line(model.model().name, model.model().validity);
+  if (!unknown.empty() && model.is_first_of_unknown_range()) warn(unknown);
   if (range.outside == 0) return;
   const std::string text = model.model().name + ": " + range.line("question") + " (" + to_string(range.reasons) +
                            "): fitted are " + fitted_range(model.model().validity);
