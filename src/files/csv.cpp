@@ -34,6 +34,19 @@ bool is_control(char c) {
   return (byte < 0x20 && c != '\t') || byte == 0x7f;
 }
 
+/// What spreadsheets write for a value that there is not.
+bool is_spreadsheet_error(std::string_view text) {
+  constexpr std::array<std::string_view, 7> words = {"#N/A",   "#DIV/0!", "#VALUE!", "#REF!",
+                                                     "#NAME?", "#NUM!",   "#NULL!"};
+  return std::ranges::any_of(words, [&](std::string_view word) { return text.starts_with(word); });
+}
+
+/// Whether a column whose name has a unit is to be one that has another, or none.
+bool contradicts(const std::string& key, const std::string& own) {
+  constexpr std::array<std::string_view, 5> units = {"_percent", "_rad", "_deg", "_um", "_nm"};
+  return std::ranges::any_of(units, [&](std::string_view unit) { return key.ends_with(unit) && !own.ends_with(unit); });
+}
+
 bool is_positive_integer(const std::string& text) {
   return !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos && text != "0";
 }
@@ -84,7 +97,8 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
   if (header.empty()) throw std::runtime_error(name_ + ": empty file, without a header line");
   const long header_line = line_number_;
   layout_.separator = separator_of(header);
-  split(header, layout_.separator, fields_);
+  if (!split(header, layout_.separator, fields_))
+    throw error("a quote that does not end with its field: " + in_quotes(header));
   if (is_number(plain_number(fields_[0]).value_or(std::string(fields_[0])))) {
     const std::size_t count = fields_.size();
     comment = without_comment_marks(comment);
@@ -112,8 +126,9 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
     if (read_row()) {
       pending_ = line_number_;
       // What writes row names gives them no name in the header, and quotes or counts them.
-      layout_.row_names = fields_.size() == columns_.size() + 1 && !fields_[0].empty() &&
-                          (header.front() == '"' || fields_[0] == "1" || !is_number(fields_[0]));
+      // A field too many that is empty is a separator at the end.
+      layout_.row_names = fields_.size() == columns_.size() + 1 && !fields_[0].empty() && !fields_.back().empty() &&
+                          (trimmed(text_).front() == '"' || fields_[0] == "1" || !is_number(fields_[0]));
       if (layout_.row_names) columns_.insert(columns_.begin(), "");
     }
     line_number_ = header_line;
@@ -142,6 +157,9 @@ void CsvReader::name_columns(const ColumnNames& columns) {
     if (at >= columns_.size())
       throw error("no column " + shown_name(theirs) + ", which is to be " + own + "; there are " +
                   shown_name(columns_.front()) + " ... " + shown_name(columns_.back()));
+    if (contradicts(keys_[at], own))
+      throw error("column " + shown_name(theirs) + ", which is to be " + own + ": its name has another unit, " +
+                  keys_[at].substr(keys_[at].rfind('_') + 1));
     std::ranges::replace(given, own, "");
     given[at] = own;
   }
@@ -200,10 +218,11 @@ bool CsvReader::read_row() {
   while (read_line()) {
     if (remark_ != 0) text_ = text_.substr(0, text_.find(remark_));
     const std::string_view content = trimmed(text_);
-    if (content.empty() || content.front() == '#') continue;
+    if (content.empty() || (content.front() == '#' && !(layout_.foreign && is_spreadsheet_error(content)))) continue;
     if (layout_.foreign) {
       if (content.front() == '%') continue;
-      split(text_, layout_.separator, fields_);
+      if (!split(text_, layout_.separator, fields_))
+        throw error("a quote that does not end with its field: " + in_quotes(text_));
       return true;
     }
     fields_.clear();  // and filled again, in the same memory
@@ -229,10 +248,11 @@ bool CsvReader::next() {
 }
 
 bool CsvReader::is_missing(int column) const {
-  constexpr std::array<std::string_view, 4> words = {"", "NA", "N/A", "NAN"};
+  constexpr std::array<std::string_view, 5> words = {"", "NA", "N/A", "NAN", "-NAN"};
+  const std::string_view text = field(column);
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == b; };
-  return std::ranges::any_of(words,
-                             [&](std::string_view word) { return std::ranges::equal(field(column), word, same); });
+  return is_spreadsheet_error(text) ||
+         std::ranges::any_of(words, [&](std::string_view word) { return std::ranges::equal(text, word, same); });
 }
 
 double CsvReader::foreign_number(std::string_view field) const {

@@ -66,7 +66,8 @@ GeometryColumns::GeometryColumns(const CsvReader& reader, double wavelength) : w
   if (wavelength_column_ < 0 && !(wavelength > 0))
     throw reader.error("no column wavelength_nm (nanometres), nor lambda or wavelength_um (micrometres)" +
                        unit_hint(reader, "wavelength", "wavelength_nm"));
-  const int relative = std::max(reader.find("delta_phi_deg"), reader.find("delta_phi_rad"));
+  constexpr std::string_view relative_names[] = {"delta_phi_deg", "delta_phi_rad"};
+  const int relative = reader.find(relative_names);
   relative_azimuth_ = relative >= 0;
   for (std::size_t a = 0; a < angles_.size(); ++a) {
     const std::string own(angle_names[a][0]);

@@ -17,9 +17,10 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::array f11_names = {"f11"sv, "f_r11"sv, "fr11"sv, "brdf"sv, "f11_percent"sv, "brdf_percent"sv};
+constexpr std::array f11_names = {"f11"sv,           "f_r11"sv,       "fr11"sv,        "brdf"sv,
+                                  "f_r11_percent"sv, "f11_percent"sv, "brdf_percent"sv};
 constexpr std::array brf_names = {"brf"sv, "reflectance_factor"sv, "brf_percent"sv, "reflectance_factor_percent"sv};
-constexpr std::array f_cos_names = {"f_cos"sv, "brdf_cos"sv};
+constexpr std::array f_cos_names = {"f_cos"sv, "brdf_cos"sv, "f_cos_percent"sv};
 constexpr std::array m11_names = {"m11"sv, "f_r11/f_r11"sv};
 constexpr std::array polarized_names = {"f_ss"sv, "f_sp"sv, "f_ps"sv, "f_pp"sv};
 constexpr std::array<std::size_t, 4> polarized_elements = {0, 1, 4, 5};
@@ -65,9 +66,12 @@ std::string like_an_element(const std::string& column) {
   const auto is_one_of = [](const std::string& word, std::initializer_list<const char*> words) {
     return std::ranges::find(words, word) != words.end();
   };
+  const std::string element = name.substr(digits, 2);
+  const bool is_there = element.find_first_not_of("1234") == std::string::npos;  // else with few endings only
   return is_one_of(letters, {"m", "f", "s", "fr", "mm", "mueller"}) &&
-                 is_one_of(rest, {"", "1", "f11", "fr11", "m11", "s11", "percent"})
-             ? name.substr(digits, 2)
+                 (is_one_of(rest, {"", "1", "f11", "fr11", "m11", "s11", "percent"}) ||
+                  (is_there && !std::isdigit(static_cast<unsigned char>(rest.front()))))
+             ? element
              : "";
 }
 
@@ -93,6 +97,28 @@ double scale(const CsvReader& reader, int column) {
   return column >= 0 && reader.keys()[static_cast<std::size_t>(column)].ends_with("_percent") ? 0.01 : 1;
 }
 
+/// Whether f11 or an element is made of this column by a factor, so that its uncertainty has to be in the same unit.
+bool is_made(const CsvReader& reader, int column) {
+  const std::string& key = reader.keys()[static_cast<std::size_t>(column)];
+  return key.ends_with("_percent") || std::ranges::find(brf_names, key) != brf_names.end() ||
+         std::ranges::find(f_cos_names, key) != f_cos_names.end();
+}
+
+/// Refuses an uncertainty of which nothing is read: of f11 under another of its names, or in another unit.
+void require_uncertainties_read(const CsvReader& reader, const std::vector<int>& read, int f11) {
+  for (std::size_t c = 0; c < reader.keys().size(); ++c) {
+    const std::string& key = reader.keys()[c];
+    if (!key.starts_with("u_") || std::ranges::find(read, static_cast<int>(c)) != read.end()) continue;
+    const std::string of = key.substr(2);
+    const auto is_among = [&](const auto& names) { return std::ranges::find(names, of) != names.end(); };
+    if (is_among(f11_names) || is_among(brf_names) || is_among(f_cos_names) || !like_an_element(of).empty())
+      throw reader.error("column " + shown_name(reader.columns()[c]) + " is of no column that is read" +
+                         (f11 < 0 ? ""
+                                  : "; that of " + shown_name(column_name(reader, f11)) + " is called u_" +
+                                        reader.keys()[static_cast<std::size_t>(f11)] + ", in the same unit"));
+  }
+}
+
 std::string with_own_name(const CsvReader& reader, int column, const std::string& own) {
   const std::string& key = reader.keys()[static_cast<std::size_t>(column)];
   return "u_" + (key.empty() ? own : key);
@@ -105,7 +131,8 @@ std::array<int, count> uncertainty_columns(const CsvReader& reader, const std::a
   int some = -1;  // of which the uncertainty is there
   for (std::size_t e = 0; e < count; ++e) {
     const std::string own = "u_" + name(e), as_its_column = values[e] < 0 ? own : with_own_name(reader, values[e], own);
-    const std::string_view names[] = {own, as_its_column};
+    const bool same_unit = values[e] < 0 || !is_made(reader, values[e]);
+    const std::string_view names[] = {as_its_column, same_unit ? std::string_view(own) : as_its_column};
     columns[e] = reader.find(names);
     if (columns[e] >= 0 && values[e] < 0) throw reader.error("column " + own + ", but no " + name(e));
     if (columns[e] >= 0 && some < 0) some = static_cast<int>(e);
@@ -161,6 +188,7 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
   uncertainties_ = uncertainty_columns(reader, elements_, sample_element);
   polarized_uncertainties_ =
       uncertainty_columns(reader, polarized_, [](std::size_t p) { return std::string(polarized_names[p]); });
+  require_uncertainties_read(reader, columns(), elements_[0]);
   for (std::size_t e = 0; e < 16; ++e) {
     scales_[e] = scale(reader, elements_[e]);
     uncertainty_scales_[e] = scale(reader, uncertainties_[e]);
@@ -221,6 +249,15 @@ std::vector<int> ElementColumns::columns() const {
   };
   add(elements_), add(uncertainties_), add(polarized_), add(polarized_uncertainties_), add(std::array{m11_});
   return result;
+}
+
+bool ElementColumns::complete(const CsvReader& reader) const {
+  const auto is_empty = [&](int column) { return column < 0 || reader.field(column).empty(); };
+  const auto is_missing = [&](int column) { return column >= 0 && reader.is_missing(column); };
+  for (std::size_t e = 0; e < 16; ++e)
+    if (!is_empty(elements_[e]) && (is_missing(elements_[e]) || is_missing(uncertainties_[e]))) return false;
+  return !is_missing(m11_) && std::ranges::none_of(polarized_, is_missing) &&
+         std::ranges::none_of(polarized_uncertainties_, is_missing);
 }
 
 std::string ElementColumns::f11_is() const {

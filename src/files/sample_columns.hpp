@@ -21,6 +21,9 @@ class ElementColumns {
   /// f11 in sr⁻¹ and the divided elements of a row, and their uncertainties: of the sample, whose geometry is known.
   void read(const CsvReader& reader, Sample& sample) const;
 
+  /// Whether no field of a row says NA or NaN, or is empty, but for elements that were not measured.
+  bool complete(const CsvReader& reader) const;
+
   /// Whether f_ss … f_pp make the elements 11, 12, 21, 22, which are those of s and p then.
   bool polarized() const { return polarized_[0] >= 0; }
 

@@ -46,6 +46,10 @@ SampleReader::SampleReader(std::istream& in, const std::string& name, const Samp
   needed_ = geometry_.columns();
   if (rotation_ >= 0) needed_.push_back(rotation_);
   read_ = elements_->columns();
+  for (std::size_t c = 0; c < reader_.keys().size(); ++c)
+    if (static_cast<int>(c) != rotation_ && reader_.keys()[c].find("rotation") != std::string::npos)
+      throw reader_.error("column " + shown_name(reader_.columns()[c]) +
+                          ": if the sample was turned, call it sample_rotation_deg, in degrees; else leave it out");
   for (const auto& [own, theirs] : table.columns) {
     const int column = reader_.find(own);
     if (std::ranges::find(needed_, column) == needed_.end() && std::ranges::find(read_, column) == read_.end())
@@ -61,8 +65,7 @@ SampleReader::~SampleReader() = default;
 
 bool SampleReader::complete() const {
   return std::ranges::none_of(needed_, [&](int column) { return reader_.is_missing(column); }) &&
-         std::ranges::none_of(read_,
-                              [&](int column) { return reader_.is_missing(column) && !reader_.field(column).empty(); });
+         elements_->complete(reader_);
 }
 
 bool SampleReader::next(Sample& sample) {
@@ -98,7 +101,7 @@ std::string SampleReader::understood() const {
   if (layout.decimal == ',') list(text, "decimal commas");
   if (layout.header_comment) list(text, "names in a comment");
   if (layout.row_names) list(text, "row names");
-  std::string unread;
+  std::string unread, capital;
   for (std::size_t c = 0; c < reader_.columns().size(); ++c) {
     const std::string &column = reader_.columns()[c], &key = reader_.keys()[c];
     const auto is_it = [&](int other) { return other == static_cast<int>(c); };
@@ -106,8 +109,11 @@ std::string SampleReader::understood() const {
       if (!column.empty()) unread += (unread.empty() ? "" : " ") + shown_name(column);
     } else if (lower_case(column) != key) {
       list(text, shown_name(column) + " is " + key);
+    } else if (capital.empty() && key.size() == 3 && key[0] == 'm' && column[0] == 'M') {
+      capital = column;
     }
   }
+  if (!capital.empty()) list(text, capital + " ... are divided by f11");
   if (!elements_->f11_is().empty()) list(text, elements_->f11_is());
   if (table_.frame != Frame::xy) list(text, "frame " + to_string(*table_.frame));
   if (table_.convention != StokesConvention::germer2017) list(text, "convention " + to_string(table_.convention));
@@ -131,8 +137,8 @@ bool holds_samples(const std::string& path) {
     const std::size_t first = line.find_first_not_of(" \t\r\xef\xbb\xbf");
     if (first == std::string::npos) continue;
     if (line[first] != '#' && line[first] != '%')
-      return std::isalpha(static_cast<unsigned char>(line[first])) != 0 || line[first] == '"' ||
-             lower_case(comment).find("theta") != std::string::npos;
+      return std::isalpha(static_cast<unsigned char>(line[first])) != 0 || line[first] == '"' || line[first] == ',' ||
+             static_cast<unsigned char>(line[first]) >= 0x80 || lower_case(comment).find("theta") != std::string::npos;
     comment = line;
   }
   return false;

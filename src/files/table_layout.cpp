@@ -42,8 +42,9 @@ char separator_of(std::string_view line) {
   return tab ? '\t' : comma ? ',' : ' ';
 }
 
-void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
+bool split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
+  bool well_formed = true;
   const auto is_blank = [&](char c) { return c == ' ' || (c == '\t' && separator != '\t'); };
   std::size_t at = 0;
   for (;;) {
@@ -52,9 +53,11 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
     if (at < line.size() && line[at] == '"') {
       begin = at + 1;
       end = line.find('"', begin);
+      well_formed = well_formed && end != std::string_view::npos;
       if (end == std::string_view::npos) end = line.size();
       at = end < line.size() ? end + 1 : end;
-      while (at < line.size() && line[at] != separator && !(separator == ' ' && is_blank(line[at]))) ++at;
+      for (; at < line.size() && line[at] != separator && !(separator == ' ' && is_blank(line[at])); ++at)
+        well_formed = well_formed && is_blank(line[at]);
     } else {
       while (at < line.size() && line[at] != separator && !(separator == ' ' && is_blank(line[at]))) ++at;
       end = at;
@@ -62,7 +65,7 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
     fields.push_back(trimmed(line.substr(begin, end - begin)));
     if (separator == ' ')
       while (at < line.size() && is_blank(line[at])) ++at;
-    if (at == line.size()) return;
+    if (at == line.size()) return well_formed;
     if (separator != ' ') ++at;
   }
 }

@@ -12,8 +12,9 @@ namespace mmbrdf {
 /// What separates the fields of a line: ';', a tab or ',', whichever there is outside of quotes, in this order; else ' '.
 char separator_of(std::string_view line);
 
-/// The fields of a line, without blanks and quotes around them, into `fields`.
-void split(std::string_view line, char separator, std::vector<std::string_view>& fields);
+/// The fields of a line, without blanks and quotes around them, into `fields`. False for a quote without its end, or with
+/// more behind it.
+bool split(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
 /// A name as names are compared: in lower case, with _ for blanks and marks between words, Greek letters spelt out, and
 /// units as own names have them: "Theta_i (°)", "THETA_I [deg]" → "theta_i_deg", "f11 [1/sr]" → "f11". A name of an

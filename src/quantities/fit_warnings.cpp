@@ -16,8 +16,10 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double folded = 1.5;     // times the rms of the other elements: beyond it the mirror-odd ones are mixed up
-constexpr int coarser = 2;         // than the steps of a report
+constexpr double folded = 1.5;  // times the rms of the other elements: beyond it the mirror-odd ones are mixed up
+constexpr int coarser = 2;      // than the steps of a report
+constexpr std::size_t enough_samples = 60;
+constexpr double beyond_doubt = 2;
 constexpr double rounding = 1e-9;  // rms of simulated data without noise
 
 /// Of the elements that change sign where the sample is seen in a mirror, or of the others but 11.
@@ -181,7 +183,9 @@ Inspection inspect(std::span<const Sample> samples) {
     result.unsupported = unsupported_share(validity, some.front().wavelength);
     result.hole = unsupported_line(validity, some.front().wavelength);
     const auto found = f11_diagnostics(fitted.model, some.front().wavelength, fitted_theta_max(validity), coarser);
-    if (const std::string line = energy_line(found, "of a fit of low order"); !line.empty())
+    // Few samples leave much to the smallest norm.
+    if (const std::string line = energy_line(found, "of a fit of low order");
+        !line.empty() && (some.size() >= enough_samples || found.dhr > beyond_doubt))
       result.findings.push_back({"scale of f11", line, ""});
     if (Finding cosine = cosine_finding(some, options); !cosine.fault.empty()) result.findings.push_back(cosine);
     if (const std::string line = sides_warning(fitted); line.find("folded") != std::string::npos)

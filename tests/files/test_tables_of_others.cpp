@@ -100,7 +100,7 @@ TEST(TablesOfOthers, HaveTheExponentsOfFortran) {
 TEST(TablesOfOthers, HaveNamesInAnyCaseWithUnitsInBrackets) {
   std::string capitals = header;
   for (char& c : capitals) c = static_cast<char>(std::toupper(c));
-  expect_the_sample(read(capitals + "532,45,0,30,180,0.31,0.1\n"), "");
+  expect_the_sample(read(capitals + "532,45,0,30,180,0.31,0.1\n"), "M22 ... are divided by f11");
   expect_the_sample(read("Wavelength (nm),Theta_i [deg],phi_i (°),θ_r (degrees),phi_r [deg],f11 "
                          "[1/sr],m22\n532,45,0,30,180,0.31,0.1\n"),
                     "'Wavelength (nm)' is wavelength_nm, 'Theta_i [deg]' is theta_i_deg, 'phi_i (°)' is phi_i_deg, "
@@ -114,7 +114,8 @@ TEST(TablesOfOthers, AskWhatACapitalElementBesideOtherNamesIs) {
   EXPECT_EQ(refusal(mixed + "532,45,0,30,180,0.31,0.1\n"),
             "d.csv:1: column M22: is it m22, the element divided by f11? Then call it so (columns m22=M22). Columns of "
             "other names are not read");
-  expect_the_sample(read(mixed + "532,45,0,30,180,0.31,0.1\n", {.columns = {{"m22", "M22"}}}), "");
+  expect_the_sample(read(mixed + "532,45,0,30,180,0.31,0.1\n", {.columns = {{"m22", "M22"}}}),
+                    "M22 ... are divided by f11");
 }
 
 TEST(TablesOfOthers, HaveOtherNamesThatAreGiven) {
@@ -204,6 +205,48 @@ TEST(TablesOfOthers, HaveRowsWithoutAValueRefusedOrPassedOverAndCounted) {
   }
   EXPECT_EQ(read(header + "532,45,0,30,180,0.31,\n", {.skip_incomplete = true}).samples.size(), 1U);  // not measured
   EXPECT_EQ(refusal(header + "NA,NA,NA,NA,NA,NA,NA\n", {.skip_incomplete = true}), "d.csv: no complete row");
+}
+
+// Found by people who brought what they had; each was taken for something else before.
+TEST(TablesOfOthers, ThatCouldBeTakenForSomethingElseAreRefusedWithTheWayOn) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,", row = "532,45,0,30,180,0.31";
+  EXPECT_EQ(refusal("\"wavelength_um\",\"theta_i_deg\",\"delta_phi_deg\",\"theta_r_deg\",\"f11\"\n0.532,10,0,5,0.3,\n"),
+            "d.csv:2: 5 fields (wavelength_um ... f11) are needed, there are 6: '0.532,10,0,5,0.3,'");
+  EXPECT_EQ(refusal(first + "brf,u_f11\n" + row + ",0.01\n"),
+            "d.csv:1: column u_f11 is of no column that is read; that of brf is called u_brf, in the same unit");
+  EXPECT_EQ(refusal(first + "BRF [%],u_BRF\n" + row + ",0.01\n"),
+            "d.csv:1: column u_BRF is of no column that is read; that of 'BRF [%]' is called u_brf_percent, in the "
+            "same unit");
+  EXPECT_EQ(refusal(first + "R [%]\n" + row + "\n", {.columns = {{"f11", "R [%]"}}}),
+            "d.csv:1: column 'R [%]', which is to be f11: its name has another unit, percent");
+  EXPECT_EQ(read(first + "R [%]\n" + row + "\n", {.columns = {{"f11_percent", "R [%]"}}}).samples[0].f11, 0.31 * 0.01);
+  EXPECT_EQ(refusal(first + "f11,rotation_deg\n" + row + ",5\n"),
+            "d.csv:1: column rotation_deg: if the sample was turned, call it sample_rotation_deg, in degrees; else "
+            "leave it out");
+  EXPECT_TRUE(says(refusal(first + "f11,m12_norm\n" + row + ",0.1\n"), {"d.csv:1: column m12_norm: is it m12"}));
+  EXPECT_EQ(read(first + "f11,m12,m12_err\n" + row + ",0.1,1\n").understood, "not read: m12_err");
+  EXPECT_TRUE(says(refusal(first + "f11\n#N/A,45,0,30,180,0.31\n"), {"d.csv:2: wavelength_nm: '#N/A': no value"}));
+  EXPECT_EQ(read(first + "f11\n#DIV/0!,45,0,30,180,0.31\n" + row + "\n", {.skip_incomplete = true}).understood,
+            "1 incomplete row passed over");
+  for (const std::string value : {"\"0.31\"0", "\"0.31"})
+    EXPECT_TRUE(says(refusal(first + "f11\n532,45,0,30,180," + value + "\n"), {"d.csv:2: a quote that does not end"}));
+  EXPECT_TRUE(
+      says(refusal("wavelength_nm,theta_i_deg,theta_r_deg,delta_phi_deg,delta_phi_rad,f11\n532,45,30,1,1,0.3\n"),
+           {"d.csv:1: columns delta_phi_deg and delta_phi_rad mean the same"}));
+}
+
+TEST(TablesOfOthers, InCapitalsSayThatElementsAreDivided) {
+  EXPECT_EQ(
+      read("WAVELENGTH_NM,THETA_I_DEG,PHI_I_DEG,THETA_R_DEG,PHI_R_DEG,F11,M22\n532,45,0,30,180,0.31,0.1\n").understood,
+      "M22 ... are divided by f11");
+}
+
+TEST(TablesOfOthers, AreIncompleteWhereAnUncertaintyIs) {
+  const std::string rows =
+      "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11,m22,u_f11,u_m22\n"
+      "532,45,0,30,180,0.31,0.1,0.01,\n532,45,0,30,180,0.31,,0.01,\n";
+  EXPECT_TRUE(says(refusal(rows), {"d.csv:2: u_m22: '': no value"}));
+  EXPECT_EQ(read(rows, {.skip_incomplete = true}).samples.size(), 1U);
 }
 
 /// Matrices of a model in another frame and convention, written and read in it.

@@ -116,6 +116,17 @@ TEST(Inspect, NamesTheSamples) {
   EXPECT_EQ(row_findings(samples, numbers).front().evidence, "f11 = -999 in 1 sample: 3");
 }
 
+TEST(Inspect, NamesFillValuesHoweverManyThereAre) {
+  Samples samples = measured(1), whole = samples;
+  for (std::size_t i = 0; i < samples.size(); i += 3) {
+    samples[i].f11 = -999;
+    whole[i].f11 = -999;
+    whole[i].normalized.elements.fill(-999);
+  }
+  for (const Samples& one : {samples, whole})
+    EXPECT_EQ(row_findings(one).front().evidence, "f11 = -999 in 134 samples: 1, 4, 7, 10, 13, 16, 19, 22, ...");
+}
+
 TEST(Inspect, OfF11AloneAsksNothingOfTheOthers) {
   Samples samples = measured(1);
   for (Sample& s : samples)

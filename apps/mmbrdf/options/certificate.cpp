@@ -58,9 +58,14 @@ ReflectanceTable reflectance_from(const std::string& text) {
     if (std::max(reader.find("u_reflectance"sv), reader.find("u"sv)) >= 0)
       throw reader.error(
           "uncertainties of the reflectance have no place here; mmbrdf convert --certificate counts them");
-    while (reader.next())
+    constexpr double no_reflectance = 2;  // not even with errors
+    while (reader.next()) {
+      if (reader.number(value) > no_reflectance)
+        throw reader.error("reflectance " + printable(reader.field(value), 40) +
+                           ": is it in percent? It is a part of 1");
       if (!nodes.emplace(micrometres(reader.number(wavelength)), reader.number(value)).second)
         throw reader.error("this wavelength is given twice");
+    }
   });
   ReflectanceTable table;
   for (const auto& [at, value] : nodes) table.wavelengths.push_back(at), table.values.push_back(value);
