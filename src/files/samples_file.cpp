@@ -87,7 +87,11 @@ bool SampleReader::next(Sample& sample) {
     if (elements_->polarized())  // s is s whatever the convention
       for (const std::size_t e : {1UL, 4UL, 5UL}) sample.normalized.elements[e] = before.elements[e];
   }
-  if (table_.frame != Frame::xy) sample = from_frame(sample, *table_.frame);
+  if (table_.frame != Frame::xy) {
+    const Elements before = not_measured(sample);
+    sample = from_frame(sample, *table_.frame);
+    if ((not_measured(sample) & ~before).any()) ++lost_;
+  }
   if (rotation_ >= 0) sample = turned(sample, -radians(reader_.number(rotation_)));
   return true;
 }
@@ -118,6 +122,9 @@ std::string SampleReader::understood() const {
   if (table_.frame != Frame::xy) list(text, "frame " + to_string(*table_.frame));
   if (table_.convention != StokesConvention::germer2017) list(text, "convention " + to_string(table_.convention));
   if (!unread.empty()) list(text, "not read: " + unread);
+  if (lost_ > 0)
+    list(text, std::to_string(lost_) + " of " + std::to_string(rows_) +
+                   " samples lose elements that out of plane are mixed with some that were not measured");
   if (passed_over_ > 0)
     list(text, std::to_string(passed_over_) + " incomplete row" + (passed_over_ > 1 ? "s" : "") + " passed over");
   return text;

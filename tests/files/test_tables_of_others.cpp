@@ -282,6 +282,12 @@ TEST(TablesOfOthers, HaveBrdfsOfSAndP) {
   EXPECT_NEAR(s.normalized(1, 1), (0.2 - 0.1 - 0.12 + 0.18) / 0.6, 1e-15);
   EXPECT_TRUE(std::isnan(s.normalized(2, 2)));
   EXPECT_EQ(in_plane.understood, "f11, m12, m21, m22 of f_ss ... f_pp, frame sp");
+  const Read out_of_plane = read(first + "\n532,45,0,30,120,0.2,0.1,0.12,0.18\n532,45,0,30,0,0.2,0.1,0.12,0.18\n");
+  EXPECT_TRUE(std::isnan(out_of_plane.samples[0].normalized(1, 1)));
+  EXPECT_EQ(
+      out_of_plane.understood,
+      "f11, m12, m21, m22 of f_ss ... f_pp, frame sp, 1 of 2 samples lose elements that out of plane are mixed with "
+      "some that were not measured");
   const Sample u =
       read(first + ",u_f_ss,u_f_sp,u_f_ps,u_f_pp\n532,45,0,30,180,0.2,0.1,0.12,0.18,0.01,0,0,0\n").samples[0];
   EXPECT_DOUBLE_EQ(u.uncertainty(0, 0), 0.005);

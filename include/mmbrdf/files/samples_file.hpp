@@ -44,7 +44,7 @@ class SampleReader {
   bool next(Sample& sample);
 
   /// What of the table is not as in the project's own, in words: what separates, other names, what f11 was made of, what
-  /// was not read, rows that were passed over. Empty if there is nothing to say.
+  /// was not read, rows that were passed over, and that lost measured elements to the frame. Empty if there is nothing to say.
   std::string understood() const;
 
  private:
@@ -57,7 +57,7 @@ class SampleReader {
   std::unique_ptr<const ElementColumns> elements_;
   int rotation_;
   std::vector<int> needed_, read_;  // columns
-  long rows_ = 0, passed_over_ = 0;
+  long rows_ = 0, passed_over_ = 0, lost_ = 0;
 };
 
 /// Whether a file begins as one of samples does, and none of a model: its first line, but for empty ones and comments,
