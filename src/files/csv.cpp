@@ -125,8 +125,8 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
     columns_.assign(fields_.begin(), fields_.end());
     if (read_row()) {
       pending_ = line_number_;
-      // What writes row names gives them no name in the header, and quotes or counts them.
-      // A field too many that is empty is a separator at the end.
+      // What writes row names gives them no name in the header, and quotes or counts them. A field too many that is
+      // empty is a separator at the end.
       layout_.row_names = fields_.size() == columns_.size() + 1 && !fields_[0].empty() && !fields_.back().empty() &&
                           (trimmed(text_).front() == '"' || fields_[0] == "1" || !is_number(fields_[0]));
       if (layout_.row_names) columns_.insert(columns_.begin(), "");
@@ -160,6 +160,8 @@ void CsvReader::name_columns(const ColumnNames& columns) {
     if (contradicts(keys_[at], own))
       throw error("column " + shown_name(theirs) + ", which is to be " + own + ": its name has another unit, " +
                   keys_[at].substr(keys_[at].rfind('_') + 1));
+    if (given[at] != keys_[at] && columns.contains(given[at]))
+      throw error("column " + shown_name(theirs) + " is to be both " + given[at] + " and " + own);
     std::ranges::replace(given, own, "");
     given[at] = own;
   }

@@ -39,10 +39,8 @@ void require_polar(const CsvReader& reader, int column, double theta) {
   if (std::abs(theta) > 90)
     throw reader.error(reader.columns()[static_cast<std::size_t>(column)] + ": " + printable(reader.field(column), 40) +
                        (reader.keys()[static_cast<std::size_t>(column)].ends_with("_rad")
-                            ? " radians; a polar angle is "
-                              "at most pi/2"
-                            : " degrees; a polar angle is "
-                              "at most 90"));
+                            ? " radians; a polar angle is at most pi/2"
+                            : " degrees; a polar angle is at most 90"));
 }
 
 /// Where a column is missing: whether its name lacks a unit, or how to name another.

@@ -119,18 +119,14 @@ void require_uncertainties_read(const CsvReader& reader, const std::vector<int>&
   }
 }
 
-std::string with_own_name(const CsvReader& reader, int column, const std::string& own) {
-  const std::string& key = reader.keys()[static_cast<std::size_t>(column)];
-  return "u_" + (key.empty() ? own : key);
-}
-
 /// The columns of standard uncertainties, of all that are measured or of none.
 template <std::size_t count, class Name>
 std::array<int, count> uncertainty_columns(const CsvReader& reader, const std::array<int, count>& values, Name name) {
   std::array<int, count> columns;
   int some = -1;  // of which the uncertainty is there
   for (std::size_t e = 0; e < count; ++e) {
-    const std::string own = "u_" + name(e), as_its_column = values[e] < 0 ? own : with_own_name(reader, values[e], own);
+    const std::string own = "u_" + name(e),
+                      as_its_column = values[e] < 0 ? own : "u_" + reader.keys()[static_cast<std::size_t>(values[e])];
     const bool same_unit = values[e] < 0 || !is_made(reader, values[e]);
     const std::string_view names[] = {as_its_column, same_unit ? std::string_view(own) : as_its_column};
     columns[e] = reader.find(names);

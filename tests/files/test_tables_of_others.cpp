@@ -144,6 +144,8 @@ TEST(TablesOfOthers, HaveAnglesInRadiansAndRelativeAzimuths) {
   const std::string radian_row = "532,0.7853981633974483,0,0.5235987755982988,3.141592653589793,0.31,0.1\n";
   expect_the_sample(read("wavelength_nm,theta_i_rad,phi_i_rad,theta_r_rad,phi_r_rad,f11,m22\n" + radian_row), "");
   expect_the_sample(read("wavelength_nm,theta_i_deg,theta_r_deg,delta_phi_deg,f11,m22\n532,45,30,180,0.31,0.1\n"), "");
+  const Read turned = read("wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,delta_phi_deg,f11\n532,45,20,30,50,0.31\n");
+  EXPECT_NEAR(degrees(turned.samples[0].geometry.reflected.phi), 70, 1e-12);
   EXPECT_EQ(refusal("wavelength_nm,theta_i,phi_i_deg,theta_r_deg,phi_r_deg,f11\n532,45,0,30,180,0.31\n"),
             "d.csv:1: no column theta_i_deg (nor thetai); is theta_i in degrees or radians? Call it theta_i_deg or "
             "theta_i_rad");
@@ -184,6 +186,11 @@ TEST(TablesOfOthers, HaveReflectanceFactorsCosinesAndPercent) {
   EXPECT_DOUBLE_EQ(f11("f_cos", "0.26"), 0.26 / cosine);
   EXPECT_DOUBLE_EQ(f11("f11_percent", "31"), 0.31);
   EXPECT_DOUBLE_EQ(f11("BRDF", "0.31"), 0.31);
+  EXPECT_DOUBLE_EQ(read(first + "brf_percent,u_brf_percent\n" + row + "97,1\n").samples[0].uncertainty(0, 0),
+                   0.01 / pi);
+  const Sample percent = read(first + "f11,m12_percent,u_f11,u_m12_percent\n" + row + "0.3,10,0.01,2\n").samples[0];
+  EXPECT_DOUBLE_EQ(percent.normalized(0, 1), 0.1);
+  EXPECT_DOUBLE_EQ(percent.uncertainty(0, 1), 0.02);
   const Read brf = read(first + "brf,u_brf\n" + row + "0.97,0.01\n");
   EXPECT_DOUBLE_EQ(brf.samples[0].uncertainty(0, 0), 0.01 / pi);
   EXPECT_EQ(brf.understood, "f11 = brf / pi");
@@ -233,6 +240,8 @@ TEST(TablesOfOthers, ThatCouldBeTakenForSomethingElseAreRefusedWithTheWayOn) {
   EXPECT_TRUE(
       says(refusal("wavelength_nm,theta_i_deg,theta_r_deg,delta_phi_deg,delta_phi_rad,f11\n532,45,30,1,1,0.3\n"),
            {"d.csv:1: columns delta_phi_deg and delta_phi_rad mean the same"}));
+  EXPECT_EQ(refusal(first + "f11,m12\n" + row + ",0.1\n", {.columns = {{"f11", "m12"}, {"m12", "m12"}}}),
+            "d.csv:1: column m12 is to be both f11 and m12");
 }
 
 TEST(TablesOfOthers, InCapitalsSayThatElementsAreDivided) {
@@ -282,6 +291,9 @@ TEST(TablesOfOthers, HaveBrdfsOfSAndP) {
   EXPECT_NEAR(s.normalized(1, 1), (0.2 - 0.1 - 0.12 + 0.18) / 0.6, 1e-15);
   EXPECT_TRUE(std::isnan(s.normalized(2, 2)));
   EXPECT_EQ(in_plane.understood, "f11, m12, m21, m22 of f_ss ... f_pp, frame sp");
+  const Sample p_first =
+      read(first + "\n532,45,0,30,180,0.2,0.1,0.12,0.18\n", {.convention = StokesConvention::p_first_left}).samples[0];
+  EXPECT_EQ(p_first.normalized(0, 1), s.normalized(0, 1));  // s is s in any convention
   const Read out_of_plane = read(first + "\n532,45,0,30,120,0.2,0.1,0.12,0.18\n532,45,0,30,0,0.2,0.1,0.12,0.18\n");
   EXPECT_TRUE(std::isnan(out_of_plane.samples[0].normalized(1, 1)));
   EXPECT_EQ(

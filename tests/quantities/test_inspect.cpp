@@ -52,6 +52,7 @@ TEST(Inspect, FindsEachPlantedFault) {
       {"scale of f11", [](Samples& all) { each(all, [](Sample& s) { s.f11 *= 100; }); }},
       {"scale of f11", [](Samples& all) { each(all, [](Sample& s) { s.f11 *= std::numbers::pi; }); }},
       {"cosine", [](Samples& all) { each(all, [](Sample& s) { s.f11 *= std::cos(s.geometry.reflected.theta); }); }},
+      {"cosine", [](Samples& all) { each(all, [](Sample& s) { s.f11 /= std::cos(s.geometry.reflected.theta); }); }},
       {"frame or signs", [](Samples& all) { each(all, [](Sample& s) { s.normalized = transpose(s.normalized); }); }},
       {"azimuths",
        [](Samples& all) {

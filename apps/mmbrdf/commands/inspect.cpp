@@ -38,8 +38,7 @@ struct Angles {
   double smallest = 90, largest = 0;  // degrees
 };
 
-template <class Direction>
-Angles angles(const std::vector<Sample>& samples, Direction direction) {
+Angles angles(const std::vector<Sample>& samples, Direction Geometry::*direction) {
   Angles result;
   for (const Sample& sample : samples) {
     const double theta = degrees((sample.geometry.*direction).theta);

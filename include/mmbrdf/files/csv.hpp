@@ -89,7 +89,7 @@ class CsvReader {
   /// A field as a finite number. Throws std::runtime_error with line, column and text for anything else.
   double number(int column) const;
 
-  /// Whether a field says that there is no value: empty, NA, N/A or NaN, in any case.
+  /// Whether a field says that there is no value: empty, NA, N/A or NaN, in any case, or #N/A, #DIV/0! and the like.
   bool is_missing(int column) const;
 
   /// "file:line: " + text, as an error to throw.

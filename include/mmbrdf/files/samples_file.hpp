@@ -44,7 +44,8 @@ class SampleReader {
   bool next(Sample& sample);
 
   /// What of the table is not as in the project's own, in words: what separates, other names, what f11 was made of, what
-  /// was not read, rows that were passed over, and that lost measured elements to the frame. Empty if there is nothing to say.
+  /// was not read, rows that were passed over, and that lost measured elements to the frame. Empty if there is nothing to
+  /// say.
   std::string understood() const;
 
  private:
@@ -61,19 +62,21 @@ class SampleReader {
 };
 
 /// Whether a file begins as one of samples does, and none of a model: its first line, but for empty ones and comments,
-/// with a letter or a quote, or with a number behind a comment that names angles. Throws std::runtime_error for a file that cannot be opened.
+/// with a letter, a quote or a comma, or with a number behind a comment that names angles. Throws std::runtime_error for a
+/// file that cannot be opened.
 bool holds_samples(const std::string& path);
 
 /// Samples in the layout of the published data, with the project's own column names, or as other programs write tables
-/// (docs/formats.md). Throws
-/// std::runtime_error, as the classes above do, for a file without rows or with elements that are not normalised, and
-/// for uncertainties that are negative or not there for all elements. Without their columns they are 0, not known.
+/// (docs/formats.md). Throws std::runtime_error, as the classes above do, for a file without rows or with elements that
+/// are not normalised, and for uncertainties that are negative or not there for all elements. Without their columns they
+/// are 0, not known.
 std::vector<Sample> read_samples(const std::string& path, const SampleTable& table = {});
 std::vector<Sample> read_samples(std::istream& in, const std::string& name, const SampleTable& table = {});
 
 /// The project's own columns: wavelength_nm, angles in degrees, f11, m12 … m44, with as many digits as it takes:
 /// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place. Behind them u_f11, u_m12
-/// … u_m44, if the samples have uncertainties. Wavelengths below 10 nm make it wavelength_um, as GeometryColumns ask. Throws std::invalid_argument for invalid samples, or if only some have.
+/// … u_m44, if the samples have uncertainties. Wavelengths below 10 nm make it wavelength_um, as GeometryColumns ask.
+/// Throws std::invalid_argument for invalid samples, or if only some have uncertainties.
 void write_samples(const std::string& path, std::span<const Sample> samples);
 void write_samples(std::ostream& out, std::span<const Sample> samples);
 
