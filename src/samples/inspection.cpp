@@ -126,12 +126,12 @@ std::vector<Finding> row_findings(std::span<const Sample> samples, std::span<con
   const Named named(numbers);
   const double typical = typical_f11(samples);
   std::vector<Finding> result;
-  // Elements beyond 10 in few samples are fill values, in many they are in another unit.
+  // Large elements are fill values in few samples; in many they are in another unit.
   const auto has_large_elements = [&](const Sample& s) {
     Sample f11_alone = s;
     for (std::size_t e = 1; e < 16; ++e)
       f11_alone.normalized.elements[e] = s.normalized.elements[e] == s.f11 ? s.f11 : 0;
-    return largest_element(s) > impossible && !is_fill(f11_alone, typical);
+    return largest_element(s) > beyond_one && !is_fill(f11_alone, typical);
   };
   const bool all_wrong = static_cast<double>(std::ranges::count_if(samples, has_large_elements)) >
                          many * static_cast<double>(samples.size());

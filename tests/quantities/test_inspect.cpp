@@ -128,6 +128,18 @@ TEST(Inspect, NamesFillValuesHoweverManyThereAre) {
     EXPECT_EQ(row_findings(one).front().evidence, "f11 = -999 in 134 samples: 1, 4, 7, 10, 13, 16, 19, 22, ...");
 }
 
+TEST(Inspect, TellsElementsInPercentFromFillValuesAmongThem) {
+  Samples samples = measured(1);
+  for (Sample& s : samples)
+    for (std::size_t e = 1; e < 16; ++e) s.normalized.elements[e] *= 100;
+  samples[4].f11 = -999;
+  samples[4].normalized.elements.fill(-999);
+  const std::vector<Finding> findings = row_findings(samples);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_EQ(findings[0].evidence, "f11 = -999 in 1 sample: 5");
+  EXPECT_EQ(findings[1].fault, "elements not divided");
+}
+
 TEST(Inspect, OfF11AloneAsksNothingOfTheOthers) {
   Samples samples = measured(1);
   for (Sample& s : samples)

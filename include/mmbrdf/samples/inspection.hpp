@@ -30,8 +30,8 @@ bool is_fill(const Sample& sample, double typical);
 /// Any of the following that the samples show, in this order. Samples are numbered from 1, or as `numbers` says.
 ///
 ///   fill values              is_fill()
-///   elements not divided     an element beyond 1.5 in more than 1 % of the samples, or beyond 10 in more than a fifth, which
-///                            are no fill values then
+///   elements not divided     an element beyond 1.5 in more than 1 % of the samples; in more than a fifth, those beyond 10 are
+///                            no fill values
 ///   matrices that cannot exist   smallest coherency eigenvalue below −0.1 f11 in more than 1 % of those whose sixteen
 ///                            elements are there
 ///   zeros                    an element that is exactly 0 in all samples, of 4 at least
