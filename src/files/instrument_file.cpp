@@ -9,6 +9,7 @@
 #include "files/json_field.hpp"
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/polarimetry/reduction.hpp"
 #include "text/json_text.hpp"
 #include "text/numbers.hpp"
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "mmbrdf/polarimetry/reduction.hpp"
 #include "polarimetry/calibration_refinement.hpp"
 #include "polarimetry/eigenvalue_calibration.hpp"
 #include "polarimetry/wafer_signs.hpp"

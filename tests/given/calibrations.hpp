@@ -13,6 +13,7 @@
 
 #include "mmbrdf/polarimetry/calibration.hpp"
 #include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/polarimetry/reduction.hpp"
 
 namespace mmbrdf {
 

@@ -10,7 +10,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/polarimetry/calibration.hpp"
-#include "mmbrdf/polarimetry/polarimeter.hpp"
+#include "mmbrdf/polarimetry/reduction.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {

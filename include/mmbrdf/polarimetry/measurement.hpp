@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "mmbrdf/polarimetry/polarimeter.hpp"
+#include "mmbrdf/polarimetry/reduction.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf {
