@@ -114,6 +114,7 @@ void bind_analysis(py::module_& m);
 void bind_apertures(py::module_& m);
 void bind_radiometry(py::module_& m);
 void bind_polarimeter(py::module_& m);
+void bind_measuring(py::module_& m);
 void bind_report(py::module_& m);
 
 }  // namespace mmbrdf::python

@@ -3,7 +3,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "mmbrdf/polarimetry/calibration.hpp"
 
@@ -16,5 +18,8 @@ struct Instrument : Calibration {
   std::string name;
 };
 using InstrumentPointer = std::shared_ptr<Instrument>;
+
+/// (readings, 2) in degrees. Throws std::invalid_argument for another shape, or more than most_states.
+std::vector<DialAngles> dials_from(const Given& dials);
 
 }  // namespace mmbrdf::python

@@ -36,6 +36,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_apertures(m);
   bind_radiometry(m);
   bind_polarimeter(m);
+  bind_measuring(m);
   bind_fit(m);
   bind_selection(m);
   bind_plan(m);

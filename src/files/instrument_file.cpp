@@ -68,13 +68,14 @@ double read_amount(const Field& field) {
 }
 
 FigureOfMerit read_figure_of_merit(const Field& field) {
-  field.require_no_other_than({"total", "corrected", "empty", "polarizer", "wafer", "elements"});
+  field.require_no_other_than({"total", "corrected", "empty", "polarizer", "wafer", "retarder", "elements"});
   FigureOfMerit figure;
   figure.total = read_amount(field["total"]);
   figure.corrected = read_amount(field["corrected"]);
   figure.empty = read_amount(field["empty"]);
   figure.polarizer = read_amount(field["polarizer"]);
   figure.wafer = read_amount(field["wafer"]);
+  if (field.has("retarder")) figure.retarder = read_amount(field["retarder"]);
   const std::vector<Field> rows = field["elements"].items();
   require_count(field["elements"], rows.size(), 4, "the rows");
   for (std::size_t row = 0; row < 4; ++row) {
@@ -119,6 +120,7 @@ void require_instrument(const Field& root) {
                   "generator",
                   "analyzer",
                   "covariance",
+                  "retarders",
                   "generator_condition",
                   "analyzer_condition",
                   "polarizer",
@@ -133,14 +135,60 @@ void require_instrument(const Field& root) {
                   "provenance"});
 }
 
-Calibration read_calibration(const Field& root) {
-  require_instrument(root);
-  Calibration c;
-  c.wavelength = read_wavelength(root["wavelength_nm"]);
+void read_polarimeter(const Field& root, Calibration& c) {
   c.polarimeter.generator = read_states(root["generator"]);
   c.polarimeter.analyzer = read_states(root["analyzer"]);
   const std::size_t size = 4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size());
   if (root.has("covariance")) c.covariance = read_covariance(root["covariance"], size);
+}
+
+RetarderArm read_arm(const Field& field) {
+  field.require_no_other_than({"retardance_deg", "offset_deg", "polarizer_deg", "diattenuation"});
+  return {radians(field["retardance_deg"].number()), radians(field["offset_deg"].number()),
+          radians(field["polarizer_deg"].number()), field["diattenuation"].number()};
+}
+
+std::vector<DialAngles> read_dials(const Field& field) {
+  const std::vector<Field> items = field.items();
+  if (items.empty() || items.size() > most_states)
+    field.refuse(std::to_string(items.size()) + " frames, must be 1 to " + std::to_string(most_states));
+  std::vector<DialAngles> result;
+  for (const Field& item : items) {
+    const std::vector<double> angles = item.numbers();
+    require_count(item, angles.size(), 2, "the dials of generator and analyzer");
+    result.push_back({radians(angles[0]), radians(angles[1])});
+  }
+  return result;
+}
+
+/// From which the states and their covariance are made.
+void read_retarders(const Field& root, Calibration& c) {
+  for (const char* const states : {"generator", "analyzer", "covariance"})
+    if (root.has(states)) root[states].refuse("not beside retarders, which say it");
+  const Field& field = root["retarders"];
+  field.require_no_other_than({"generator", "analyzer", "extinction", "responsivity", "dials_deg", "covariance"});
+  CalibratedRetarders retarders;
+  retarders.values = {read_arm(field["generator"]), read_arm(field["analyzer"]), read_amount(field["extinction"]),
+                      read_positive(field["responsivity"])};
+  retarders.dials = read_dials(field["dials_deg"]);
+  if (field.has("covariance")) retarders.covariance = read_covariance(field["covariance"], retarder_parameters);
+  checked(field, [&] {
+    c.polarimeter = polarimeter(retarders.values, retarders.dials);
+    if (!retarders.covariance.empty())
+      c.covariance = state_covariance(retarders.values, retarders.dials, retarders.covariance);
+    return true;
+  });
+  c.retarders = std::move(retarders);
+}
+
+Calibration read_calibration(const Field& root) {
+  require_instrument(root);
+  Calibration c;
+  c.wavelength = read_wavelength(root["wavelength_nm"]);
+  if (root.has("retarders"))
+    read_retarders(root, c);
+  else
+    read_polarimeter(root, c);
   checked(root, [&] { return Reduction(c.polarimeter, c.covariance); });
   require_condition(root["generator_condition"], c.polarimeter.generator);
   require_condition(root["analyzer_condition"], c.polarimeter.analyzer);
@@ -173,8 +221,34 @@ ordered_json figure_json(const FigureOfMerit& figure) {
     const double* const m = &figure.elements.elements[4 * row];
     rows.push_back({m[0], m[1], m[2], m[3]});
   }
-  return {{"total", figure.total},         {"corrected", figure.corrected}, {"empty", figure.empty},
-          {"polarizer", figure.polarizer}, {"wafer", figure.wafer},         {"elements", rows}};
+  ordered_json json = {{"total", figure.total},
+                       {"corrected", figure.corrected},
+                       {"empty", figure.empty},
+                       {"polarizer", figure.polarizer},
+                       {"wafer", figure.wafer}};
+  if (figure.retarder > 0) json["retarder"] = figure.retarder;
+  json["elements"] = rows;
+  return json;
+}
+
+ordered_json arm_json(const RetarderArm& arm) {
+  return {{"retardance_deg", in_degrees(arm.retardance)},
+          {"offset_deg", in_degrees(arm.offset)},
+          {"polarizer_deg", in_degrees(arm.polarizer)},
+          {"diattenuation", arm.diattenuation}};
+}
+
+ordered_json retarders_json(const CalibratedRetarders& retarders) {
+  ordered_json dials = ordered_json::array();
+  for (const DialAngles& dial : retarders.dials)
+    dials.push_back({in_degrees(dial.generator), in_degrees(dial.analyzer)});
+  ordered_json json = {{"generator", arm_json(retarders.values.generator)},
+                       {"analyzer", arm_json(retarders.values.analyzer)},
+                       {"extinction", retarders.values.extinction},
+                       {"responsivity", retarders.values.responsivity},
+                       {"dials_deg", dials}};
+  if (!retarders.covariance.empty()) json["covariance"] = lower_triangle(retarders.covariance, retarder_parameters);
+  return json;
 }
 
 ordered_json calibration_json(const Calibration& c) {
@@ -183,15 +257,18 @@ ordered_json calibration_json(const Calibration& c) {
                        {"schema_version", schema_version},
                        {"conventions", conventions()},
                        {"units", units()},
-                       {"wavelength_nm", in_nanometres(c.wavelength)},
-                       {"generator", states_json(c.polarimeter.generator)},
-                       {"analyzer", states_json(c.polarimeter.analyzer)},
-                       {"generator_condition", c.generator_condition},
-                       {"analyzer_condition", c.analyzer_condition},
-                       {"polarizer",
-                        {{"offset_deg", in_degrees(c.polarizer_offset)},
-                         {"extinction", c.extinction},
-                         {"phase_deg", in_degrees(c.polarizer_phase)}}}};
+                       {"wavelength_nm", in_nanometres(c.wavelength)}};
+  if (c.retarders) {
+    root["retarders"] = retarders_json(*c.retarders);
+  } else {
+    root["generator"] = states_json(c.polarimeter.generator);
+    root["analyzer"] = states_json(c.polarimeter.analyzer);
+  }
+  root["generator_condition"] = c.generator_condition;
+  root["analyzer_condition"] = c.analyzer_condition;
+  root["polarizer"] = {{"offset_deg", in_degrees(c.polarizer_offset)},
+                       {"extinction", c.extinction},
+                       {"phase_deg", in_degrees(c.polarizer_phase)}};
   if (c.film_thickness > 0) root["film_thickness_um"] = c.film_thickness;
   if (c.film_misfit > 0) root["film_misfit_deg"] = in_degrees(c.film_misfit);
   if (c.scale_uncertainty > 0) root["scale_uncertainty"] = c.scale_uncertainty;
@@ -201,7 +278,7 @@ ordered_json calibration_json(const Calibration& c) {
   root["chi_squared"] = c.chi_squared;
   root["degrees_of_freedom"] = c.degrees_of_freedom;
   root["provenance"] = c.provenance;
-  if (!c.covariance.empty()) root["covariance"] = lower_triangle(c.covariance, size);
+  if (!c.covariance.empty() && !c.retarders) root["covariance"] = lower_triangle(c.covariance, size);
   return root;
 }
 

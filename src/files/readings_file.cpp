@@ -7,90 +7,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <ostream>
 #include <stdexcept>
 #include <unordered_map>
 
+#include "files/reading_columns.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-int column_of(const CsvReader& reader, std::string_view name) { return reader.find({&name, 1}); }
+/// By analysis state, then by generator state: the order of polarimeter.hpp.
+std::size_t place(const StatePair& pair) { return pair.analyzer * most_states + pair.generator; }
 
-int needed_column(const CsvReader& reader, std::string_view name) {
-  const int column = column_of(reader, name);
-  if (column < 0) throw reader.error("no column " + std::string(name));
-  return column;
+std::vector<StatePair> grid(const ReadStates& states) {
+  std::vector<StatePair> all;
+  for (std::size_t i = 0; i < states.generator * states.analyzer; ++i)
+    all.push_back({i % states.generator, i / states.generator});
+  return all;
 }
 
-/// A field and its value, for messages.
-std::string shown(const CsvReader& reader, int column) {
-  return reader.columns()[static_cast<std::size_t>(column)] + ": " + printable(reader.field(column), 40);
-}
-
-/// One row: the reading of one state.
-struct Reading {
-  long measurement = 0;
-  std::size_t generator = 0, analyzer = 0;  ///< from 0
-  double value = 0;
-};
-
-class ReadingColumns {
- public:
-  ReadingColumns(const CsvReader& reader, double saturation)
-      : number_(needed_column(reader, "number")),
-        generator_(needed_column(reader, "generator_state")),
-        analyzer_(needed_column(reader, "analyzer_state")),
-        intensity_(needed_column(reader, "intensity")),
-        dark_(column_of(reader, "dark")),
-        divisors_{column_of(reader, "monitor"), column_of(reader, "gain")},
-        saturation_(saturation) {}
-
-  Reading reading(const CsvReader& reader) const {
-    return {measurement(reader), state(reader, generator_), state(reader, analyzer_), value(reader)};
-  }
-
- private:
-  long measurement(const CsvReader& reader) const {
-    const double value = reader.number(number_);
-    if (value != std::floor(value) || std::abs(value) > 1e15)
-      throw reader.error(shown(reader, number_) + " is not an integer");
-    return static_cast<long>(value);
-  }
-
-  static std::size_t state(const CsvReader& reader, int column) {
-    const double value = reader.number(column);
-    if (value != std::floor(value) || value < 1 || value > double(most_states))
-      throw reader.error(shown(reader, column) + ": states are numbered from 1 to at most " +
-                         std::to_string(most_states));
-    return static_cast<std::size_t>(value) - 1;
-  }
-
-  double value(const CsvReader& reader) const {
-    const double intensity = reader.number(intensity_), dark = dark_ < 0 ? 0 : reader.number(dark_);
-    if (intensity >= saturation_)
-      throw reader.error(shown(reader, intensity_) + " is saturated, at or above " + shortest(saturation_));
-    if (intensity < dark)
-      throw reader.error(shown(reader, intensity_) + " is " +
-                         (dark_ < 0 ? "negative" : "below dark " + shortest(dark)));
-    double divisor = 1;
-    for (const int column : divisors_) {
-      if (column < 0) continue;
-      const double factor = reader.number(column);
-      if (!(factor > 0)) throw reader.error(shown(reader, column) + " is not positive");
-      divisor *= factor;
-    }
-    const double result = (intensity - dark) / divisor;
-    if (!std::isfinite(result))
-      throw reader.error(shown(reader, intensity_) + " over its monitor and gain is not a finite number");
-    return result;
-  }
-
-  int number_, generator_, analyzer_, intensity_, dark_;
-  std::array<int, 2> divisors_;
-  double saturation_;
-};
+std::vector<StatePair> pairs_of(const ReadStates& states) { return states.pairs.empty() ? grid(states) : states.pairs; }
 
 /// The readings of one measurement, in any order.
 struct Collected {
@@ -98,35 +36,38 @@ struct Collected {
     Reading reading;
     long line = 0;
   };
-  std::vector<Entry> entries;
-  std::unordered_map<std::size_t, long> lines;  ///< of each state that has been read
+  std::map<std::size_t, Entry> entries;  ///< by place()
+  long number = 0, first_line = 0, last_line = 0;
 
   void add(const CsvReader& reader, const Reading& reading) {
-    const auto [there, added] = lines.try_emplace(reading.analyzer * most_states + reading.generator, reader.line());
+    const auto [there, added] = entries.try_emplace(place(reading.states), Entry{reading, reader.line()});
     if (!added)
-      throw reader.error(of(reading.measurement) + "a second reading of " + name(reading) + ", the first is in line " +
-                         std::to_string(there->second));
-    entries.push_back({reading, reader.line()});
+      throw reader.error(of(reading.measurement) + "a second reading of " + to_string(reading.states) +
+                         ", the first is in line " + std::to_string(there->second.line));
+    if (first_line == 0) first_line = reader.line();
+    last_line = reader.line();
+    number = reading.measurement;
   }
 
-  /// In the order of polarimeter.hpp. The complaint about a missing one is that of `complain`, with its text.
+  std::vector<StatePair> pairs() const {
+    std::vector<StatePair> result;
+    for (const auto& [at, entry] : entries) result.push_back(entry.reading.states);
+    return result;
+  }
+
+  /// Of these pairs. The complaint about a missing one is that of `complain`, with its text.
   template <class Complain>
-  std::vector<double> ordered(const StateCounts& states, Complain complain) const {
-    std::vector<double> values(states.generator * states.analyzer, std::nan(""));
-    for (const auto& [reading, line] : entries)
-      values[reading.analyzer * states.generator + reading.generator] = reading.value;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (std::isnan(values[i]))
-        throw complain(of(entries[0].reading.measurement) + "no reading of " +
-                       name({0, i % states.generator, i / states.generator, 0}));
+  std::vector<double> ordered(const std::vector<StatePair>& pairs, Complain complain) const {
+    std::vector<double> values;
+    for (const StatePair& pair : pairs) {
+      const auto there = entries.find(place(pair));
+      if (there == entries.end()) throw complain(of(number) + "no reading of " + to_string(pair));
+      values.push_back(there->second.reading.value);
+    }
     return values;
   }
 
   static std::string of(long measurement) { return "measurement " + std::to_string(measurement) + ": "; }
-  static std::string name(const Reading& reading) {
-    return "generator state " + std::to_string(reading.generator + 1) + ", analyzer state " +
-           std::to_string(reading.analyzer + 1);
-  }
 };
 
 /// Wavelengths and angles of one measurement may not differ between its rows.
@@ -157,7 +98,8 @@ class ReferenceColumns {
     try {
       result.kind = reference_kind_from(std::string(reader.field(kind_)));
     } catch (const std::invalid_argument&) {
-      throw reader.error("reference: " + in_quotes(reader.field(kind_)) + " is not one of empty, polarizer, wafer");
+      throw reader.error("reference: " + in_quotes(reader.field(kind_)) +
+                         " is not one of empty, polarizer, wafer, retarder");
     }
     const double angle = reader.number(angle_);
     if (result.kind == ReferenceKind::wafer && !(angle >= 0 && angle < 90))
@@ -198,34 +140,46 @@ struct CollectedReferences {
 void require_same(const CsvReader& reader, const CollectedReference& collected, const Reference& row, long number) {
   if (collected.readings.entries.empty()) return;
   const Reference& first = collected.reference;
-  const long line = collected.readings.entries[0].line;
+  const long line = collected.readings.first_line;
   require_same(reader, number, first.kind == row.kind, "reference", line);
   require_same(reader, number, first.angle == row.angle, "angle_deg", line);
   require_same(reader, number, first.s_exceeds_p == row.s_exceeds_p, "s_exceeds_p", line);
   require_same(reader, number, first.delta_sign == row.delta_sign, "delta_sign", line);
 }
 
-std::size_t checked_size(const std::vector<double>& readings, const StateCounts& states) {
-  const std::size_t expected = states.generator * states.analyzer;
+void require_count(const std::vector<double>& readings, std::size_t expected) {
   if (readings.size() != expected)
     throw std::invalid_argument(std::to_string(readings.size()) + " readings in place of " + std::to_string(expected));
-  return expected;
 }
 
 /// ",3,1,2,0.25": measurement, states and reading.
-void write_reading(std::ostream& out, std::size_t measurement, const StateCounts& states, std::size_t i, double value) {
-  out << ',' << measurement << ',' << i % states.generator + 1 << ',' << i / states.generator + 1 << ','
-      << shortest(value);
+void write_reading(std::ostream& out, std::size_t measurement, const StatePair& states, double value) {
+  out << ',' << measurement << ',' << states.generator + 1 << ',' << states.analyzer + 1 << ',' << shortest(value);
+}
+
+/// All that any reference has; none if that is a whole grid.
+std::vector<StatePair> pairs_of(const CollectedReferences& references, const ReadStates& states) {
+  std::map<std::size_t, StatePair> all;
+  for (const CollectedReference& reference : references.all)
+    for (const StatePair& pair : reference.readings.pairs()) all.emplace(place(pair), pair);
+  std::vector<StatePair> result;
+  if (all.size() < states.generator * states.analyzer)
+    for (const auto& [at, pair] : all) result.push_back(pair);
+  return result;
 }
 
 }  // namespace
 
-ReferenceFile read_references(std::istream& in, const std::string& name, double saturation) {
+ReadStates read_states(const Polarimeter& polarimeter) {
+  return {polarimeter.generator.size(), polarimeter.analyzer.size(), polarimeter.pairs};
+}
+
+ReferenceFile read_references(std::istream& in, const std::string& name, const ReadingLimits& limits) {
   CsvReader reader(in, name);
   const ReferenceColumns columns(reader);
-  const ReadingColumns readings(reader, saturation);
+  const ReadingColumns readings(reader, limits);
   CollectedReferences collection;
-  ReferenceFile result{0, {0, 0}, {}};
+  ReferenceFile result{0, {0, 0, {}}, {}};
   long first_line = 0, line_of_highest = 0;
   while (reader.next()) {
     const double wavelength = columns.wavelength(reader);
@@ -242,39 +196,43 @@ ReferenceFile read_references(std::istream& in, const std::string& name, double 
     CollectedReference& collected = collection.numbered(reading.measurement, row);
     require_same(reader, collected, row, reading.measurement);
     collected.readings.add(reader, reading);
-    const StateCounts before = result.states;
-    result.states.generator = std::max(before.generator, reading.generator + 1);
-    result.states.analyzer = std::max(before.analyzer, reading.analyzer + 1);
+    const ReadStates before = result.states;
+    result.states.generator = std::max(before.generator, reading.states.generator + 1);
+    result.states.analyzer = std::max(before.analyzer, reading.states.analyzer + 1);
     if (result.states != before) line_of_highest = reader.line();
   }
   if (collection.all.empty()) throw std::runtime_error(name + ": no readings after the header line");
+  result.states.pairs = pairs_of(collection, result.states);
+  const std::vector<StatePair> pairs = pairs_of(result.states);
   for (CollectedReference& collected : collection.all) {
-    const long last = collected.readings.entries.back().line;
-    collected.reference.readings = collected.readings.ordered(result.states, [&](const std::string& text) {
-      return std::runtime_error(name + ":" + std::to_string(last) + ": " + text + "; the highest state is in line " +
-                                std::to_string(line_of_highest));
+    collected.reference.readings = collected.readings.ordered(pairs, [&](const std::string& text) {
+      return std::runtime_error(name + ":" + std::to_string(collected.readings.last_line) + ": " + text +
+                                (result.states.pairs.empty()
+                                     ? "; the highest state is in line " + std::to_string(line_of_highest)
+                                     : ", which other references have"));
     });
     result.references.push_back(std::move(collected.reference));
   }
   return result;
 }
 
-ReferenceFile read_references(const std::string& path, double saturation) {
+ReferenceFile read_references(const std::string& path, const ReadingLimits& limits) {
   std::ifstream in = open_input(path);
-  return read_references(in, path, saturation);
+  return read_references(in, path, limits);
 }
 
 void write_references(std::ostream& out, const ReferenceFile& file) {
   if (!(file.wavelength > 0))
     throw std::invalid_argument("wavelength " + shortest(in_nanometres(file.wavelength)) + " nm, must be positive");
   out << "wavelength_nm,reference,angle_deg,s_exceeds_p,delta_sign,number,generator_state,analyzer_state,intensity\n";
+  const std::vector<StatePair> pairs = pairs_of(file.states);
   for (std::size_t r = 0; r < file.references.size(); ++r) {
     const Reference& reference = file.references[r];
-    const std::size_t count = checked_size(reference.readings, file.states);
-    for (std::size_t i = 0; i < count; ++i) {
+    require_count(reference.readings, pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
       out << shortest(in_nanometres(file.wavelength)) << ',' << to_string(reference.kind) << ','
           << shortest(in_degrees(reference.angle)) << ',' << reference.s_exceeds_p << ',' << reference.delta_sign;
-      write_reading(out, r + 1, file.states, i, reference.readings[i]);
+      write_reading(out, r + 1, pairs[i], reference.readings[i]);
       out << '\n';
     }
   }
@@ -292,14 +250,14 @@ struct RawReader::State {
   CsvReader reader;
   GeometryColumns geometry;
   ReadingColumns columns;
-  StateCounts states;
+  ReadStates states;
   bool begun = false, waiting = false;
   RawMeasurement row;  ///< wavelength and geometry of the row
   Reading reading;
   long last_line = 0;
 
-  State(std::istream& in, const std::string& file, const StateCounts& counts, double saturation)
-      : name(file), reader(in, file), geometry(reader), columns(reader, saturation), states(counts) {}
+  State(std::istream& in, const std::string& file, const ReadStates& all, const ReadingLimits& limits)
+      : name(file), reader(in, file), geometry(reader), columns(reader, limits), states(all) {}
 
   void read_row() {
     waiting = reader.next();
@@ -307,8 +265,8 @@ struct RawReader::State {
     row.wavelength = geometry.wavelength(reader);
     row.geometry = geometry.geometry(reader);
     reading = columns.reading(reader);
-    if (reading.generator >= states.generator || reading.analyzer >= states.analyzer)
-      throw reader.error(Collected::name(reading) + ": the instrument has " + std::to_string(states.generator) +
+    if (reading.states.generator >= states.generator || reading.states.analyzer >= states.analyzer)
+      throw reader.error(to_string(reading.states) + ": the instrument has " + std::to_string(states.generator) +
                          " generator and " + std::to_string(states.analyzer) + " analyzer states");
   }
 
@@ -317,8 +275,8 @@ struct RawReader::State {
   }
 };
 
-RawReader::RawReader(std::istream& in, const std::string& name, const StateCounts& states, double saturation)
-    : state_(std::make_unique<State>(in, name, states, saturation)) {}
+RawReader::RawReader(std::istream& in, const std::string& name, const ReadStates& states, const ReadingLimits& limits)
+    : state_(std::make_unique<State>(in, name, states, limits)) {}
 
 RawReader::~RawReader() = default;
 
@@ -340,29 +298,33 @@ bool RawReader::next(RawMeasurement& measurement) {
     s.last_line = s.reader.line();
     s.read_row();
   }
-  measurement.readings =
-      collected.ordered(s.states, [&](const std::string& text) { return s.error(text + " among its adjacent rows"); });
+  measurement.pairs = collected.pairs();
+  measurement.readings = collected.ordered(measurement.pairs, [&](const std::string& text) { return s.error(text); });
+  if (measurement.pairs == pairs_of(s.states)) measurement.pairs.clear();
   return true;
 }
 
 std::runtime_error RawReader::error(const std::string& text) const { return state_->error(text); }
 
-void write_raw(std::ostream& out, const StateCounts& states, std::span<const RawMeasurement> measurements) {
+void write_raw(std::ostream& out, const ReadStates& states, std::span<const RawMeasurement> measurements) {
   out << "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,number,generator_state,analyzer_state,intensity\n";
+  const std::vector<StatePair> all = pairs_of(states);
   for (std::size_t m = 0; m < measurements.size(); ++m) {
-    const auto& [wavelength, geometry, readings] = measurements[m];
+    const auto& [wavelength, geometry, readings, own] = measurements[m];
+    const std::vector<StatePair>& pairs = own.empty() ? all : own;
+    require_count(readings, pairs.size());
     std::string begin = shortest(in_nanometres(wavelength));
     for (const Direction& direction : {geometry.incident, geometry.reflected})
       begin += ',' + shortest(in_degrees(direction.theta)) + ',' + shortest(in_degrees(direction.phi));
-    for (std::size_t i = 0; i < checked_size(readings, states); ++i) {
+    for (std::size_t i = 0; i < readings.size(); ++i) {
       out << begin;
-      write_reading(out, m + 1, states, i, readings[i]);
+      write_reading(out, m + 1, pairs[i], readings[i]);
       out << '\n';
     }
   }
 }
 
-void write_raw(const std::string& path, const StateCounts& states, std::span<const RawMeasurement> measurements) {
+void write_raw(const std::string& path, const ReadStates& states, std::span<const RawMeasurement> measurements) {
   write_file(path, [&](std::ostream& out) { write_raw(out, states, measurements); });
 }
 

@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "mmbrdf/polarimetry/reduction.hpp"
+#include "polarimetry/calibration_quality.hpp"
 #include "polarimetry/calibration_refinement.hpp"
 #include "polarimetry/eigenvalue_calibration.hpp"
+#include "polarimetry/retarder_calibration.hpp"
 #include "polarimetry/wafer_signs.hpp"
 #include "text/numbers.hpp"
 
@@ -27,7 +29,8 @@ Mueller leaky_polarizer(double azimuth, double leak_real, double leak_imaginary)
 Mueller reference_matrix(const Unknowns& unknowns, std::span<const Reference> references, std::size_t i,
                          const CalibrationOptions& options) {
   if (references[i].kind == ReferenceKind::empty) return identity();
-  if (references[i].kind == ReferenceKind::wafer) return mueller(unknowns.elements[i]);
+  if (references[i].kind == ReferenceKind::wafer || references[i].kind == ReferenceKind::retarder)
+    return rotated(mueller(unknowns.elements[i]), azimuth_of(references[i]));
   return leaky_polarizer(unknowns.offset + options.dial_sense * references[i].angle, unknowns.leak_real,
                          unknowns.leak_imaginary);
 }
@@ -38,9 +41,10 @@ namespace {
 
 using calibration::Unknowns;
 
-constexpr std::array<const char*, 3> kind_names{"empty", "polarizer", "wafer"};
+constexpr std::array<const char*, 4> kind_names{"empty", "polarizer", "wafer", "retarder"};
 
 void require_valid(const CalibrationOptions& options) {
+  if (options.retarders) polarimeter(options.retarders->nominal, options.retarders->dials);
   for (const auto& [arm, states] :
        {std::pair("generator", options.generator_states), {"analyzer", options.analyzer_states}})
     if (states < 4 || states > most_states)
@@ -58,7 +62,7 @@ void require_valid(const CalibrationOptions& options) {
 
 void require_valid(const Reference& reference, std::size_t number, const CalibrationOptions& options) {
   const std::string which = "reference " + std::to_string(number) + ": ";
-  if (reference.readings.size() != options.generator_states * options.analyzer_states)
+  if (!options.retarders && reference.readings.size() != options.generator_states * options.analyzer_states)
     throw std::invalid_argument(which + std::to_string(reference.readings.size()) + " readings, expected " +
                                 std::to_string(options.generator_states * options.analyzer_states));
   for (const double reading : reference.readings)
@@ -67,7 +71,7 @@ void require_valid(const Reference& reference, std::size_t number, const Calibra
   if (reference.kind != ReferenceKind::wafer) return;
   if (!(reference.angle >= 0 && reference.angle < std::numbers::pi / 2))
     throw std::invalid_argument(which + "an angle of incidence of " + shortest(degrees(reference.angle)) + " degrees");
-  if (!options.film && (reference.s_exceeds_p == 0 || reference.delta_sign == 0))
+  if (!options.retarders && !options.film && (reference.s_exceeds_p == 0 || reference.delta_sign == 0))
     throw std::invalid_argument(
         which + "a wafer without signs: give a film, or state whether s exceeds p and the sign of delta");
 }
@@ -89,60 +93,13 @@ void require_enough(std::span<const Reference> references) {
   if (count(ReferenceKind::empty) == 0)
     throw std::invalid_argument("no empty reference: the arms aligned, nothing between");
   if (count(ReferenceKind::polarizer) == 0)
-    throw std::invalid_argument("no reference with a polarizer: wafers alone leave four solutions mixed");
-  if (count(ReferenceKind::wafer) == 0)
-    throw std::invalid_argument("no reference with a wafer: polarizers alone leave the scale and sign of S4 open");
+    throw std::invalid_argument("no reference with a polarizer: the others alone leave solutions mixed");
+  if (count(ReferenceKind::wafer) + count(ReferenceKind::retarder) == 0)
+    throw std::invalid_argument(
+        "no reference with a wafer or a retarder: polarizers alone leave the scale and sign of S4 open");
   if (!tells_sense(references))
     throw std::invalid_argument(
         "all dial angles of the polarizer are 0 or 90 degrees apart: that leaves its sense open");
-}
-
-FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> references, std::size_t i,
-                       const Reduction& reduction, const CalibrationOptions& options) {
-  const Reference& reference = references[i];
-  FittedReference result;
-  result.kind = reference.kind;
-  result.angle = reference.angle;
-  result.expected = normalized(calibration::reference_matrix(unknowns, references, i, options));
-  const Mueller measured = reduction.mueller(reference.readings);
-  result.measured = normalized(measured);
-  if (reference.kind == ReferenceKind::empty) result.gain = unknowns.gains[i];
-  if (reference.kind == ReferenceKind::wafer) {
-    result.element = calibration::element_of(result.expected);
-    result.element.tau = unknowns.elements[i].tau;
-    // Of a matrix that keeps s and p apart: λ1 λ2 = m11² − m12², |λ3|² the determinant of the other block.
-    const Mueller& m = result.measured;
-    const double first = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), second = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
-    result.eigenvalue_mismatch = std::abs(first - second);
-  }
-  if (reference.kind == ReferenceKind::polarizer) {
-    const double real = unknowns.leak_real, imaginary = unknowns.leak_imaginary;
-    result.element = {unknowns.gains[i] * (1 + real * real + imaginary * imaginary) / 2,
-                      std::atan(std::hypot(real, imaginary)), std::atan2(imaginary, real)};
-  }
-  return result;
-}
-
-FigureOfMerit figure_of_merit(std::span<const FittedReference> references, double correction) {
-  FigureOfMerit result;
-  std::array<double, 3> sums{}, counts{};
-  for (const FittedReference& reference : references) {
-    const auto kind = static_cast<std::size_t>(reference.kind);
-    ++counts[kind];
-    for (std::size_t e = 1; e < 16; ++e) {
-      const double d = reference.measured.elements[e] - reference.expected.elements[e];
-      sums[kind] += d * d;
-      result.elements.elements[e] += d * d;
-    }
-  }
-  const auto count = static_cast<double>(references.size());
-  for (double& element : result.elements.elements) element = std::sqrt(element / count);
-  result.total = std::sqrt((sums[0] + sums[1] + sums[2]) / (15 * count));
-  result.corrected = result.total * correction;
-  result.empty = std::sqrt(sums[0] / (15 * counts[0]));
-  result.polarizer = std::sqrt(sums[1] / (15 * counts[1]));
-  result.wafer = std::sqrt(sums[2] / (15 * counts[2]));
-  return result;
 }
 
 std::vector<Stokes> states(const Eigen::MatrixXd& columns) {
@@ -151,17 +108,6 @@ std::vector<Stokes> states(const Eigen::MatrixXd& columns) {
     for (Eigen::Index k = 0; k < 4; ++k)
       result[static_cast<std::size_t>(s)][static_cast<std::size_t>(k)] = columns(k, s);
   return result;
-}
-
-/// Of the mean gain of the empty references, from their scatter.
-double scale_uncertainty(const Unknowns& unknowns, std::span<const Reference> references) {
-  double squares = 0, count = 0;
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    if (references[i].kind != ReferenceKind::empty) continue;
-    squares += (unknowns.gains[i] - 1) * (unknowns.gains[i] - 1);  // the mean is 1
-    ++count;
-  }
-  return count > 1 ? std::sqrt(squares / (count * (count - 1))) : 0;
 }
 
 /// All matrices are wrong by one factor: A → (1 + ε) A.
@@ -181,7 +127,7 @@ std::string to_string(ReferenceKind kind) { return kind_names[static_cast<std::s
 ReferenceKind reference_kind_from(const std::string& name) {
   const auto found = std::find(kind_names.begin(), kind_names.end(), name);
   if (found == kind_names.end())
-    throw std::invalid_argument("reference " + in_quotes(name) + ": must be empty, polarizer or wafer");
+    throw std::invalid_argument("reference " + in_quotes(name) + ": must be empty, polarizer, wafer or retarder");
   return static_cast<ReferenceKind>(found - kind_names.begin());
 }
 
@@ -191,7 +137,7 @@ void refine(Calibration& result, Unknowns& unknowns, std::span<const Reference> 
             const CalibrationOptions& options) {
   calibration::Refinement refinement = calibration::refine(unknowns, references, options);
   result.covariance = std::move(refinement.covariance);
-  result.scale_uncertainty = scale_uncertainty(unknowns, references);
+  result.scale_uncertainty = calibration::scale_uncertainty(unknowns, references);
   add_scale(result.covariance, unknowns.analyzer, unknowns.generator.size(), result.scale_uncertainty);
   result.chi_squared = refinement.chi_squared;
   if (!std::isfinite(refinement.chi_squared) ||
@@ -204,19 +150,21 @@ void refine(Calibration& result, Unknowns& unknowns, std::span<const Reference> 
 Calibration calibrate(std::span<const Reference> references, const CalibrationOptions& options) {
   require_valid(options);
   for (std::size_t i = 0; i < references.size(); ++i) require_valid(references[i], i + 1, options);
+  if (options.retarders) return calibration::calibrate_retarders(references, options);
   require_enough(references);
   const long freedom = calibration::degrees_of_freedom(references, options);
   if (options.refine && freedom < 1)
     throw std::invalid_argument("fewer readings than unknowns: add references, or do without the refinement");
   Unknowns unknowns = calibration::solve_linear(references, options);
+  if (std::none_of(references.begin(), references.end(),
+                   [](const Reference& r) { return r.kind == ReferenceKind::wafer; }))
+    calibration::give_orientation(unknowns, options);
   Calibration result;
   result.wavelength = options.wavelength;
   result.degrees_of_freedom = std::max(freedom, 0L);
   if (options.refine) refine(result, unknowns, references, options);
   result.polarimeter = {states(unknowns.generator), states(unknowns.analyzer)};
-  result.polarizer_offset = unknowns.offset - std::numbers::pi * std::floor(unknowns.offset / std::numbers::pi);
-  result.extinction = unknowns.leak_real * unknowns.leak_real + unknowns.leak_imaginary * unknowns.leak_imaginary;
-  result.polarizer_phase = std::atan2(unknowns.leak_imaginary, unknowns.leak_real);
+  calibration::set_polarizer(result, unknowns);
   result.singular_ratio = unknowns.singular_ratio;
   result.identifiability = unknowns.identifiability;
   result.generator_condition = condition_number(result.polarimeter.generator);
@@ -230,10 +178,11 @@ Calibration calibrate(std::span<const Reference> references, const CalibrationOp
                                   ": its states are nearly dependent, or the references do not determine them");
   const Reduction reduction(result.polarimeter);
   for (std::size_t i = 0; i < references.size(); ++i)
-    result.references.push_back(fitted(unknowns, references, i, reduction, options));
+    result.references.push_back(
+        calibration::fitted(unknowns, references, i, reduction.mueller(references[i].readings), options));
   const auto readings = static_cast<double>(references.size() * result.polarimeter.readings());
   const double correction = freedom > 0 ? std::sqrt(readings / static_cast<double>(freedom)) : 0;
-  result.figure_of_merit = figure_of_merit(result.references, correction);
+  result.figure_of_merit = calibration::figure_of_merit(result.references, correction);
   calibration::require_signs(result, references, options);
   return result;
 }

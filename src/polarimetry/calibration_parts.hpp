@@ -20,8 +20,8 @@ struct Unknowns {
   double offset = 0;          ///< azimuth of the polarizer at dial 0
   double leak_real = 0;       ///< √extinction cos phase
   double leak_imaginary = 0;  ///< √extinction sin phase
-  std::vector<double> gains;  ///< of each reference that is empty or a polarizer (there tau); 1 for a wafer
-  std::vector<DiattenuatorRetarder> elements;  ///< of each reference that is a wafer; unused for the others
+  std::vector<double> gains;  ///< of each reference that is empty or a polarizer (there tau); 1 for the others
+  std::vector<DiattenuatorRetarder> elements;  ///< of each wafer or retarder; unused for the others
   double singular_ratio = 0;
   double identifiability = 0;
 };
@@ -33,6 +33,11 @@ inline Eigen::Map<const RowMajor> matrix(std::span<const double> readings, const
 
 inline Eigen::Matrix4d matrix(const Mueller& m) {
   return Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.elements.data());
+}
+
+/// Of the axes of a wafer or retarder.
+inline double azimuth_of(const Reference& reference) {
+  return reference.kind == ReferenceKind::retarder ? reference.angle : 0;
 }
 
 /// Without its gain.

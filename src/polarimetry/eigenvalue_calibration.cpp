@@ -95,16 +95,26 @@ DiattenuatorRetarder unsigned_wafer(const Spectrum& s) {
   return {(s.larger + s.smaller) / 2, std::atan(std::sqrt(smaller / s.larger)), std::abs(std::arg(s.pair))};
 }
 
+/// Its axes and the sign of its retardance are known; that it has no diattenuation is refined.
+DiattenuatorRetarder known_retarder(const DiattenuatorRetarder& seen, const Reference& reference) {
+  return {seen.tau, std::numbers::pi / 4, reference.delta_sign < 0 ? -seen.delta : seen.delta};
+}
+
 void find_wafers(Unknowns& unknowns, std::span<const Reference> references, std::span<const Matrix4d> c,
                  const CalibrationOptions& options) {
   std::vector<SeenWafer> wafers;
   for (std::size_t i = 0; i < references.size(); ++i) {
-    if (references[i].kind != ReferenceKind::wafer) continue;
+    const bool wafer = references[i].kind == ReferenceKind::wafer;
+    if (!wafer && references[i].kind != ReferenceKind::retarder) continue;
     const Spectrum s = spectrum(c[i]);
     if (!(s.larger > 0) || !std::isfinite(s.larger))
-      throw std::invalid_argument("reference " + std::to_string(i + 1) + ": a wafer that reflects nothing");
+      throw std::invalid_argument("reference " + std::to_string(i + 1) +
+                                  (wafer ? ": a wafer that reflects nothing" : ": a retarder that passes nothing"));
     unknowns.elements[i] = unsigned_wafer(s);
-    wafers.push_back({i, unknowns.elements[i], false, false});
+    if (wafer)
+      wafers.push_back({i, unknowns.elements[i], false, false});
+    else
+      unknowns.elements[i] = known_retarder(unknowns.elements[i], references[i]);
   }
   give_signs(wafers, references, options);
   for (const SeenWafer& wafer : wafers) unknowns.elements[wafer.reference] = wafer.element;
@@ -130,9 +140,9 @@ class Stack {
     MatrixXd wafers(0, 16);
     for (std::size_t i = 0; i < references.size(); ++i) {
       if (references[i].kind == ReferenceKind::polarizer) polarizers_.push_back(i);
-      if (references[i].kind != ReferenceKind::wafer) continue;
+      if (references[i].kind != ReferenceKind::wafer && references[i].kind != ReferenceKind::retarder) continue;
       wafers.conservativeResize(wafers.rows() + 16, 16);
-      wafers.bottomRows(16) = equations(matrix(mueller(unknowns.elements[i])), c[i]);
+      wafers.bottomRows(16) = equations(matrix(reference_matrix(unknowns, references, i, options)), c[i]);
     }
     triangle_ = dense::triangle(wafers);
   }

@@ -67,12 +67,29 @@ Polarimeter made(const GoniometerOptions& o, std::mt19937_64& engine) {
   return result;
 }
 
+RotatingRetarders made_to_turn(const GoniometerOptions& o, std::mt19937_64& engine) {
+  RotatingRetarders result;
+  for (RetarderArm* arm : {&result.generator, &result.analyzer}) {
+    arm->retardance = o.retardance + o.imperfections.retardance * normal(engine);
+    arm->offset = o.imperfections.azimuth * normal(engine);
+    arm->diattenuation = std::clamp(o.imperfections.diattenuation * normal(engine), -1., 1.);
+  }
+  result.analyzer.polarizer = o.imperfections.azimuth * normal(engine);
+  result.extinction = o.extinction;
+  return result;
+}
+
 }  // namespace
 
 Goniometer::Goniometer(const GoniometerOptions& options, unsigned long seed) : options_(options) {
   require_valid(options_);
-  if (options_.azimuths.empty()) options_.azimuths = optimal_angles(options_.retardance, 4);
   std::mt19937_64 engine = stream(seed, imperfections);
+  if (!options_.dials.empty()) {
+    retarders_ = made_to_turn(options_, engine);
+    polarimeter_ = mmbrdf::polarimeter(*retarders_, options_.dials);
+    return;
+  }
+  if (options_.azimuths.empty()) options_.azimuths = optimal_angles(options_.retardance, 4);
   polarimeter_ = made(options_, engine);
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mmbrdf/polarimetry/reduction.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "text/numbers.hpp"
 
@@ -41,20 +42,52 @@ void judge_thickness(Verdict& verdict, double found, double given) {
                              " um: is it the right one?");
 }
 
+/// Readings that are pairs of states: noise grows by the condition number of all of them, and some may be missing.
+void judge_pairs(Verdict& verdict, const Calibration& calibration) {
+  if (calibration.polarimeter.pairs.empty() || !verdict.refusal.empty()) return;
+  const Reduction reduction(calibration.polarimeter);
+  const std::string frames = std::to_string(calibration.polarimeter.pairs.size()) + " pairs of states ";
+  if (const Elements& unknown = reduction.undetermined(); unknown.any())
+    verdict.doubts.push_back("its " + frames + "have rank " + std::to_string(reduction.rank()) + " and leave unknown " +
+                             element_names(unknown));
+  else if (reduction.condition() > doubtful_condition * doubtful_condition)
+    verdict.doubts.push_back("the condition number of its " + frames + "is " + rounded(reduction.condition(), 4) +
+                             ", more than " + shortest(doubtful_condition * doubtful_condition) +
+                             ": noise of the readings grows by it");
+}
+
+/// Fast and slow axes of both retarders exchanged explain air as well: the choice was the nearer to the nominal azimuths.
+void judge_axes(Verdict& verdict, const Calibration& calibration, const std::optional<RetarderOptions>& given) {
+  if (!calibration.retarders || !given || !verdict.refusal.empty()) return;
+  const bool told = std::any_of(calibration.references.begin(), calibration.references.end(), [](const auto& r) {
+    return r.kind == ReferenceKind::wafer || r.kind == ReferenceKind::retarder;
+  });
+  const RotatingRetarders &found = calibration.retarders->values, &nominal = given->nominal;
+  const double off = std::max(std::abs(found.generator.offset - nominal.generator.offset),
+                              std::abs(found.analyzer.offset - nominal.analyzer.offset));
+  if (!told && off > doubtful_offset)
+    verdict.doubts.push_back("a fast axis is " + fixed(degrees(off), 1) +
+                             " degrees from its nominal azimuth: air does not tell it from the slow one; measure a "
+                             "retarder or a wafer of known sign");
+}
+
 }  // namespace
 
-Verdict judged(const Calibration& calibration, const std::optional<Film>& film) {
+Verdict judged(const Calibration& calibration, const std::optional<Film>& film,
+               const std::optional<RetarderOptions>& retarders) {
   Verdict verdict;
   judge_condition(verdict, "generator", calibration.generator_condition);
   judge_condition(verdict, "analyzer", calibration.analyzer_condition);
   judge_merit(verdict, calibration.figure_of_merit.total);
-  if (film) judge_thickness(verdict, calibration.film_thickness, film->thickness);
+  judge_pairs(verdict, calibration);
+  judge_axes(verdict, calibration, retarders);
+  if (film && !calibration.retarders) judge_thickness(verdict, calibration.film_thickness, film->thickness);
   return verdict;
 }
 
 Verdict judged(std::span<const Sample> samples) {
   const auto impossible = std::count_if(samples.begin(), samples.end(), [](const Sample& sample) {
-    return coherency_eigenvalues(sample.normalized)[0] < impossible_eigenvalue;
+    return not_measured(sample).none() && coherency_eigenvalues(sample.normalized)[0] < impossible_eigenvalue;
   });
   if (impossible == 0) return {};
   return {{std::to_string(impossible) + " of " + std::to_string(samples.size()) +

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "mmbrdf/polarization/elements.hpp"
 #include "numerics/dense.hpp"
@@ -102,6 +104,30 @@ Polarimeter ideal_polarimeter(double retardance, std::span<const double> azimuth
   return result;
 }
 
+Stokes named_state(const std::string& name) {
+  constexpr std::array<std::pair<const char*, Stokes>, 7> all{{{"s", {1, 1, 0, 0}},
+                                                               {"p", {1, -1, 0, 0}},
+                                                               {"+45", {1, 0, 1, 0}},
+                                                               {"-45", {1, 0, -1, 0}},
+                                                               {"L", {1, 0, 0, 1}},
+                                                               {"R", {1, 0, 0, -1}},
+                                                               {"u", {1, 0, 0, 0}}}};
+  for (const auto& [known, state] : all)
+    if (known == name) return state;
+  throw std::invalid_argument("state " + in_quotes(name) + ": must be s, p, +45, -45, L, R or u");
+}
+
+Polarimeter ideal_polarimeter(std::span<const std::string> generator, std::span<const std::string> analyzer) {
+  Polarimeter result;
+  for (const std::string& name : generator) result.generator.push_back(named_state(name));
+  for (const std::string& name : analyzer) {
+    Stokes state = named_state(name);
+    for (double& component : state) component /= 2;
+    result.analyzer.push_back(state);
+  }
+  return result;
+}
+
 double condition_number(std::span<const Stokes> states) {
   const MatrixXd matrix = columns(states);
   if (states.size() < 4 || !matrix.allFinite()) return std::numeric_limits<double>::infinity();
@@ -134,13 +160,27 @@ std::vector<double> optimal_angles(double retardance, int states) {
   return mirrored({best.data(), static_cast<std::size_t>(best.size())}, states);
 }
 
+Polarimeter reading(const Polarimeter& polarimeter, std::vector<StatePair> pairs) {
+  for (const StatePair& pair : pairs)
+    if (pair.generator >= polarimeter.generator.size() || pair.analyzer >= polarimeter.analyzer.size())
+      throw std::invalid_argument(to_string(pair) + ": the instrument has " +
+                                  std::to_string(polarimeter.generator.size()) + " generator and " +
+                                  std::to_string(polarimeter.analyzer.size()) + " analyzer states");
+  return {polarimeter.generator, polarimeter.analyzer, std::move(pairs)};
+}
+
+std::string to_string(const StatePair& pair) {
+  return "generator state " + std::to_string(pair.generator + 1) + ", analyzer state " +
+         std::to_string(pair.analyzer + 1);
+}
+
 std::vector<double> readings(const Polarimeter& polarimeter, const Mueller& m) {
   std::vector<double> result;
-  for (const Stokes& a : polarimeter.analyzer)
-    for (const Stokes& w : polarimeter.generator) {
-      const Stokes out = m * w;
-      result.push_back(a[0] * out[0] + a[1] * out[1] + a[2] * out[2] + a[3] * out[3]);
-    }
+  for (std::size_t j = 0; j < polarimeter.readings(); ++j) {
+    const auto [p, q] = polarimeter.pair(j);
+    const Stokes out = m * polarimeter.generator[p], &a = polarimeter.analyzer[q];
+    result.push_back(a[0] * out[0] + a[1] * out[1] + a[2] * out[2] + a[3] * out[3]);
+  }
   return result;
 }
 

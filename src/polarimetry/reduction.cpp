@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarimetry/reduction.hpp"
 
+// A reading is a row (a ⊗ w)ᵀ of a matrix H, times the sixteen elements; its pseudo-inverse solves. That of a grid of
+// states that has rank four in each arm is the product of those of the arms.
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -13,123 +17,194 @@
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
-namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-}  // namespace
-
-struct Reduction::Inverses {
-  MatrixXd generator;   ///< W⁺, states × 4
-  MatrixXd analyzer;    ///< A⁺, 4 × states
+struct Reduction::Solution {
+  Polarimeter polarimeter;
+  MatrixXd inverse;  ///< H⁺, 16 × readings
+  Elements undetermined;
+  int rank = 16;
+  double condition = 1;
   MatrixXd covariance;  ///< of the instrument; 0 × 0: none
   MatrixXd errors;      ///< its square root: an independent error in each column
 };
 
 namespace {
 
-/// Of a 4 × states matrix.
-MatrixXd pseudo_inverse(const MatrixXd& states, const char* of) {
-  const auto refusal = [&](const std::string& what) { return std::invalid_argument(of + (": " + what)); };
-  if (states.cols() > index(most_states))
-    throw refusal(std::to_string(states.cols()) + " states, at most " + std::to_string(most_states) + " can be used");
-  const std::string too_few = std::to_string(states.cols()) + " states, not four independent ones";
-  if (!states.allFinite()) throw refusal("a state is not finite");
-  if (states.cols() < 4) throw refusal(too_few);
-  const auto [u, v, s] = dense::thin_svd(states);
-  if (!has_rank_four(s)) throw refusal(too_few);
-  return v * s.cwiseInverse().asDiagonal() * u.transpose();
+constexpr double rounding = 1e-10;  // singular values below this part of the largest say nothing
+
+void require_usable(const Polarimeter& polarimeter) {
+  for (const std::vector<Stokes>* states : {&polarimeter.generator, &polarimeter.analyzer}) {
+    const std::string arm = states == &polarimeter.generator ? "generator: " : "analyzer: ";
+    if (states->empty()) throw std::invalid_argument(arm + "no states");
+    if (states->size() > most_states)
+      throw std::invalid_argument(arm + std::to_string(states->size()) + " states, at most " +
+                                  std::to_string(most_states) + " can be used");
+    if (!columns(*states).allFinite()) throw std::invalid_argument(arm + "a state is not finite");
+  }
+  reading(polarimeter, polarimeter.pairs);  // throws for those that are not there
 }
 
-MuellerCovariance covariance_of(const MatrixXd& matrix) {
+/// Of H, as of its rows.
+struct Inverse {
+  MatrixXd matrix;
+  Elements undetermined;
+  int rank = 16;
+  double condition = 1;
+};
+
+Inverse of_arms(const dense::Svd& generator, const dense::Svd& analyzer, double condition) {
+  const auto inverse = [](const dense::Svd& svd) {
+    return MatrixXd(svd.v * svd.s.cwiseInverse().asDiagonal() * svd.u.transpose());
+  };
+  const MatrixXd w = inverse(generator), a = inverse(analyzer).transpose();
+  Inverse result{MatrixXd(16, w.rows() * a.cols()), {}, 16, condition};
+  for (Index q = 0; q < a.cols(); ++q)
+    for (Index p = 0; p < w.rows(); ++p)
+      for (Index e = 0; e < 16; ++e) result.matrix(e, q * w.rows() + p) = a(e / 4, q) * w(p, e % 4);
+  return result;
+}
+
+Inverse of_rows(const Polarimeter& polarimeter) {
+  MatrixXd h = MatrixXd::Zero(std::max<Index>(index(polarimeter.readings()), 16), 16);  // rows of 0 for all of V
+  for (std::size_t j = 0; j < polarimeter.readings(); ++j) {
+    const auto [p, q] = polarimeter.pair(j);
+    for (std::size_t e = 0; e < 16; ++e)
+      h(index(j), index(e)) = polarimeter.analyzer[q][e / 4] * polarimeter.generator[p][e % 4];
+  }
+  const auto [u, v, s] = dense::thin_svd(h);
+  const Index readings = index(polarimeter.readings());
+  Inverse result{MatrixXd::Zero(16, readings), {}, 0, 1};
+  VectorXd amplified = VectorXd::Constant(16, 1 / rounding);
+  for (Index k = 0; k < s.size() && s(k) > rounding * s(0); ++k) {
+    result.matrix += v.col(k) * (u.col(k).head(readings).transpose() / s(k));
+    amplified(k) = s(0) / s(k);
+    result.rank = static_cast<int>(k) + 1;
+    result.condition = amplified(k);
+  }
+  for (Index e = 0; e < 16; ++e)
+    result.undetermined[static_cast<std::size_t>(e)] =
+        v.row(e).transpose().cwiseProduct(amplified).norm() > most_amplified;
+  return result;
+}
+
+Inverse inverse_of(const Polarimeter& polarimeter) {
+  if (polarimeter.pairs.empty() && polarimeter.generator.size() >= 4 && polarimeter.analyzer.size() >= 4) {
+    const dense::Svd generator = dense::thin_svd(columns(polarimeter.generator));
+    const dense::Svd analyzer = dense::thin_svd(columns(polarimeter.analyzer));
+    const double condition = generator.s(0) / generator.s(3) * (analyzer.s(0) / analyzer.s(3));
+    if (condition <= most_amplified) return of_arms(generator, analyzer, condition);
+  }
+  return of_rows(polarimeter);
+}
+
+MuellerCovariance covariance_of(const MatrixXd& matrix, const Elements& undetermined) {
   MuellerCovariance result;
   Eigen::Map<RowMajor>(result.values.data(), 16, 16) = (matrix + matrix.transpose()) / 2;
+  set_unknown(result, undetermined);
   return result;
+}
+
+Mueller with_unknown(Mueller m, const Elements& undetermined) {
+  for (std::size_t e = 0; e < 16; ++e)
+    if (undetermined[e]) m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  return m;
 }
 
 }  // namespace
 
 Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> covariance) {
-  auto inverses = std::make_shared<Inverses>();
-  inverses->generator = pseudo_inverse(columns(polarimeter.generator), "generator");
-  inverses->analyzer = pseudo_inverse(columns(polarimeter.analyzer), "analyzer").transpose();
+  require_usable(polarimeter);
+  auto solution = std::make_shared<Solution>();
+  solution->polarimeter = polarimeter;
+  Inverse inverse = inverse_of(polarimeter);
+  solution->inverse = std::move(inverse.matrix);
+  solution->undetermined = inverse.undetermined;
+  solution->rank = inverse.rank;
+  solution->condition = inverse.condition;
   const Index size = 4 * index(polarimeter.generator.size() + polarimeter.analyzer.size());
   if (!covariance.empty()) {
     if (index(covariance.size()) != size * size)
       throw std::invalid_argument("the covariance of the instrument has " + std::to_string(covariance.size()) +
                                   " numbers, expected " + std::to_string(size * size));
-    inverses->covariance = Eigen::Map<const MatrixXd>(covariance.data(), size, size);
-    if (!inverses->covariance.allFinite() || inverses->covariance != inverses->covariance.transpose())
+    solution->covariance = Eigen::Map<const MatrixXd>(covariance.data(), size, size);
+    if (!solution->covariance.allFinite() || solution->covariance != solution->covariance.transpose())
       throw std::invalid_argument("the covariance of the instrument is not symmetric and finite");
-    const auto [vectors, values] = dense::eigensystem(inverses->covariance);
+    const auto [vectors, values] = dense::eigensystem(solution->covariance);
     require_semidefinite(values, "the instrument", covariance_tolerance);
     const Index none = (values.array() <= 1e-14 * values(size - 1)).count();
-    inverses->errors = vectors.rightCols(size - none) * values.tail(size - none).cwiseSqrt().asDiagonal();
+    solution->errors = vectors.rightCols(size - none) * values.tail(size - none).cwiseSqrt().asDiagonal();
   }
-  inverses_ = std::move(inverses);
+  solution_ = std::move(solution);
 }
 
+const Elements& Reduction::undetermined() const { return solution_->undetermined; }
+int Reduction::rank() const { return solution_->rank; }
+double Reduction::condition() const { return solution_->condition; }
+
 Mueller Reduction::mueller(std::span<const double> readings) const {
-  const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
-  if (index(readings.size()) != analyzers * generators)
+  if (index(readings.size()) != solution_->inverse.cols())
     throw std::invalid_argument(std::to_string(readings.size()) + " readings, the instrument has " +
-                                std::to_string(analyzers * generators));
-  const Eigen::Map<const RowMajor> b(readings.data(), analyzers, generators);
+                                std::to_string(solution_->inverse.cols()));
+  const Eigen::Map<const VectorXd> b(readings.data(), index(readings.size()));
   if (!b.allFinite()) throw std::invalid_argument("a reading is not finite");
   Mueller m;
-  Eigen::Map<RowMajor>(m.elements.data(), 4, 4) = inverses_->analyzer * b * inverses_->generator;
-  return m;
+  Eigen::Map<Eigen::Matrix<double, 16, 1>>(m.elements.data()) = solution_->inverse * b;
+  return with_unknown(m, solution_->undetermined);
 }
 
 MuellerCovariance Reduction::from_readings(std::span<const double> variances) const {
-  const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
-  if (index(variances.size()) != analyzers * generators)
+  if (index(variances.size()) != solution_->inverse.cols())
     throw std::invalid_argument(std::to_string(variances.size()) + " variances, the instrument has " +
-                                std::to_string(analyzers * generators) + " readings");
-  MatrixXd sum = MatrixXd::Zero(16, 16);
-  for (Index q = 0; q < analyzers; ++q)
-    for (Index p = 0; p < generators; ++p) {
-      const double variance = variances[static_cast<std::size_t>(q * generators + p)];
-      if (!(variance >= 0) || !std::isfinite(variance))
-        throw std::invalid_argument("variance " + shortest(variance) + ", must be finite and not negative");
-      VectorXd slope(16);
-      for (Index e = 0; e < 16; ++e) slope(e) = inverses_->analyzer(e / 4, q) * inverses_->generator(p, e % 4);
-      sum += variance * slope * slope.transpose();
-    }
-  return covariance_of(sum);
+                                std::to_string(solution_->inverse.cols()) + " readings");
+  for (const double variance : variances)
+    if (!(variance >= 0) || !std::isfinite(variance))
+      throw std::invalid_argument("variance " + shortest(variance) + ", must be finite and not negative");
+  const Eigen::Map<const VectorXd> v(variances.data(), index(variances.size()));
+  const MatrixXd& inverse = solution_->inverse;
+  return covariance_of(inverse * v.asDiagonal() * inverse.transpose(), solution_->undetermined);
 }
 
 std::vector<double> Reduction::slopes(const Mueller& m) const {
-  const Index analyzers = inverses_->analyzer.cols(), generators = inverses_->generator.rows();
-  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(m.elements.data());
-  std::vector<double> result(static_cast<std::size_t>(16 * 4 * (analyzers + generators)));
-  Eigen::Map<RowMajor> at(result.data(), 16, 4 * (analyzers + generators));
-  for (Index e = 0; e < 16; ++e)
-    for (Index k = 0; k < 4; ++k) {
-      for (Index p = 0; p < generators; ++p) at(e, 4 * p + k) = -matrix(e / 4, k) * inverses_->generator(p, e % 4);
-      for (Index q = 0; q < analyzers; ++q)
-        at(e, 4 * (generators + q) + k) = -inverses_->analyzer(e / 4, q) * matrix(k, e % 4);
-    }
+  const Polarimeter& p = solution_->polarimeter;
+  const Index generators = index(p.generator.size()), states = generators + index(p.analyzer.size());
+  Mueller known = m;
+  for (double& element : known.elements)
+    if (std::isnan(element)) element = 0;
+  std::vector<double> result(static_cast<std::size_t>(16 * 4 * states));
+  Eigen::Map<RowMajor> at(result.data(), 16, 4 * states);
+  at.setZero();
+  for (std::size_t j = 0; j < p.readings(); ++j) {
+    const auto [generator, analyzer] = p.pair(j);
+    const Stokes seen = transpose(known) * p.analyzer[analyzer], scattered = known * p.generator[generator];
+    const auto solution = solution_->inverse.col(index(j));
+    at.middleCols<4>(4 * index(generator)) -= solution * Eigen::Map<const Eigen::RowVector4d>(seen.data());
+    at.middleCols<4>(4 * (generators + index(analyzer))) -=
+        solution * Eigen::Map<const Eigen::RowVector4d>(scattered.data());
+  }
   return result;
 }
 
 MuellerCovariance Reduction::from_instrument(const Mueller& m) const {
-  if (inverses_->covariance.size() == 0) return {};
+  if (solution_->covariance.size() == 0) return {};
   const std::vector<double> slope = slopes(m);
-  const Eigen::Map<const RowMajor> at(slope.data(), 16, inverses_->covariance.rows());
-  return covariance_of(at * inverses_->covariance * at.transpose());
+  const Eigen::Map<const RowMajor> at(slope.data(), 16, solution_->covariance.rows());
+  return covariance_of(at * solution_->covariance * at.transpose(), solution_->undetermined);
 }
 
 std::vector<Mueller> Reduction::errors(const Mueller& m) const {
-  std::vector<Mueller> result(static_cast<std::size_t>(inverses_->errors.cols()));
+  std::vector<Mueller> result(static_cast<std::size_t>(solution_->errors.cols()));
   if (result.empty()) return result;
   const std::vector<double> slope = slopes(m);
-  const MatrixXd all = Eigen::Map<const RowMajor>(slope.data(), 16, inverses_->errors.rows()) * inverses_->errors;
-  for (std::size_t k = 0; k < result.size(); ++k)
+  const MatrixXd all = Eigen::Map<const RowMajor>(slope.data(), 16, solution_->errors.rows()) * solution_->errors;
+  for (std::size_t k = 0; k < result.size(); ++k) {
     Eigen::Map<Eigen::Matrix<double, 16, 1>>(result[k].elements.data()) = all.col(index(k));
+    result[k] = with_unknown(result[k], solution_->undetermined);
+  }
   return result;
 }
 

@@ -214,7 +214,7 @@ DiattenuatorRetarder element_of(const Mueller& m) {
 void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> references,
                 const CalibrationOptions& options) {
   for (SeenWafer& wafer : wafers) use_stated(wafer, references[wafer.reference]);
-  if (!options.film) return;
+  if (!options.film || wafers.empty()) return;
   const FilmFit fit = fitted_film(wafers, references, options);
   require_not_contradicted(fit, wafers, references, options);
   require_fitting(fit, *options.film);
@@ -227,6 +227,7 @@ void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> refer
 
 void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options) {
   const std::vector<SeenWafer> wafers = seen(calibration.references);
+  if (wafers.empty()) return;
   const double merit = calibration.figure_of_merit.total;
   const double scatter = significance * std::min(merit, largest_scatter);
   std::array<bool, 2> is_told{};
@@ -243,6 +244,22 @@ void require_signs(Calibration& calibration, std::span<const Reference> referenc
     if (!is_told[k])
       throw std::invalid_argument(std::string("the wafers leave the instrument open: ") + facts[k].name +
                                   " is lost in the noise at all their angles; add wafer angles");
+}
+
+void give_orientation(Unknowns& unknowns, const CalibrationOptions& options) {
+  if (!options.polarizer_near)
+    throw std::invalid_argument("retarders leave open whether the polarizer's azimuth at dial 0 is " +
+                                shown(degrees(unknowns.offset)) +
+                                " degrees or 90 more: say roughly which, or add a wafer");
+  const double off = std::remainder(unknowns.offset - *options.polarizer_near, pi);
+  if (std::abs(std::abs(off) - pi / 4) < radians(10))
+    throw std::invalid_argument("the polarizer's azimuth at dial 0 is " + shown(degrees(unknowns.offset)) +
+                                " degrees or 90 more, and the given " + shown(degrees(*options.polarizer_near)) +
+                                " does not tell which");
+  if (std::abs(off) < pi / 4) return;
+  unknowns.offset = std::fmod(unknowns.offset + pi / 2, pi);
+  unknowns.generator.bottomRows(3) *= -1;
+  unknowns.analyzer.bottomRows(3) *= -1;
 }
 
 }  // namespace mmbrdf::calibration

@@ -22,6 +22,10 @@ void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> refer
 /// the film and of no other instrument. Sets the thickness and misfit of the film.
 void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options);
 
+/// Without wafers the sign of S2, S3 and S4 together is open: retarders leave it as it is. Gives it by the polarizer, whose
+/// azimuth at dial 0 must roughly be known. Throws std::invalid_argument if it is not.
+void give_orientation(Unknowns& unknowns, const CalibrationOptions& options);
+
 /// psi and delta of a matrix that is, nearly, one of a diattenuator-retarder; tau is its element 11.
 DiattenuatorRetarder element_of(const Mueller& m);
 

@@ -19,7 +19,7 @@
 namespace mmbrdf {
 namespace {
 
-const StateCounts four{4, 4};
+const ReadStates four{4, 4};
 
 Calibration any_calibration() {
   Calibration c;
@@ -37,7 +37,7 @@ Calibration any_calibration() {
   c.film_thickness = 1.0 / 3;
   c.film_misfit = 0.01 / 3;
   c.scale_uncertainty = 0.01 / 7;
-  c.figure_of_merit = {1e-3 / 3, 2e-3, 3e-3, 4e-3, 5e-3, {}};
+  c.figure_of_merit = {1e-3 / 3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3, {}};
   c.figure_of_merit.elements(1, 2) = 1e-3 / 7;
   c.singular_ratio = 0.01 / 3;
   c.identifiability = 0.02;
@@ -56,9 +56,9 @@ std::string references_csv(const std::string& rows) {
   return "wavelength_nm,reference,number,angle_deg,generator_state,analyzer_state,intensity,dark,monitor,gain\n" + rows;
 }
 
-ReferenceFile parsed_references(const std::string& text, double saturation = never_saturated) {
+ReferenceFile parsed_references(const std::string& text, const ReadingLimits& limits = {}) {
   std::istringstream in(text);
-  return read_references(in, "r.csv", saturation);
+  return read_references(in, "r.csv", limits);
 }
 
 std::string raw_csv(const std::string& rows) {
@@ -66,9 +66,10 @@ std::string raw_csv(const std::string& rows) {
          rows;
 }
 
-std::vector<RawMeasurement> parsed_raw(const std::string& text, const StateCounts& states) {
+std::vector<RawMeasurement> parsed_raw(const std::string& text, const ReadStates& states,
+                                       const ReadingLimits& limits = {}) {
   std::istringstream in(text);
-  RawReader reader(in, "d.csv", states);
+  RawReader reader(in, "d.csv", states, limits);
   std::vector<RawMeasurement> all;
   for (RawMeasurement one; reader.next(one);) all.push_back(one);
   return all;
@@ -94,7 +95,7 @@ TEST(Readings, OfReferencesAreReadBackToTheSameBits) {
 }
 
 TEST(Readings, OfSamplesAreReadBackToTheSameBits) {
-  const StateCounts states{2, 3};
+  const ReadStates states{2, 3};
   const std::vector<RawMeasurement> raw = {
       {0.532, {{0.5, 0.1}, {1.0 / 3, 2}}, {0.1, 0.2, 0.3, 1.0 / 3, 0.5, 0.6}},
       {0.532, {{0.5, 0.1}, {0.7, 2}}, {1, 2, 3, 4, 5, 6}},
@@ -116,7 +117,7 @@ TEST(Readings, AreWhatIsLeftOfAnIntensityAndMayStandInAnyOrder) {
                                        "532,wafer,8,30,1,1,3,0,1,1\n"
                                        "532,empty,7,0,1,1,3,1,2,1\n"
                                        "532,wafer,8,30,2,1,4,0,1,1\n"));
-  EXPECT_EQ(file.states, (StateCounts{2, 1}));
+  EXPECT_EQ(file.states, (ReadStates{2, 1}));
   ASSERT_EQ(file.references.size(), 2u);
   EXPECT_EQ(file.references[0].readings, (std::vector<double>{1, 0.5}));  // (3 − 1) / 2, (5 − 1) / (2 · 4)
   EXPECT_EQ(file.references[1].readings, (std::vector<double>{3, 4}));
@@ -125,10 +126,12 @@ TEST(Readings, AreWhatIsLeftOfAnIntensityAndMayStandInAnyOrder) {
 TEST(Readings, OfReferencesThatCannotBeAreRefusedWithTheirLine) {
   const std::string good = "532,empty,1,0,1,1,3,0,1,1\n";
   const auto complains = [&](const std::string& rows) {
-    return complaint([&] { parsed_references(references_csv(good + rows), 10); });
+    return complaint([&] { parsed_references(references_csv(good + rows), {.saturation = 10}); });
   };
   EXPECT_TRUE(says(complains("532,empty,1,0,1,1,3,0,1,1\n"), {"r.csv:3: measurement 1", "a second", "in line 2"}));
-  EXPECT_TRUE(says(complains("532,empty,1,0,2,2,3,0,1,1\n"), {"r.csv:3: measurement 1", "no reading of generator"}));
+  EXPECT_TRUE(says(
+      complains("532,empty,1,0,2,1,3,0,1,1\n532,empty,2,0,1,1,3,0,1,1\n"),
+      {"r.csv:4: measurement 2: no reading of generator state 2, analyzer state 1; the highest state is in line 3"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,1,10,0,1,1\n"), {"r.csv:3: intensity: 10 is saturated"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,1,9,0,1e-200,1e-200\n"), {"r.csv:3: intensity: 9 over its monitor"}));
   EXPECT_TRUE(says(complains("532,empty,1,0,2,1,1,1.5,1,1\n"), {"r.csv:3: intensity: 1 is below dark 1.5"}));
@@ -149,13 +152,65 @@ TEST(Readings, OfSamplesThatCannotBeAreRefusedWithTheirLine) {
     return complaint([&] { parsed_raw(raw_csv(good + rows), {2, 1}); });
   };
   EXPECT_EQ(complains("532,45,0,30,180,1,2,1,3\n"), "");
-  EXPECT_TRUE(
-      says(complains("532,45,0,30,180,2,2,1,3\n"), {"d.csv:2: measurement 1: no reading of generator state 2"}));
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,3,1,3\n"), {"d.csv:3: generator state 3", "the instrument has 2"}));
   EXPECT_TRUE(says(complains("532,45,0,31,180,1,2,1,3\n"), {"d.csv:3: measurement 1: another direction", "line 2"}));
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,1,1,3\n"), {"d.csv:3: measurement 1: a second", "in line 2"}));
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,2,1,-3\n"), {"d.csv:3: intensity: -3 is negative"}));
   EXPECT_TRUE(says(complaint([&] { parsed_raw(raw_csv(""), {2, 1}); }), {"d.csv: no readings"}));
+}
+
+TEST(Readings, MayBeAnyPairsOfStates) {
+  const std::vector<RawMeasurement> raw = parsed_raw(raw_csv("532,45,0,30,180,1,2,2,3\n"
+                                                             "532,45,0,30,180,1,1,1,4\n"
+                                                             "532,45,0,40,180,2,1,1,5\n"),
+                                                     {2, 2});
+  ASSERT_EQ(raw.size(), 2u);
+  EXPECT_EQ(raw[0].pairs, (std::vector<StatePair>{{0, 0}, {1, 1}}));
+  EXPECT_EQ(raw[0].readings, (std::vector<double>{4, 3}));
+  EXPECT_EQ(raw[1].pairs, (std::vector<StatePair>{{0, 0}}));
+  // Those of the instrument need not be said.
+  const ReadStates pairwise{2, 2, {{0, 0}, {1, 1}}};
+  const RawMeasurement own = parsed_raw(raw_csv("532,45,0,30,180,1,2,2,3\n532,45,0,30,180,1,1,1,4\n"), pairwise)[0];
+  EXPECT_TRUE(own.pairs.empty());
+  EXPECT_EQ(own.readings, (std::vector<double>{4, 3}));
+  std::ostringstream out;
+  write_raw(out, pairwise, std::vector{own});
+  const RawMeasurement back = parsed_raw(out.str(), pairwise)[0];
+  EXPECT_EQ(back.readings, own.readings);
+  EXPECT_TRUE(back.pairs.empty());
+}
+
+TEST(Readings, OfReferencesHaveThePairsThatAnyOfThemHas) {
+  const std::string pairwise = "532,empty,1,0,1,1,3,0,1,1\n532,empty,1,0,2,2,4,0,1,1\n";
+  const ReferenceFile file =
+      parsed_references(references_csv(pairwise + "532,retarder,2,30,2,2,6,0,1,1\n532,retarder,2,30,1,1,5,0,1,1\n"));
+  EXPECT_EQ(file.states, (ReadStates{2, 2, {{0, 0}, {1, 1}}}));
+  EXPECT_EQ(file.references[1].kind, ReferenceKind::retarder);
+  EXPECT_EQ(file.references[1].readings, (std::vector<double>{5, 6}));
+  std::stringstream written;
+  write_references(written, file);
+  const ReferenceFile back = parsed_references(written.str());
+  EXPECT_EQ(back.states, file.states);
+  EXPECT_EQ(back.references[1].readings, file.references[1].readings);
+  EXPECT_TRUE(says(complaint([&] { parsed_references(references_csv(pairwise + "532,empty,2,0,1,1,3,0,1,1\n")); }),
+                   {"r.csv:4: measurement 2: no reading of generator state 2, analyzer state 2, which other"}));
+}
+
+// As far below zero as the noise of the dark signal reaches, five of its standard deviations, and no further.
+TEST(Readings, BelowZeroAreNoiseWithinFiveStandardDeviationsOfTheDarkSignal) {
+  const ReadingLimits limits{.dark_noise = 1e-3};
+  const auto with = [&](const std::string& intensity) {
+    return parsed_raw(raw_csv("532,45,0,30,180,1,1,1," + intensity + "\n"), {1, 1}, limits)[0].readings[0];
+  };
+  EXPECT_EQ(with("-0.0003"), -0.0003);
+  EXPECT_EQ(with("-0.00499"), -0.00499);
+  EXPECT_TRUE(says(complaint([&] { with("-0.00501"); }),
+                   {"d.csv:2: intensity: -0.00501 is negative, 5.01 times the noise of the dark signal; at most 5"}));
+  const auto reference = [&](const std::string& numbers) {
+    return parsed_references(references_csv("532,empty,1,0,1,1," + numbers + "\n"), limits).references[0].readings[0];
+  };
+  EXPECT_EQ(reference("1,1.0078125,2,1"), -0.00390625);  // of the reading, not of the intensity
+  EXPECT_TRUE(says(complaint([&] { reference("1,1.0078125,1,1"); }), {"below dark 1.0078125, 7.81 times the noise"}));
 }
 
 /// A measurement without noise of some model at some geometry.
@@ -177,6 +232,58 @@ TEST(Readings, ReduceToTheSampleThatTheyAreOf) {
     EXPECT_NEAR(sample.normalized.elements[e], normalized(expected).elements[e], 1e-13);
     EXPECT_EQ(sample.uncertainty.elements[e], 0);
   }
+}
+
+TEST(Readings, OfFewerPairsLeaveUnknownWhatTheyDoNotDetermine) {
+  const std::vector<std::string> linear{"s", "p", "+45", "-45"};
+  const Polarimeter polarimeter = ideal_polarimeter(linear, linear);
+  const RawMeasurement raw = some_measurement(polarimeter, 2e-4);
+  Reducer reducer(polarimeter);
+  const Sample sample = reduced(reducer({}), raw, 2e-4, {.relative = 1e-3});
+  const Mueller expected = normalized(prepare(material("ptfe-532"), 0.532).evaluate(raw.geometry));
+  for (std::size_t e = 0; e < 16; ++e) {
+    const bool circular = e / 4 == 3 || e % 4 == 3;
+    EXPECT_EQ(std::isnan(sample.normalized.elements[e]), circular) << e;
+    EXPECT_EQ(sample.uncertainty.elements[e] > 0, !circular) << e;
+    if (circular) continue;
+    EXPECT_NEAR(sample.normalized.elements[e], expected.elements[e], 1e-13);
+  }
+  // Three linear states of each arm say as much.
+  RawMeasurement nine = raw;
+  nine.readings.clear();
+  for (const std::size_t a : {0U, 1U, 2U})
+    for (const std::size_t g : {0U, 1U, 2U}) {
+      nine.pairs.push_back({g, a});
+      nine.readings.push_back(raw.readings[4 * a + g]);
+    }
+  EXPECT_NEAR(reduced(reducer(nine.pairs), nine, 2e-4, {}).normalized(1, 2), expected(1, 2), 1e-13);
+  EXPECT_EQ(reducer.sets(), 2u);
+}
+
+TEST(Readings, ThatDoNotDetermineF11AreRefusedWithWhatIsMissing) {
+  const Polarimeter polarimeter = Goniometer({}, 1).polarimeter();
+  RawMeasurement raw = some_measurement(polarimeter, 2e-4);
+  Reducer reducer(polarimeter);
+  const auto refusal = [&](std::vector<StatePair> pairs) {
+    raw.pairs = std::move(pairs);
+    raw.readings.assign(raw.pairs.size(), 1e-5);
+    return message_of([&] { reduced(reducer(raw.pairs), raw, 2e-4, {}); });
+  };
+  std::vector<StatePair> most;
+  for (std::size_t j = 0; j < 16; ++j)
+    if (j != 5) most.push_back(polarimeter.pair(j));
+  EXPECT_EQ(refusal(most),
+            "15 readings of rank 15 do not determine M11: there is none of generator state 2, analyzer state 2");
+  EXPECT_EQ(refusal({{1, 2}}), "1 readings of rank 1 do not determine M11");
+  EXPECT_EQ(refusal({{1, 2}, {0, 0}, {1, 2}}), "generator state 2, analyzer state 3 is there twice");
+  EXPECT_EQ(refusal({{4, 0}}),
+            "generator state 5, analyzer state 1: the instrument has 4 generator and 4 analyzer states");
+  const std::vector<DialAngles> dials = dial_angles(5, radians(6), 61);
+  Reducer frames(mmbrdf::polarimeter(RotatingRetarders{}, dials));
+  EXPECT_EQ(message_of([&] {
+              frames(std::vector<StatePair>{{3, 6}});
+            }),
+            "generator state 4, analyzer state 7: the instrument does not read this pair");
 }
 
 TEST(Readings, ReduceToSamplesThatScatterAsTheirUncertaintiesSay) {
@@ -248,6 +355,38 @@ TEST(Instrument, IsReadBackFromItsFileToTheSameBits) {
   EXPECT_EQ(back.degrees_of_freedom, c.degrees_of_freedom);
   EXPECT_EQ(back.provenance, c.provenance);
   EXPECT_EQ(to_json(back), to_json(c));
+}
+
+TEST(Instrument, OfTurningRetardersIsReadBackFromItsFewNumbers) {
+  GoniometerOptions made;
+  made.dials = dial_angles(5, radians(6), 61);
+  made.retardance = radians(90);
+  CalibrationOptions options;
+  options.wavelength = 0.532;
+  options.retarders.emplace();
+  options.retarders->dials = made.dials;
+  const std::vector<Reference> references = Goniometer(made, 1).references(0.532, 1, 2);
+  const Calibration c = calibrate(std::span(references).first(1), options);
+  const std::string text = to_json(c);
+  EXPECT_LT(text.size(), 10'000u);
+  const Calibration back = calibration_from_json(text, "i.json");
+  ASSERT_TRUE(back.retarders);
+  EXPECT_EQ(back.retarders->covariance, c.retarders->covariance);
+  EXPECT_EQ(back.polarimeter.pairs, c.polarimeter.pairs);
+  for (std::size_t k = 0; k < retarder_parameters; ++k)  // angles go through degrees
+    EXPECT_NEAR(parameters(back.retarders->values)[k], parameters(c.retarders->values)[k], 1e-15);
+  ASSERT_EQ(back.covariance.size(), c.covariance.size());
+  for (std::size_t k = 0; k < c.covariance.size(); ++k) EXPECT_NEAR(back.covariance[k], c.covariance[k], 1e-18);
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    return complaint([&] { calibration_from_json(changed, "i.json"); });
+  };
+  EXPECT_TRUE(
+      says(refusal("\"retarders\": {", "\"generator\": [[1, 0, 0, 0]], \"retarders\": {"), {"i.json: generator"}));
+  EXPECT_TRUE(says(refusal("\"responsivity\": ", "\"responsivity\": -"), {"responsivity", "is not positive"}));
+  EXPECT_TRUE(says(refusal("\"dials_deg\": [", "\"dials_deg\": [[1, 2, 3], "), {"dials_deg"}));
+  EXPECT_TRUE(says(refusal("\"extinction\": 0.0,", "\"extinction\": 2.0,"), {"extinction"}));
 }
 
 TEST(Instrument, ThatCannotBeIsRefusedWithItsField) {

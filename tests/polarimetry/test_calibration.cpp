@@ -8,6 +8,7 @@
 #include <string>
 
 #include "given/calibrations.hpp"
+#include "given/files.hpp"
 
 using namespace mmbrdf;
 
@@ -194,9 +195,9 @@ TEST(Calibration, SaysWhatIsMissing) {
   EXPECT_EQ(refusal(without(ReferenceKind::empty), with_film()),
             "no empty reference: the arms aligned, nothing between");
   EXPECT_EQ(refusal(without(ReferenceKind::polarizer), with_film()),
-            "no reference with a polarizer: wafers alone leave four solutions mixed");
+            "no reference with a polarizer: the others alone leave solutions mixed");
   EXPECT_EQ(refusal(without(ReferenceKind::wafer), with_film()),
-            "no reference with a wafer: polarizers alone leave the scale and sign of S4 open");
+            "no reference with a wafer or a retarder: polarizers alone leave the scale and sign of S4 open");
   EXPECT_EQ(refusal(only(all,
                          [](const Reference& r) {
                            return r.kind != ReferenceKind::polarizer || r.angle == 0 ||
@@ -231,6 +232,79 @@ TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {
 }
 
 // The experimental standard deviation of a mean of n gains: s / √n, s² = Σ (g − 1)² / (n − 1).
+namespace {
+
+/// In place of the wafers retarders, their fast axes at known azimuths, the same one or of several retardances.
+std::vector<Reference> with_retarders(const Goniometer& goniometer, const std::vector<double>& retardances_deg,
+                                      unsigned long seed) {
+  std::vector<Reference> references = only(goniometer.references(wavelength, 6, seed),
+                                           [](const Reference& r) { return r.kind != ReferenceKind::wafer; });
+  for (const double retardance : retardances_deg)
+    for (const double azimuth : {0., 35., 70., 110.}) {
+      const Mueller m = rotated(mueller({0.9, radians(44.8), radians(retardance)}), radians(azimuth));
+      references.push_back({ReferenceKind::retarder, radians(azimuth), goniometer.readings(m, seed + references.size()),
+                            0, retardance > 180 ? -1 : 0});
+    }
+  return references;
+}
+
+CalibrationOptions with_polarizer_near(double azimuth_deg) {
+  CalibrationOptions options = without_film();
+  options.polarizer_near = radians(azimuth_deg);
+  return options;
+}
+
+}  // namespace
+
+// A retarder of known axes ties S4 to S2 and S3, as a wafer does, and fixes the azimuth; of 23 and 113 degrees for the
+// polarizer it leaves the choice, since it turns orthogonal states alike.
+TEST(Calibration, TakesRetardersOfKnownAxesInPlaceOfWafers) {
+  for (const std::vector<double>& retardances : {std::vector<double>{70}, {40, 265}}) {
+    const Goniometer goniometer(quiet(), 2);
+    const std::vector<Reference> references = with_retarders(goniometer, retardances, 3);
+    const Calibration c = calibrate(references, with_polarizer_near(40));
+    EXPECT_LE(error(c.polarimeter, goniometer.polarimeter()), 1e-10);
+    EXPECT_NEAR(c.polarizer_offset, radians(23), 1e-10);
+    EXPECT_NEAR(std::remainder(c.references.back().element.delta - radians(retardances.back()), radians(360)), 0,
+                1e-10);
+    EXPECT_NEAR(c.references.back().element.psi, radians(44.8), 1e-10);
+    EXPECT_GT(c.figure_of_merit.retarder, 0);
+    EXPECT_EQ(c.figure_of_merit.wafer, 0);
+    // The opposite states explain the same readings.
+    const Calibration other = calibrate(references, with_polarizer_near(120));
+    EXPECT_LE(largest_difference(other.polarimeter, with_signs(scaled(goniometer.polarimeter()), -1, -1, -1)), 1e-9);
+    EXPECT_NEAR(other.polarizer_offset, radians(113), 1e-10);
+  }
+}
+
+TEST(Calibration, WithRetardersAndNoiseIsAsGoodAsItsCovarianceSays) {
+  GoniometerOptions made = quiet();
+  made.noise.relative = 1e-3;
+  double sum = 0, predicted = 0;
+  for (unsigned long seed = 1; seed <= 20; ++seed) {
+    const Goniometer goniometer(made, seed);
+    const Calibration c = calibrate(with_retarders(goniometer, {70, 110}, seed), with_polarizer_near(20));
+    const Reduction reduction(c.polarimeter, c.covariance);
+    for (const Mueller& m : test_matrices()) {
+      const Mueller off = normalized(reduction.mueller(readings(goniometer.polarimeter(), m))) - m;
+      const MuellerCovariance v = normalized(reduction.from_instrument(m), m);
+      for (std::size_t e = 1; e < 16; ++e) {
+        sum += off.elements[e] * off.elements[e];
+        predicted += v(e, e);
+      }
+    }
+  }
+  RecordProperty("observed_over_predicted", std::to_string(std::sqrt(sum / predicted)));
+  EXPECT_NEAR(std::sqrt(sum / predicted), 1, 0.15);  // 20 instruments, each of a few independent errors
+}
+
+TEST(Calibration, WithoutAWaferAsksRoughlyHowThePolarizerStands) {
+  const std::vector<Reference> references = with_retarders(Goniometer(quiet(), 2), {70}, 3);
+  EXPECT_TRUE(says(refusal(references, without_film()),
+                   {"retarders leave open whether the polarizer's azimuth at dial 0 is", "degrees or 90 more"}));
+  EXPECT_TRUE(says(refusal(references, with_polarizer_near(70)), {"the given 70 does not tell which"}));
+}
+
 TEST(Calibration, HasTheStandardDeviationOfTheMeanGainAsTheUncertaintyOfItsScale) {
   const std::vector<Reference> all = Goniometer(quiet(), 3).references(wavelength, 18, 4);
   for (const int kept : {2, 3, 5}) {

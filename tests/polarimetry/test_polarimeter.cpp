@@ -280,17 +280,65 @@ TEST(Reduction, HasTheCovarianceOfTheInstrumentByItsSlopes) {
   EXPECT_EQ(Reduction(p).from_instrument(example).values, MuellerCovariance{}.values);
 }
 
-TEST(Reduction, RefusesAnInstrumentThatDoesNotDetermineAMatrix) {
+TEST(Reduction, RefusesAnInstrumentThatIsNone) {
   const auto refusal = [](const std::function<void(Polarimeter&)>& spoil) {
     Polarimeter p = best();
     spoil(p);
     return message_of([&] { Reduction{p}; });
   };
-  EXPECT_EQ(refusal([](Polarimeter& p) { p.generator.pop_back(); }), "generator: 3 states, not four independent ones");
-  EXPECT_EQ(refusal([](Polarimeter& p) { p.generator.clear(); }), "generator: 0 states, not four independent ones");
-  EXPECT_EQ(refusal([](Polarimeter& p) { p.analyzer[0] = p.analyzer[1]; }),
-            "analyzer: 4 states, not four independent ones");
+  EXPECT_EQ(refusal([](Polarimeter& p) { p.generator.clear(); }), "generator: no states");
+  EXPECT_EQ(refusal([](Polarimeter& p) {
+              p.pairs = {{0, 4}};
+            }),
+            "generator state 1, analyzer state 5: the instrument has 4 generator and 4 analyzer states");
   EXPECT_EQ(refusal([](Polarimeter& p) { p.analyzer[0][2] = nan_value; }), "analyzer: a state is not finite");
+}
+
+// Elements of the fourth row or column need circular states; three linear ones determine the nine others.
+TEST(Reduction, OfFewerStatesSaysWhichElementsTheyDetermine) {
+  const std::vector<std::string> linear{"s", "p", "+45"}, circular{"s", "p", "+45", "L"}, one{"s"}, none{"u"};
+  const auto determined = [](const Polarimeter& p) { return element_names(~Reduction(p).undetermined()); };
+  EXPECT_EQ(determined(ideal_polarimeter(linear, linear)), "11, 12, 13, 21, 22, 23, 31, 32 and 33");
+  EXPECT_EQ(determined(ideal_polarimeter(circular, linear)), "11, 12, 13, 14, 21, 22, 23, 24, 31, 32, 33 and 34");
+  EXPECT_EQ(determined(ideal_polarimeter(none, linear)), "11, 21 and 31");
+  EXPECT_EQ(determined(ideal_polarimeter(none, none)), "11");
+  EXPECT_EQ(Reduction(ideal_polarimeter(linear, linear)).rank(), 9);
+  EXPECT_TRUE(Reduction(ideal_polarimeter(one, one)).undetermined().all());  // 11 + 12 + 21 + 22 alone
+  EXPECT_TRUE(Reduction({{Stokes{}}, {Stokes{}}}).undetermined().all());
+  const Reduction reduction(ideal_polarimeter(linear, linear));
+  const std::vector<double> read = readings(ideal_polarimeter(linear, linear), example);
+  const Mueller m = reduction.mueller(read);
+  const MuellerCovariance c = reduction.from_readings(std::vector<double>(9, 1e-6));
+  for (std::size_t e = 0; e < 16; ++e) {
+    if (reduction.undetermined()[e]) {
+      EXPECT_TRUE(std::isnan(m.elements[e]) && std::isnan(c(e, e)) && std::isnan(c(e, 0)));
+    } else {
+      EXPECT_NEAR(m.elements[e], example.elements[e], 1e-15);
+      EXPECT_GT(c(e, e), 0);
+    }
+  }
+}
+
+// All pairs of six states: 36 linear and circular combinations.
+TEST(Reduction, OfSixStatesOfEachArmIsTheMatrix) {
+  const std::vector<std::string> six{"s", "p", "+45", "-45", "L", "R"};
+  const Polarimeter p = ideal_polarimeter(six, six);
+  EXPECT_NEAR(Reduction(p).condition(), 3, 1e-14);  // 3^(1/2) of each arm
+  EXPECT_LE(largest(Reduction(p).mueller(readings(p, example)) - example), 1e-15);
+}
+
+// The same solution whether a grid is taken apart into its arms or not, with pairs in any order.
+RC_GTEST_PROP(Reduction, OfAGridIsThatOfItsPairs, ()) {
+  const Polarimeter grid = best();
+  std::vector<StatePair> pairs;
+  for (std::size_t j = 0; j < 16; ++j) pairs.push_back(grid.pair((5 * j + 3) % 16));
+  const Polarimeter listed = reading(grid, pairs);
+  const Mueller m = random_mueller();
+  const Reduction a(grid), b(listed);
+  RC_ASSERT(largest(a.mueller(readings(grid, m)) - b.mueller(readings(listed, m))) <= 1e-14);
+  RC_ASSERT(std::abs(a.condition() / b.condition() - 1) < 1e-12);
+  const std::vector<double> variances(16, 1e-6);
+  RC_ASSERT(std::abs(a.from_readings(variances)(5, 5) / b.from_readings(variances)(5, 5) - 1) < 1e-12);
 }
 
 TEST(Reduction, RefusesACovarianceThatIsNone) {

@@ -90,6 +90,11 @@ def make(models, samples):
         "f11": size,
         "retardance_deg": azimuth,
         "azimuths_deg": lambda rng: rng.uniform(-200, 200, 6),
+        "dials_deg": lambda rng: rng.uniform(-200, 200, (6, 2)),
+        "ratio": lambda rng: float(rng.choice([5, 2.5, -1])),
+        "step_deg": lambda rng: float(rng.uniform(1, 20)),
+        "frames": lambda rng: int(rng.integers(1, 60)),
+        "generator": lambda rng: list(rng.choice(["s", "p", "+45", "-45", "L", "R", "u"], 4)),
         "extinction": lambda rng: float(rng.choice([0, 1, 1e-300, rng.random()])),
         "states": lambda rng: int(rng.integers(4, 8)),
         "film": lambda rng: (

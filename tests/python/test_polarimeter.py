@@ -50,6 +50,77 @@ def test_readings_and_matrices_are_each_others_inverse(random_matrices):
         mmbrdf.Polarimeter(np.ones(4), np.ones((4, 4)))
 
 
+def test_pairs_of_states_determine_what_they_determine_and_leave_nan(random_matrices):
+    linear = mmbrdf.ideal_states(["s", "p", "+45", "-45"])
+    assert linear.determined.tolist() == [[True] * 3 + [False]] * 3 + [[False] * 4]
+    assert linear.rank == 9 and linear.pairs is None
+    found = linear.reduce(linear.readings(random_matrices))
+    assert np.isnan(found[..., 3, :]).all() and np.isnan(found[..., :, 3]).all()
+    np.testing.assert_allclose(found[..., :3, :3], random_matrices[..., :3, :3], rtol=0, atol=1e-15)
+    six = mmbrdf.ideal_states(["s", "p", "+45", "-45", "L", "R"])
+    assert six.condition == pytest.approx(3) and six.determined.all()
+    chosen = mmbrdf.Polarimeter(six.generator, six.analyzer, [(p, q) for p in range(6) for q in range(p, 6)])
+    assert chosen.readings(random_matrices).shape == (5, 7, 21)
+    np.testing.assert_allclose(
+        chosen.reduce(chosen.readings(random_matrices)),
+        np.where(chosen.determined, random_matrices, np.nan),
+        atol=1e-14,
+    )
+    with pytest.raises(ValueError, match="state 'H': must be s, p"):
+        mmbrdf.ideal_states(["s", "H"])
+    with pytest.raises(ValueError, match="generator state 7, analyzer state 1"):
+        mmbrdf.Polarimeter(six.generator, six.analyzer, [(6, 0)])
+    with pytest.raises(ValueError, match="whole numbers"):
+        mmbrdf.Polarimeter(six.generator, six.analyzer, [(0.5, 0)])
+
+
+def test_two_turning_retarders_are_read_frame_by_frame(random_matrices):
+    ideal = mmbrdf.rotating_retarders(mmbrdf.dial_angles(5, 6, 61))
+    assert ideal.pairs.tolist() == [[j, j] for j in range(61)]
+    assert ideal.rank == 16 and ideal.condition == pytest.approx(13.04, abs=5e-3)
+    readings = ideal.readings(random_matrices)
+    assert readings.shape == (5, 7, 61)
+    np.testing.assert_allclose(ideal.reduce(readings), random_matrices, rtol=0, atol=1e-14)
+    assert mmbrdf.rotating_retarders(mmbrdf.dial_angles(5, 10, 36)).rank == 14
+    uneven = mmbrdf.rotating_retarders(
+        [[0, 0], [10, 50]], retardance_deg=(85, 95), offset_deg=(1, -2), polarizer_deg=(0, 3), diattenuation=0.01
+    )
+    assert uneven.generator.shape == (2, 4)
+    np.testing.assert_allclose(uneven.generator[0, 0], 1 + 0.01 * np.cos(np.radians(2)), rtol=1e-14)
+    with pytest.raises(ValueError, match="retardance_deg: expected a number, or one for each arm"):
+        mmbrdf.rotating_retarders([[0, 0]], retardance_deg=(90, 90, 90))
+
+
+def test_two_turning_retarders_are_calibrated_from_air(tmp_path):
+    dials = mmbrdf.dial_angles(5, 6, 61)
+    goniometer = mmbrdf.Goniometer(seed=1, dials_deg=dials)
+    goniometer.write_references(tmp_path / "references.csv", 532, count=3)
+    goniometer.write_raw(tmp_path / "raw.csv", mmbrdf.material("ptfe-532"), 532, mmbrdf.random_geometries(20, seed=1))
+    rows = (tmp_path / "references.csv").read_text().splitlines()
+    (tmp_path / "air.csv").write_text("\n".join(rows[:1] + [row for row in rows if ",empty," in row]) + "\n")
+    calibration = mmbrdf.calibrate(tmp_path / "air.csv", dials_deg=dials)
+    values = calibration.retarders
+    assert list(values)[:2] == ["generator_retardance_deg", "generator_offset_deg"]
+    assert abs(values["generator_retardance_deg"][0] - 90) < 10
+    assert 0 < values["generator_retardance_deg"][1] < 0.05
+    assert values["generator_polarizer_deg"] == (0, None)
+    calibration.save(tmp_path / "instrument.json")
+    again = mmbrdf.load_instrument(tmp_path / "instrument.json")
+    assert again.retarders == pytest.approx(values, rel=1e-12)
+    data = mmbrdf.reduce(tmp_path / "raw.csv", again, solid_angle=goniometer.solid_angle)
+    assert len(data) == 20
+    truth = mmbrdf.material("ptfe-532").evaluate(
+        532, data.theta_i_deg, data.phi_i_deg, data.theta_r_deg, data.phi_r_deg
+    )
+    np.testing.assert_allclose(data.normalized, mmbrdf.normalized(truth), atol=0.01)  # noise of 0.1 %, amplified
+    exact = mmbrdf.reduce(tmp_path / "raw.csv", calibration.polarimeter, solid_angle=goniometer.solid_angle)
+    np.testing.assert_allclose(exact.normalized, data.normalized, atol=1e-12)
+    with pytest.raises(ValueError, match="turning retarders need dials_deg"):
+        mmbrdf.calibrate(tmp_path / "air.csv")
+    with pytest.raises(ValueError, match="each of 60 rows"):
+        mmbrdf.calibrate(tmp_path / "air.csv", dials_deg=dials[:60])
+
+
 def test_elements_are_those_of_the_textbook():
     np.testing.assert_allclose(
         mmbrdf.polarizer(0), 0.5 * np.array([[1, 1, 0, 0], [1, 1, 0, 0], [0] * 4, [0] * 4]), atol=1e-16

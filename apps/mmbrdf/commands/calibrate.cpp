@@ -20,6 +20,8 @@ namespace {
 struct Options {
   std::string references, output;
   CalibrationOptions calibration;
+  std::optional<TurningRetarders> retarders;
+  std::optional<double> polarizer_near;
   bool linear = false;
   double saturation = never_saturated;
 };
@@ -35,7 +37,23 @@ double extinction(const std::string& text) {
   return value;
 }
 
+/// Frame by frame, as two turning retarders are read.
+void require_frames(const ReadStates& states, const std::string& name) {
+  for (std::size_t j = 0; j < states.pairs.size(); ++j)
+    if (states.pairs[j] != StatePair{j, j})
+      throw std::runtime_error(name + ": " + to_string(StatePair{j, j}) +
+                               " is not there: turning retarders read state 1 with 1, 2 with 2, and so on");
+  if (states.pairs.empty() && states.generator * states.analyzer > 1)
+    throw std::runtime_error(name +
+                             ": all states of the generator with all of the analyzer, not frames of turning "
+                             "retarders");
+}
+
 Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, const std::string& name) {
+  if (!options.retarders && !file.states.pairs.empty())
+    throw std::runtime_error(name + ": " + std::to_string(file.states.pairs.size()) +
+                             " pairs of states, not all: turning retarders are calibrated with --retarders "
+                             "1:RATIO,STEP, and any others need all");
   options.generator_states = file.states.generator;
   options.analyzer_states = file.states.analyzer;
   options.wavelength = file.wavelength;
@@ -49,12 +67,19 @@ Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, co
 void calibrate_instrument(Options options, const CommandLine& line) {
   require_kept(options.references, options.output, "references");
   options.calibration.refine = !options.linear;
+  if (options.polarizer_near) options.calibration.polarizer_near = radians(*options.polarizer_near);
   const std::string name = data_name(options.references);
   ReferenceFile file;
-  read_input(options.references,
-             [&](std::istream& in, const std::string& path) { file = read_references(in, path, options.saturation); });
+  read_input(options.references, [&](std::istream& in, const std::string& path) {
+    file = read_references(in, path, {options.saturation, options.calibration.noise.dark});
+  });
+  if (options.retarders) {
+    require_frames(file.states, name);
+    options.calibration.retarders = options.retarders->options(file.states.generator);
+    options.calibration.retarders->nominal.extinction = options.calibration.extinction;
+  }
   Calibration result = calibrated(file, options.calibration, name);
-  heed(judged(result, options.calibration.film), name);
+  heed(judged(result, options.calibration.film, options.calibration.retarders), name);
   print_instrument(result);
   result.provenance["data"] = name;
   result.provenance["references"] = std::to_string(file.references.size());
@@ -66,8 +91,9 @@ void calibrate_instrument(Options options, const CommandLine& line) {
 }
 
 constexpr const char* calibrate_footer =
-    "REFERENCES.csv has the columns wavelength_nm, reference (empty, polarizer or wafer), angle_deg (the polarizer's\n"
-    "dial, or the angle of incidence), number (tells measurements apart), generator_state, analyzer_state (from 1),\n"
+    "REFERENCES.csv has the columns wavelength_nm, reference (empty, polarizer, wafer or retarder), angle_deg (the\n"
+    "polarizer's dial, the angle of incidence, or the azimuth of the retarder's fast axis), number (tells measurements "
+    "apart), generator_state, analyzer_state (from 1),\n"
     "intensity, and if need be dark, monitor, gain, s_exceeds_p and delta_sign: a reading is\n"
     "(intensity - dark) / (monitor gain).\n"
     "\n"
@@ -82,10 +108,19 @@ constexpr const char* calibrate_footer =
     "three\n"
     "or more, or state the signs.\n"
     "\n"
+    "In place of wafers, retarders of known axes will do, with retardances below 180 degrees unless delta_sign is -1.\n"
+    "They do not tell two orthogonal azimuths of the polarizer apart: give --polarizer-at.\n"
+    "\n"
+    "Two turning retarders (--retarders) are read frame by frame, generator state j with analyzer state j. "
+    "Retardances,\n"
+    "azimuths of the fast axes and of the second polarizer, diattenuations and the drift of the source are fitted, to\n"
+    "empty references alone or with any others; the first polarizer is at 0 unless a wafer or retarder shows more.\n"
+    "\n"
     "Condition numbers above 100 and figures of merit above 0.5 are refused, those above 10 and 0.05 get a warning.\n"
     "\n"
-    "Example:\n"
-    "  mmbrdf calibrate references.csv --film 1.4607,1.0,4.15,0.044 -o instrument.json";
+    "Examples:\n"
+    "  mmbrdf calibrate references.csv --film 1.4607,1.0,4.15,0.044 -o instrument.json\n"
+    "  mmbrdf calibrate air.csv --retarders 1:5,6 -o instrument.json";
 
 constexpr const char* instrument_footer =
     "The figure of merit is the root mean square of measured - expected over the matrices of the references, divided "
@@ -107,6 +142,11 @@ Run calibrate_command(CLI::App& app, const CommandLine& line) {
              "+1: the polarizer's azimuth grows with its dial; -1: it falls [+1]");
   add_option(app, "--extinction", o->calibration.extinction, extinction, "E", "Of the polarizer, to start from [0]");
   add_flag(app, "--polarizer-phase", o->calibration.fit_polarizer_phase, "Fit the polarizer's phase, too");
+  add_option(app, "--polarizer-at", o->polarizer_near, number, "DEG",
+             "Roughly its azimuth at dial 0: needed if there is no wafer");
+  add_retarders(app, o->retarders,
+                "The instrument is two turning retarders: the\nanalyzer's turns RATIO times as far as the\n"
+                "generator's, which does STEP degrees each state;\nboth have this retardance, nearly [90]");
   add_flag(app, "--linear", o->linear, "Eigenvalue method alone, without refinement and covariance");
   add_reading_options(app, o->saturation, o->calibration.noise);
   set_footer(app, calibrate_footer);

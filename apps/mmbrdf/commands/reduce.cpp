@@ -25,6 +25,8 @@ namespace {
 
 struct Options {
   std::string raw, instrument, output;
+  std::optional<Polarimeter> states;
+  std::optional<TurningRetarders> retarders;
   std::optional<double> solid_angle;
   double saturation = never_saturated;
   ReadingNoise noise{.dark = 0, .shot = 0, .relative = 1e-3};
@@ -37,23 +39,73 @@ double solid_angle_from(const std::string& text) {
   return value;
 }
 
-std::vector<Sample> reduced_file(const Calibration& instrument, const Options& options) {
-  const Polarimeter& p = instrument.polarimeter;
-  const Reduction reduction(p);
+/// GENERATOR[/ANALYZER], each names of states with commas between.
+Polarimeter states_from(const std::string& text) {
+  const auto names = [](const std::string& list) {
+    std::vector<std::string> result;
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      result.push_back(list.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    return result;
+  };
+  const std::size_t slash = text.find('/');
+  const std::string analyzer = slash == std::string::npos ? text : text.substr(slash + 1);
+  return ideal_polarimeter(names(text.substr(0, slash)), names(analyzer));
+}
+
+/// What reads, and at which wavelength if that is known.
+struct Reading {
+  Polarimeter polarimeter;
+  std::optional<double> wavelength;
+};
+
+Reading reading_of(const Options& options) {
+  if (options.states) return {*options.states, {}};
+  if (options.retarders) {
+    const RetarderOptions retarders = options.retarders->options(most_states);
+    return {polarimeter(retarders.nominal, retarders.dials), {}};
+  }
+  const Calibration instrument = load_instrument(options.instrument);
+  heed(judged(instrument), base_name(options.instrument));
+  return {instrument.polarimeter, instrument.wavelength};
+}
+
+std::string pairs(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " pair" : " pairs") + " of states";
+}
+
+/// What the readings do not determine, and that they are not the same everywhere.
+void note_pairs(const Reducer& reducer, const Reduction& last, std::size_t readings, const std::string& name) {
+  if (last.undetermined().any())
+    note(name + ": " + pairs(readings) + ", rank " + std::to_string(last.rank()) + ": not determined, and unknown, " +
+         element_names(last.undetermined()));
+  if (reducer.sets() > 1)
+    note(name + ": its measurements have read " + std::to_string(reducer.sets()) +
+         " different sets of pairs of states");
+}
+
+std::vector<Sample> reduced_file(const Reading& reading, const Options& options) {
+  Reducer reducer(reading.polarimeter);
   std::vector<Sample> samples;
   read_input(options.raw, [&](std::istream& in, const std::string& name) {
-    RawReader reader(in, name, {p.generator.size(), p.analyzer.size()}, options.saturation);
-    for (RawMeasurement raw; reader.next(raw);) {
-      if (!same_wavelength(raw.wavelength, instrument.wavelength)) {
+    RawReader reader(in, name, read_states(reading.polarimeter), {options.saturation, options.noise.dark});
+    RawMeasurement raw;
+    const Reduction* reduction = nullptr;
+    while (reader.next(raw)) {
+      if (reading.wavelength && !same_wavelength(raw.wavelength, *reading.wavelength)) {
         throw reader.error("wavelength_nm: " + brief(nanometres(raw.wavelength)) + ", but the instrument is of " +
-                           brief(nanometres(instrument.wavelength)) + " nm");
+                           brief(nanometres(*reading.wavelength)) + " nm");
       }
       try {
-        samples.push_back(reduced(reduction, raw, *options.solid_angle, options.noise));
+        reduction = &reducer(raw.pairs);
+        samples.push_back(reduced(*reduction, raw, *options.solid_angle, options.noise));
       } catch (const std::invalid_argument& error) {
         throw reader.error(error.what());
       }
     }
+    note_pairs(reducer, *reduction, raw.readings.size(), data_name(options.raw));
   });
   return samples;
 }
@@ -67,10 +119,10 @@ void check_possible(const std::vector<Sample>& samples, const Options& options) 
 
 void reduce(const Options& options) {
   require_kept(options.raw, options.output, "readings");
-  require_kept(options.instrument, options.output, "instrument");
-  const Calibration instrument = load_instrument(options.instrument);
-  heed(judged(instrument), base_name(options.instrument));
-  const std::vector<Sample> samples = reduced_file(instrument, options);
+  if (options.instrument.empty() && !options.states && !options.retarders)
+    throw WrongUsage("--instrument is required, or --states or --retarders of an ideal one");
+  if (!options.instrument.empty()) require_kept(options.instrument, options.output, "instrument");
+  const std::vector<Sample> samples = reduced_file(reading_of(options), options);
   check_possible(samples, options);
   write_output(options.output, [&](std::ostream& out) { write_samples(out, samples); });
 }
@@ -82,18 +134,36 @@ constexpr const char* footer =
     "u_m44. What the instrument is uncertain by is the same error in all samples and not in them: mmbrdf fit\n"
     "--instrument adds it. The solid angle is that of the receiver: f = M / (SR cos(theta_r)).\n"
     "\n"
+    "A measurement need not have all pairs of states: those that it has decide which elements are determined, the\n"
+    "others are unknown, empty fields in DATA.csv. Readings below zero pass down to -5 X with --noise dark:X.\n"
+    "\n"
+    "In place of a calibrated instrument an ideal one, whose readings are relative to the incident light: --states of\n"
+    "s, p, +45, -45, L, R or u (not polarized), those of the generator and, behind a slash, of the analyzer, if they\n"
+    "are others; or --retarders. Both have no uncertainty of the instrument.\n"
+    "\n"
     "Matrices with a coherency eigenvalue below -0.05 f11 get a warning; --strict refuses them. Exchanged states of a\n"
     "sample that depolarizes nearly all light do not show in that.\n"
     "\n"
-    "Example:\n"
-    "  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle 1.114e-4 -o data.csv";
+    "Examples:\n"
+    "  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle 1.114e-4 -o data.csv\n"
+    "  mmbrdf reduce raw.csv --states s,p,+45,-45,L,R --solid-angle 1.114e-4 -o data.csv\n"
+    "  mmbrdf reduce frames.csv --retarders 1:5,6 --solid-angle 1.114e-4 -o data.csv";
 
 }  // namespace
 
 Run reduce_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_file(app, "RAW.csv", o->raw, " ", "Readings of a sample; - is standard input").required();
-  add_file(app, "--instrument", o->instrument, "INSTRUMENT.json", "Written by mmbrdf calibrate (required)").required();
+  const Option instrument =
+      add_file(app, "--instrument", o->instrument, "INSTRUMENT.json", "Written by mmbrdf calibrate");
+  const Option states = add_option(app, "--states", o->states, states_from, "NAME[,NAME...][/...]",
+                                   "In its place ideal states of both arms, in the\norder of their numbers");
+  add_retarders(app, o->retarders,
+                "In its place two ideal turning retarders: the\nanalyzer's turns RATIO times as far as the\n"
+                "generator's, which does STEP degrees each state;\nboth have this retardance [90]")
+      .excludes(states)
+      .excludes(instrument);
+  states.excludes(instrument);
   add_option(app, "--solid-angle", o->solid_angle, solid_angle_from, "SR", "Of the receiver, in sr (required)")
       .required();
   add_reading_options(app, o->saturation, o->noise);

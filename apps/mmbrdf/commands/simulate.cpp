@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf simulate
 
+#include <cmath>
 #include <memory>
 
 #include "command.hpp"
@@ -22,6 +23,8 @@ struct Options {
   std::optional<std::vector<double>> wavelengths_nm;
   double speckle = 0;
   std::optional<double> reading_noise;
+  std::optional<TurningRetarders> retarders;
+  std::optional<std::size_t> frames;
   unsigned long seed = 0;
 };
 
@@ -55,6 +58,13 @@ double relative_noise_from(const std::string& text) {
   return noise.relative;
 }
 
+std::size_t frames_from(const std::string& text) {
+  const double value = number(text);
+  if (value != std::floor(value) || value < 1 || value > double(most_states))
+    throw std::invalid_argument("\"" + text + "\": expected a whole number from 1 to " + std::to_string(most_states));
+  return static_cast<std::size_t>(value);
+}
+
 /// Of a reading, which is never negative.
 void require_possible(double noise, const std::string& option, const std::string& law) {
   if (noise > most_noise) {
@@ -70,6 +80,8 @@ void simulate_readings(const Options& options) {
     throw WrongUsage("--raw", "an instrument is of one wavelength: give one with --wavelength");
   RawSimulation raw{options.raw, RawSimulation{}.reading_noise, options.speckle, options.seed};
   raw.reading_noise = options.reading_noise.value_or(raw.reading_noise);
+  raw.retarders = options.retarders;
+  raw.frames = options.frames.value_or(raw.frames);
   require_possible(raw.speckle, "--noise", "speckle");
   require_possible(raw.reading_noise, "--reading-noise", "relative");
   require_kept(options.model, raw);
@@ -103,11 +115,13 @@ constexpr const char* footer =
     "\n"
     "--raw writes what a goniometer with imperfections, four generator and four analyzer states would read:\n"
     "DIR/references.csv and DIR/raw.csv, for mmbrdf calibrate and reduce. speckle:C is then that of each reading, and\n"
-    "both noises are factors of mean 1 that are never negative, of at most 1.\n"
+    "both noises are factors of mean 1 that are never negative, of at most 1. With --retarders it is an instrument of\n"
+    "two turning retarders (deviations of 3 degrees in retardance, 2 degrees in azimuth), read frame by frame.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf simulate ptfe --grid germer2017 --noise speckle:0.006 --seed 1 -o data.csv\n"
-    "  mmbrdf simulate ptfe --wavelength 532 --raw measured";
+    "  mmbrdf simulate ptfe --wavelength 532 --raw measured\n"
+    "  mmbrdf simulate ptfe --wavelength 532 --retarders 1:5,6 --raw frames";
 
 }  // namespace
 
@@ -125,6 +139,12 @@ Run simulate_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--reading-noise", o->reading_noise, relative_noise_from, "LAW",
              "Of the readings of --raw [relative:0.001]")
       .needs(raw);
+  const Option retarders = add_retarders(app, o->retarders,
+                                         "--raw of two turning retarders: the analyzer's\nturns RATIO times as far as "
+                                         "the generator's, which\ndoes STEP degrees each frame; both have this\n"
+                                         "retardance [90]");
+  retarders.needs(raw);
+  add_option(app, "--frames", o->frames, frames_from, "N", "Of them, at most 100 [61]").needs(retarders);
   set_footer(app, footer);
   return [o] { o->raw.empty() ? simulate_data(*o) : simulate_readings(*o); };
 }

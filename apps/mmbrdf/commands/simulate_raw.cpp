@@ -26,7 +26,17 @@ GoniometerOptions goniometer_options(const RawSimulation& options) {
   GoniometerOptions result;
   result.noise = {.dark = 0, .shot = 0, .relative = options.reading_noise};
   result.speckle = options.speckle;
+  if (!options.retarders) return result;
+  const RetarderOptions retarders = options.retarders->options(options.frames);
+  result.dials = retarders.dials;
+  result.retardance = retarders.nominal.generator.retardance;
+  result.imperfections.azimuth = radians(2);
   return result;
+}
+
+std::string to_text(const TurningRetarders& retarders) {
+  return "1:" + shortest(retarders.ratio) + "," + shortest(in_degrees(retarders.step)) + "," +
+         shortest(in_degrees(retarders.retardance));
 }
 
 std::vector<RawMeasurement> measurements(const Goniometer& goniometer, const Model& model, double wavelength,
@@ -47,8 +57,7 @@ void require_kept(const std::string& model, const RawSimulation& options) {
 void simulate_raw(const Model& model, double wavelength, std::span<const Geometry> geometries,
                   const RawSimulation& options) {
   const Goniometer goniometer(goniometer_options(options), options.seed);
-  const Polarimeter& p = goniometer.polarimeter();
-  const StateCounts states{p.generator.size(), p.analyzer.size()};
+  const ReadStates states = read_states(goniometer.polarimeter());
   const ReferenceFile references{wavelength, states,
                                  goniometer.references(wavelength, references_of_each_kind, options.seed)};
   const std::vector<RawMeasurement> raw = measurements(goniometer, model, wavelength, geometries, options.seed);
@@ -66,6 +75,7 @@ void simulate_raw(const Model& model, double wavelength, std::span<const Geometr
   std::cout << "references.csv   " << references.references.size() << " references\n"
             << "raw.csv          " << raw.size() << " geometries at " << brief(nanometres(wavelength)) << " nm\n"
             << "\nNext:\n  cd " << shell_quoted(name) << "\n  mmbrdf calibrate references.csv --film " << text
+            << (options.retarders ? " --retarders " + to_text(*options.retarders) : "")
             << " -o instrument.json\n  mmbrdf reduce raw.csv --instrument instrument.json --solid-angle "
             << shortest(goniometer.options().solid_angle)
             << " -o data.csv\n  mmbrdf fit data.csv --weights data --instrument instrument.json -o model.json\n";

@@ -2,8 +2,10 @@
 // What the commands of a polarimeter share: options, what is made of a judgement, and what is printed of it.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "mmbrdf/model/model.hpp"
 #include "mmbrdf/polarimetry/judgement.hpp"
 #include "options/option.hpp"
 
@@ -20,6 +22,16 @@ double positive_number(const std::string& text);
 /// --saturation and --noise
 void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise);
 
+/// RATIO,STEP[,RETARDANCE]: two turning retarders, in radians.
+struct TurningRetarders {
+  double ratio = 5, step = radians(6), retardance = radians(90);
+  RetarderOptions options(std::size_t frames) const;
+};
+TurningRetarders retarders_from(const std::string& text);
+
+/// --retarders
+Option add_retarders(CLI::App& app, std::optional<TurningRetarders>& retarders, const std::string& description);
+
 /// Warns of the doubts about what is called `name`, and throws std::runtime_error if it is refused.
 void heed(const Verdict& verdict, const std::string& name);
 
@@ -32,6 +44,8 @@ struct RawSimulation {
   double reading_noise = 1e-3;  ///< relative
   double speckle = 0;
   unsigned long seed = 0;
+  std::optional<TurningRetarders> retarders = {};
+  std::size_t frames = 61;  ///< of these
 };
 
 /// Throws std::invalid_argument if it would overwrite the model.

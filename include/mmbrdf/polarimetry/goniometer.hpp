@@ -3,6 +3,7 @@
 /// is no instrument. All is reproducible: the same seed gives the same readings with every compiler.
 #pragma once
 
+#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -28,8 +29,12 @@ inline constexpr double most_noise = 1;
 /// Relative noise, speckle and changes of gain are factors with mean 1 and these standard deviations, lognormal: with
 /// none but them no reading is negative.
 struct GoniometerOptions {
-  double retardance = radians(131.81);
-  std::vector<double> azimuths;  ///< of the plates, radians; empty: optimal_angles(retardance, 4)
+  /// Of an instrument of two turning retarders; empty: one whose states are each made by plates that stand still. Turning
+  /// ones have the imperfections retardance and diattenuation of each plate, and azimuth: of the offset of each plate and of
+  /// the second polarizer. Their polarizers, nominally parallel, have the extinction of the reference polarizer below.
+  std::vector<DialAngles> dials = {};
+  double retardance = radians(131.81);  ///< of the plates, nominal
+  std::vector<double> azimuths;         ///< of the plates, radians; empty: optimal_angles(retardance, 4)
   Imperfections imperfections;
   double polarizer_offset = radians(23);  ///< azimuth at dial 0
   double extinction = 1e-5;
@@ -50,6 +55,8 @@ class Goniometer {
   Goniometer(const GoniometerOptions& options, unsigned long seed);
 
   const Polarimeter& polarimeter() const { return polarimeter_; }
+  /// The true numbers of an instrument of turning retarders; none of any other.
+  const std::optional<RotatingRetarders>& retarders() const { return retarders_; }
   const GoniometerOptions& options() const { return options_; }
 
   /// `count` empty references; as many polarizers, at dial angles in equal steps of 180°/count from 0; as many wafers,
@@ -70,6 +77,7 @@ class Goniometer {
   void disturb(std::vector<double>& readings, double speckle, double gain, std::mt19937_64& engine) const;
 
   GoniometerOptions options_;
+  std::optional<RotatingRetarders> retarders_;
   Polarimeter polarimeter_;
 };
 

@@ -25,6 +25,10 @@ inline constexpr double worst_merit = 0.5;
 /// behind it, and another film may be in it by chance.
 inline constexpr double doubtful_film_change = film_range / 2;
 
+/// Distance of a fast axis from its nominal azimuth (radians) above which air may have told it wrongly: that is at 45
+/// degrees.
+inline constexpr double doubtful_offset = radians(30);
+
 /// Smallest coherency eigenvalue over f11 below which a matrix cannot be physical: noise seldom gets there.
 inline constexpr double impossible_eigenvalue = -0.05;
 
@@ -34,11 +38,13 @@ struct [[nodiscard]] Verdict {
   std::string refusal;              ///< why it must not be used; empty if it may be
 };
 
-/// Of an instrument: its condition numbers, then its figure of merit. The first that is refused ends the list. With the
-/// film that was given to calibrate(), also of the thickness that came out.
-Verdict judged(const Calibration& calibration, const std::optional<Film>& film = std::nullopt);
+/// Of an instrument: its condition numbers, then its figure of merit, then what pairs of states leave unknown. The first
+/// that is refused ends the list. With what was given to calibrate(), also of the film's thickness that came out, and of
+/// the retarders' axes.
+Verdict judged(const Calibration& calibration, const std::optional<Film>& film = std::nullopt,
+               const std::optional<RetarderOptions>& retarders = std::nullopt);
 
-/// Of the samples that an instrument measured: doubts, and one only, if some cannot be physical. Exchanged states of a
+/// Of the samples that an instrument measured: doubts, and one only, if some whole matrices cannot be physical. Exchanged states of a
 /// sample that depolarizes nearly all light do not show.
 Verdict judged(std::span<const Sample> samples);
 

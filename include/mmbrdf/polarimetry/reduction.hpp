@@ -11,23 +11,40 @@
 
 namespace mmbrdf {
 
-/// Readings to matrices, by the pseudo-inverses of A and W: M = A⁺ B W⁺, the least-squares solution.
+/// By how much noise of the readings may grow on its way to an element, relative to the largest singular value of the
+/// readings as functions of the elements: beyond, the element counts as not determined.
+inline constexpr double most_amplified = 1e4;
+
+/// Readings to matrices: the least-squares solution of B_j = a_j · M w_j, all readings with the same weight. For a grid
+/// of states it is M = A⁺ B W⁺. Which elements the readings determine is a matter of their states: what they do not
+/// determine is unknown, not zero.
 class Reduction {
  public:
   /// `covariance` is that of the instrument: of the components of w_1, w_2, …, a_1, a_2, …, row-major; none if it is
-  /// not known, or exact. Throws std::invalid_argument for states that are not finite, fewer than four independent
-  /// ones, more than most_states, a covariance of another size, or one that is not symmetric and positive semidefinite (covariance_tolerance).
+  /// not known, or exact. Throws std::invalid_argument for states that are not finite, pairs of states that are not
+  /// there, no states or more than most_states, a covariance of another size, or one that is not symmetric and positive
+  /// semidefinite (covariance_tolerance).
   explicit Reduction(const Polarimeter& polarimeter, std::span<const double> covariance = {});
 
-  /// Throws std::invalid_argument for another number of readings than the instrument has, or one that is not finite.
+  /// What the readings do not determine: elements that have a part in the null space of their matrix, or nearly so
+  /// (most_amplified).
+  const Elements& undetermined() const;
+  /// How many independent combinations of the sixteen elements they determine.
+  int rank() const;
+  /// Ratio of the largest singular value to the smallest of these: the product of the two arms' numbers for a grid.
+  double condition() const;
+
+  /// Elements that are not determined are NaN. Throws std::invalid_argument for another number of readings than the
+  /// instrument has, or one that is not finite.
   Mueller mueller(std::span<const double> readings) const;
 
-  /// Of the sixteen elements, from independent readings with these variances. Throws as mueller(), and for a negative
-  /// variance.
+  /// Of the sixteen elements, from independent readings with these variances; NaN for those that are not determined.
+  /// Throws as mueller(), and for a negative variance.
   MuellerCovariance from_readings(std::span<const double> variances) const;
 
   /// Of the sixteen elements, from the instrument: the same errors in every matrix that it measures. 0 if the
-  /// covariance is not given. dM = −A⁺ dA M − M dW W⁺.
+  /// covariance is not given, NaN for elements that are not determined. dM is minus the solution for readings
+  /// da_j · M w_j + a_j · M dw_j; unknown elements of M count as 0 in it.
   MuellerCovariance from_instrument(const Mueller& m) const;
 
   /// What independent errors of the instrument, each of one standard deviation, do to a matrix that it measures: one
@@ -38,8 +55,8 @@ class Reduction {
   std::vector<double> slopes(const Mueller& m) const;
 
  private:
-  struct Inverses;
-  std::shared_ptr<const Inverses> inverses_;
+  struct Solution;
+  std::shared_ptr<const Solution> solution_;
 };
 
 }  // namespace mmbrdf
