@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarimetry/goniometer.hpp"
+#include "mmbrdf/polarimetry/reduction.hpp"
 
 #include <gtest/gtest.h>
 
