@@ -22,6 +22,14 @@ namespace {
 
 DatasetPointer pointer(std::vector<Sample> samples) { return std::make_shared<Dataset>(std::move(samples)); }
 
+/// Some of the samples of a dataset, of the same origin.
+DatasetPointer of_same(const Dataset& data, std::vector<Sample> samples) {
+  DatasetPointer result = pointer(std::move(samples));
+  result->read_as = data.read_as;
+  result->reduction = data.reduction;
+  return result;
+}
+
 /// mueller as measured (sr⁻¹) in a frame → f11 and normalised elements in the xy frame. Uncertainties are of those.
 DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, const Given& phi_i, const Given& theta_r,
                            const Given& phi_r, const Given& mueller, const std::string& frame_name,
@@ -88,7 +96,7 @@ DatasetPointer chosen(const Dataset& data, const py::object& which) {
   std::vector<Sample> samples;
   for (py::ssize_t i = 0; i < kept.size(); ++i)
     samples.push_back(data.samples[static_cast<std::size_t>(kept.data()[i])]);
-  return pointer(std::move(samples));
+  return of_same(data, std::move(samples));
 }
 
 py::tuple wavelengths_nm(const Dataset& data) {
@@ -117,6 +125,7 @@ DatasetPointer samples_of(const std::filesystem::path& path, const ColumnNames& 
     for (Sample sample; reader.next(sample);) samples.push_back(sample);
     DatasetPointer data = pointer(std::move(samples));
     data->read_as = reader.understood();
+    data->reduction = reader.reduction();
     return data;
   });
 }
@@ -215,6 +224,9 @@ void bind_class(py::module_& m) {
       .def_property_readonly(
           "read_as", [](const Dataset& d) { return d.read_as; },
           "What of the table that it was read from is not as in the project's own, in words")
+      .def_property_readonly(
+          "reduction", [](const Dataset& d) { return d.reduction; },
+          "From which readings the samples were made, and how, if that is known: reduce(), and files of it")
       .def_property_readonly("wavelengths_nm", wavelengths_nm, "The distinct wavelengths, rising")
       .def_property_readonly(
           "geometry",
@@ -227,7 +239,7 @@ void bind_class(py::module_& m) {
       .def(
           "at_wavelengths",
           [](const Dataset& d, const Given& nm) {
-            return pointer(at_wavelengths(d.samples, micrometres(numbers("wavelength_nm", nm))));
+            return of_same(d, at_wavelengths(d.samples, micrometres(numbers("wavelength_nm", nm))));
           },
           py::arg("wavelength_nm"), "Only the samples at these. Raises ValueError if there are none at one of them.")
       .def(
@@ -235,7 +247,7 @@ void bind_class(py::module_& m) {
           [](const Dataset& d, const std::filesystem::path& path) {
             if (d.samples.empty()) throw std::invalid_argument("a dataset without samples cannot be saved");
             require_place(path);
-            write_samples(path, d.samples);
+            write_samples(path, d.samples, d.reduction);
           },
           py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
       .def(py::pickle([](const Dataset& d) { return bits<Sample>("Dataset", d.samples); }, &unpickled));
@@ -304,7 +316,11 @@ py::object geometry_object(const Geometry& g) {
                 degrees(g.reflected.phi));
 }
 
-py::object dataset_object(std::vector<Sample> samples) { return py::cast(pointer(std::move(samples))); }
+py::object dataset_object(std::vector<Sample> samples, const std::string& reduction) {
+  const DatasetPointer data = pointer(std::move(samples));
+  data->reduction = reduction;
+  return py::cast(data);
+}
 
 void bind_dataset(py::module_& m) {
   bind_class(m);

@@ -15,12 +15,13 @@ namespace mmbrdf::python {
 struct Dataset : std::enable_shared_from_this<Dataset> {
   explicit Dataset(std::vector<Sample> its_samples) : samples(std::move(its_samples)) {}
   std::vector<Sample> samples;
-  std::string read_as = {};  ///< what of the table was not as in the project's own
+  std::string read_as = {};    ///< what of the table was not as in the project's own
+  std::string reduction = {};  ///< from which readings they were made, and how, if that is known
 };
 using DatasetPointer = std::shared_ptr<Dataset>;
 
 /// The Python object Dataset of these samples.
-py::object dataset_object(std::vector<Sample> samples);
+py::object dataset_object(std::vector<Sample> samples, const std::string& reduction = "");
 
 /// From four arrays that broadcast: theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg.
 std::vector<Geometry> geometries_from(const py::sequence& angles);

@@ -30,10 +30,12 @@ struct Request {
 };
 
 /// Says from what and how the model was made.
-void sign(FitResult& result, const Request& request, std::size_t rows) {
+void sign(FitResult& result, const Request& request, std::size_t rows, const Dataset* data) {
   Model& model = result.model;
   model.name = request.name;
   model.provenance["rows"] = std::to_string(rows);
+  if (data && !data->read_as.empty()) model.provenance["table"] = data->read_as;
+  if (data && !data->reduction.empty()) model.provenance["reduction"] = data->reduction;
   model.provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
   model.provenance["weights"] = to_string(request.weights);
   model.provenance["uncertainty"] = to_string(model.posterior ? Uncertainty::sample : Uncertainty::noise);
@@ -48,8 +50,8 @@ void sign(FitResult& result, const Request& request, std::size_t rows) {
 }
 
 /// As Python holds it.
-FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows) {
-  sign(result, request, rows);
+FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows, const Dataset* data = nullptr) {
+  sign(result, request, rows, data);
   auto model = std::make_shared<ModelObject>(result.model);
   return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
 }
@@ -73,7 +75,7 @@ FittedPointer fitted(const Dataset& data, const Request& request) {
   return without_gil([&] {
     FitResult result = fit(data.samples, request.basis, request.options, request.weights);
     if (request.instrument) add_instrument(result, data.samples, *request.instrument, request.instrument->name);
-    return signed_result(std::move(result), request, data.samples.size());
+    return signed_result(std::move(result), request, data.samples.size(), &data);
   });
 }
 

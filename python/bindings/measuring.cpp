@@ -259,7 +259,9 @@ void bind_files(py::module_& m) {
         std::vector<Sample> samples =
             without_gil([&] { return reduced_file(path, p, wavelength, solid_angle, law, saturation); });
         heed(judged(samples), path.filename().string());
-        return dataset_object(std::move(samples));
+        const std::string by = calibrated ? (*calibrated)->name : "an ideal instrument";
+        return dataset_object(std::move(samples),
+                              reduction_text(path.filename().string(), by, solid_angle, law, saturation));
       },
       py::arg("raw"), py::arg("instrument"), py::kw_only(), py::arg("solid_angle"),
       py::arg("noise") = Noise{{"relative", 1e-3}}, py::arg("saturation") = never_saturated,

@@ -92,7 +92,10 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
   while (header.empty() && read_line()) {
     const std::string_view content = trimmed(text_);
     if (content.empty()) continue;
-    (content.front() == '#' || content.front() == '%' ? comment : header) = content;
+    const bool is_comment = content.front() == '#' || content.front() == '%';
+    (is_comment ? comment : header) = content;
+    constexpr std::size_t most_remarks = 100;
+    if (is_comment && remarks_.size() < most_remarks) remarks_.push_back(without_comment_marks(comment));
   }
   if (header.empty()) throw std::runtime_error(name_ + ": empty file, without a header line");
   const long header_line = line_number_;
@@ -183,6 +186,13 @@ CsvReader::CsvReader(std::istream& in, const CsvReader& whole, long lines_before
       line_number_(lines_before),
       columns_(whole.columns_),
       keys_(whole.keys_) {}
+
+std::string CsvReader::remark(std::string_view name) const {
+  for (const std::string& remark : remarks_)
+    if (remark.size() > name.size() && remark.starts_with(name) && remark[name.size()] == ':')
+      return std::string(trimmed(std::string_view(remark).substr(name.size() + 1)));
+  return "";
+}
 
 std::runtime_error CsvReader::error(const std::string& text) const {
   return std::runtime_error(name_ + ":" + std::to_string(line_number_) + ": " + text);

@@ -324,6 +324,18 @@ void write_raw(std::ostream& out, const ReadStates& states, std::span<const RawM
   }
 }
 
+std::string reduction_text(const std::string& readings, const std::string& instrument, double solid_angle,
+                           const ReadingNoise& noise, double saturation) {
+  constexpr std::size_t longest_name = 200;
+  std::string law;
+  for (const auto& [name, value] : {std::pair("dark", noise.dark), {"shot", noise.shot}, {"relative", noise.relative}})
+    if (value > 0) law += (law.empty() ? "" : ",") + std::string(name) + ":" + shortest(value);
+  std::string text = printable(readings, longest_name) + " by " + printable(instrument, longest_name) +
+                     ", solid angle " + shortest(solid_angle) + " sr, noise " + (law.empty() ? "none" : law);
+  if (saturation < never_saturated) text += ", saturation " + shortest(saturation);
+  return text;
+}
+
 void write_raw(const std::string& path, const ReadStates& states, std::span<const RawMeasurement> measurements) {
   write_file(path, [&](std::ostream& out) { write_raw(out, states, measurements); });
 }

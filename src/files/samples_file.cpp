@@ -156,17 +156,20 @@ std::vector<Sample> read_samples(const std::string& path, const SampleTable& tab
   return read_samples(in, path, table);
 }
 
-void write_samples(const std::string& path, std::span<const Sample> samples) {
+void write_samples(const std::string& path, std::span<const Sample> samples, const std::string& reduction) {
   require_valid(samples);
-  write_file(path, [&](std::ostream& out) { write_samples(out, samples); });
+  write_file(path, [&](std::ostream& out) { write_samples(out, samples, reduction); });
 }
 
-void write_samples(std::ostream& out, std::span<const Sample> samples) {
+void write_samples(std::ostream& out, std::span<const Sample> samples, const std::string& reduction) {
   require_valid(samples);
+  if (std::ranges::any_of(reduction, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+    throw std::invalid_argument("the text on the reduction has a line end or another control character");
   const bool with_uncertainties = have_uncertainties(samples);
   Elements never = samples.empty() ? Elements{} : not_measured(samples);
   never.reset(0);  // a file needs the column of f11
   const bool x_rays = std::ranges::any_of(samples, [](const Sample& s) { return s.wavelength < 0.01; });
+  if (!reduction.empty()) out << "# reduction: " << reduction << '\n';
   out << (x_rays ? "wavelength_um" : "wavelength_nm") << ",theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
   for (const char* prefix : {"", "u_"})
     for (std::size_t e = 0; e < 16 && (*prefix == 0 || with_uncertainties); ++e)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/files/instrument_file.hpp"
 #include "mmbrdf/files/readings_file.hpp"
+#include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/polarimetry/measurement.hpp"
 
 #include <gtest/gtest.h>
@@ -321,6 +322,26 @@ TEST(Readings, ThatAreNoneAreNotReduced) {
   RawMeasurement short_one = raw;
   short_one.readings.pop_back();
   EXPECT_EQ(message_of([&] { reduced(reduction, short_one, 2e-4, {}); }), "15 readings, the instrument has 16");
+}
+
+TEST(Readings, AreNamedInTheFileOfTheirSamples) {
+  const std::string text =
+      reduction_text("raw\n1.csv", "i.json", 1.114e-4, {.dark = 1e-7, .shot = 0, .relative = 1e-3}, 5);
+  EXPECT_EQ(text, "raw\\x0a1.csv by i.json, solid angle 0.0001114 sr, noise dark:1e-07,relative:0.001, saturation 5");
+  EXPECT_EQ(reduction_text("-", "x", 1, {}), "- by x, solid angle 1 sr, noise none");
+  const std::vector<Sample> samples{{0.532, {{0.5, 0.1}, {0.7, 2}}, 0.3, identity()}};
+  std::stringstream file;
+  write_samples(file, samples, text);
+  SampleReader reader(file, "data.csv");
+  EXPECT_EQ(reader.reduction(), text);
+  Sample back;
+  ASSERT_TRUE(reader.next(back));
+  EXPECT_EQ(back.f11, 0.3);
+  EXPECT_EQ(reader.understood(), "");
+  std::stringstream plain;
+  write_samples(plain, samples);
+  EXPECT_EQ(SampleReader(plain, "data.csv").reduction(), "");
+  EXPECT_THROW(write_samples(plain, samples, "two\nlines"), std::invalid_argument);
 }
 
 TEST(Readings, OfAnotherNumberThanTheStatesAreNotWritten) {

@@ -109,6 +109,12 @@ def test_two_turning_retarders_are_calibrated_from_air(tmp_path):
     assert again.retarders == pytest.approx(values, rel=1e-12)
     data = mmbrdf.reduce(tmp_path / "raw.csv", again, solid_angle=goniometer.solid_angle)
     assert len(data) == 20
+    assert data.reduction == "raw.csv by instrument.json, solid angle 0.0001114 sr, noise relative:0.001"
+    data.save(tmp_path / "data.csv")
+    kept = mmbrdf.read_samples(tmp_path / "data.csv")
+    assert kept.reduction == kept[:5].reduction == data.reduction
+    model = mmbrdf.fit(kept, orders=(1, 1), uncertainty="noise").model
+    assert model.provenance["reduction"] == data.reduction
     truth = mmbrdf.material("ptfe-532").evaluate(
         532, data.theta_i_deg, data.phi_i_deg, data.theta_r_deg, data.phi_r_deg
     )

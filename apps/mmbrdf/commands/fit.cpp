@@ -59,12 +59,13 @@ void require_valid(const Options& options) {
 }
 
 /// Says who made the model, from what and how.
-void sign(Model& model, const Options& options, long rows, const std::string& understood, const CommandLine& line) {
+void sign(Model& model, const Options& options, long rows, const SaidOfTable& said, const CommandLine& line) {
   const std::filesystem::path origin = options.output.empty() ? options.data : options.output;
   model.name = options.name.empty() ? origin.stem().string() : options.name;
   model.provenance["data"] = data_name(options.data);
   model.provenance["rows"] = std::to_string(rows);
-  if (!understood.empty()) model.provenance["table"] = understood;
+  if (!said.understood.empty()) model.provenance["table"] = said.understood;
+  if (!said.reduction.empty()) model.provenance["reduction"] = said.reduction;
   model.provenance["command"] = line.text({options.data, options.output, options.instrument});
   model.provenance["software"] = software();
   model.provenance["weights"] = to_string(weights(options));
@@ -149,18 +150,17 @@ class Spread {
   std::size_t seen_ = 0, stride_ = 1;
 };
 
-FitResult fitted(const Options& options, long& rows, Spread& some, std::string& understood) {
+FitResult fitted(const Options& options, long& rows, Spread& some, SaidOfTable& said) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
-  understood =
-      read_samples_at(options.data, options.wavelengths_nm, options.table, [&](std::span<const Sample> samples) {
-        rows += static_cast<long>(samples.size());
-        some.add(samples);
-        if (streams(options))
-          accumulator.add(samples);
-        else
-          all.insert(all.end(), samples.begin(), samples.end());
-      });
+  said = read_samples_at(options.data, options.wavelengths_nm, options.table, [&](std::span<const Sample> samples) {
+    rows += static_cast<long>(samples.size());
+    some.add(samples);
+    if (streams(options))
+      accumulator.add(samples);
+    else
+      all.insert(all.end(), samples.begin(), samples.end());
+  });
   try {
     if (streams(options)) return accumulator.solve(options.fit);
     FitOptions chosen = options.fit;
@@ -184,9 +184,9 @@ void fit_data(const Options& options, const CommandLine& line) {
   require_valid(options);
   long rows = 0;
   Spread some;
-  std::string understood;
-  FitResult result = fitted(options, rows, some, understood);
-  sign(result.model, options, rows, understood, line);
+  SaidOfTable said;
+  FitResult result = fitted(options, rows, some, said);
+  sign(result.model, options, rows, said, line);
   record_noise(result.model, result);
   save_or_warn(result.model, options);
   print({.data = data_name(options.data),

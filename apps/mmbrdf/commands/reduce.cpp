@@ -117,6 +117,12 @@ void check_possible(const std::vector<Sample>& samples, const Options& options) 
   heed(verdict, data_name(options.raw));
 }
 
+/// For the file of the samples: from what, by what and how.
+std::string reduction_text(const Options& options) {
+  const std::string by = options.instrument.empty() ? "an ideal instrument" : base_name(options.instrument);
+  return mmbrdf::reduction_text(data_name(options.raw), by, *options.solid_angle, options.noise, options.saturation);
+}
+
 void reduce(const Options& options) {
   require_kept(options.raw, options.output, "readings");
   if (options.instrument.empty() && !options.states && !options.retarders)
@@ -124,7 +130,7 @@ void reduce(const Options& options) {
   if (!options.instrument.empty()) require_kept(options.instrument, options.output, "instrument");
   const std::vector<Sample> samples = reduced_file(reading_of(options), options);
   check_possible(samples, options);
-  write_output(options.output, [&](std::ostream& out) { write_samples(out, samples); });
+  write_output(options.output, [&](std::ostream& out) { write_samples(out, samples, reduction_text(options)); });
 }
 
 constexpr const char* footer =

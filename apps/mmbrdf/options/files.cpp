@@ -93,14 +93,14 @@ bool is_samples(const std::string& name) {
 
 std::string data_name(const std::string& path) { return path == "-" ? "standard input" : base_name(path); }
 
-std::string read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+SaidOfTable read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
                             const SampleTable& table, const std::function<void(std::span<const Sample>)>& use) {
   constexpr std::size_t some =
       8192;  // the published data come in one piece, so that their wavelengths are folded together
   const std::vector<double> wanted = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
   std::set<double> there;
   std::vector<Sample> samples;
-  std::string understood;
+  SaidOfTable said;
   read_input(path, [&](std::istream& in, const std::string& name) {
     SampleReader reader(in, name, table);
     for (Sample sample; reader.next(sample);) {
@@ -112,7 +112,7 @@ std::string read_samples_at(const std::string& path, const std::optional<std::ve
         samples.clear();
       }
     }
-    understood = reader.understood();
+    said = {reader.understood(), reader.reduction()};
   });
   use(samples);
   for (const double wavelength : wanted) {
@@ -122,8 +122,8 @@ std::string read_samples_at(const std::string& path, const std::optional<std::ve
                                nanometre_list(wanted));
     }
   }
-  if (!understood.empty()) note(data_name(path) + ": " + understood);
-  return understood;
+  if (!said.understood.empty()) note(data_name(path) + ": " + said.understood);
+  return said;
 }
 
 std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,

@@ -32,9 +32,15 @@ void read_input(const std::string& path, const std::function<void(std::istream&,
 /// What a data file is called in messages and provenance: the last part of its path, or "standard input" for "-".
 std::string data_name(const std::string& path);
 
-/// Hands over the samples of these wavelengths (nm; none given: of all), a few thousand at a time. Returns what of the
-/// table is not as in the project's own, after a note of it. Throws std::runtime_error if there are none at one of them.
-std::string read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+/// Of a table of samples, for the provenance of models.
+struct SaidOfTable {
+  std::string understood;  ///< what is not as in the project's own
+  std::string reduction;   ///< from which readings, and how, if the table says it
+};
+
+/// Hands over the samples of these wavelengths (nm; none given: of all), a few thousand at a time. Returns what the table
+/// says, after a note of what is not as in the project's own. Throws std::runtime_error if there are none at one of them.
+SaidOfTable read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
                             const SampleTable& table, const std::function<void(std::span<const Sample>)>& use);
 
 /// The same, in memory.

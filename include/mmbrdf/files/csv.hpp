@@ -72,6 +72,9 @@ class CsvReader {
   int find(std::span<const std::string_view> names) const;
   int find(std::string_view name) const { return find(std::span(&name, 1)); }
 
+  /// What is behind "# NAME: " in a line above the header; empty if none is there.
+  std::string remark(std::string_view name) const;
+
   /// How it is written.
   const TableLayout& layout() const { return layout_; }
 
@@ -111,6 +114,7 @@ class CsvReader {
   std::string_view text_;
   long line_number_ = 0;
   char remark_ = 0;
+  std::vector<std::string> remarks_;  ///< lines above the header, without their marks
   std::vector<std::string> columns_, keys_;
   std::vector<std::string_view> fields_;
   mutable TableLayout layout_;  // the decimal mark is that of the first number that has one

@@ -79,4 +79,9 @@ class RawReader {
 void write_raw(const std::string& path, const ReadStates& states, std::span<const RawMeasurement> measurements);
 void write_raw(std::ostream& out, const ReadStates& states, std::span<const RawMeasurement> measurements);
 
+/// What files of samples and models keep of a reduction (write_samples()): of which readings, by which instrument, and how.
+/// Names are made printable.
+std::string reduction_text(const std::string& readings, const std::string& instrument, double solid_angle,
+                           const ReadingNoise& noise, double saturation = never_saturated);
+
 }  // namespace mmbrdf

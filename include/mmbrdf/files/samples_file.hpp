@@ -48,6 +48,9 @@ class SampleReader {
   /// say.
   std::string understood() const;
 
+  /// From which readings the samples were made, and how, if the file says it above its header: "# reduction: …".
+  std::string reduction() const { return reader_.remark("reduction"); }
+
  private:
   bool complete() const;
 
@@ -76,8 +79,9 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name, cons
 /// The project's own columns: wavelength_nm, angles in degrees, f11, m12 … m44, with as many digits as it takes:
 /// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place. Behind them u_f11, u_m12
 /// … u_m44, if the samples have uncertainties. Wavelengths below 10 nm make it wavelength_um, as GeometryColumns ask.
-/// Throws std::invalid_argument for invalid samples, or if only some have uncertainties.
-void write_samples(const std::string& path, std::span<const Sample> samples);
-void write_samples(std::ostream& out, std::span<const Sample> samples);
+/// Above the header "# reduction: " and that text, if there is one. Throws std::invalid_argument for invalid samples, if
+/// only some have uncertainties, and for a text with a line end.
+void write_samples(const std::string& path, std::span<const Sample> samples, const std::string& reduction = "");
+void write_samples(std::ostream& out, std::span<const Sample> samples, const std::string& reduction = "");
 
 }  // namespace mmbrdf
