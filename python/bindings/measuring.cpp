@@ -86,11 +86,13 @@ InstrumentPointer calibrated(const std::filesystem::path& path, const std::optio
   if (film) options.film = film_from(*film);
   if (polarizer_near) options.polarizer_near = radians(*polarizer_near);
   if (!dials.is_none()) {
+    if (!refine || polarizer_near)
+      throw std::invalid_argument(
+          "dials_deg: refine=False and polarizer_near_deg are of instruments whose states stand still");
     options.retarders.emplace();
     options.retarders->dials = dials_from(dials);
     RotatingRetarders& nominal = options.retarders->nominal;
     nominal.generator.retardance = nominal.analyzer.retardance = radians(retardance);
-    nominal.extinction = extinction;
   }
   auto instrument = without_gil([&] {
     const ReferenceFile file = read_references(path, {saturation, options.noise.dark});
@@ -239,7 +241,8 @@ void bind_files(py::module_& m) {
         py::arg("polarizer_near_deg") = py::none(),
         "The instrument that measured the references of a file (docs/formats.md), with its covariance.\n\n"
         "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
-        "dark, shot and relative. With dials_deg (frames, 2) it is one of two turning retarders, of nearly this\n"
+        "dark, shot and relative. With dials_deg (frames, 2), positive from s towards p, it is one of two turning "
+        "retarders, of nearly this\n"
         "retardance, for which empty references are enough. polarizer_near_deg is roughly the polarizer's azimuth at "
         "dial\n"
         "0, needed where there is no wafer. Raises ValueError, saying what is missing, where they do not determine it, "

@@ -92,6 +92,8 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
   while (header.empty() && read_line()) {
     const std::string_view content = trimmed(text_);
     if (content.empty()) continue;
+    if (line_number_ == 1 && content.size() == 5 && (content.starts_with("sep=") || content.starts_with("SEP=")))
+      continue;  // for a spreadsheet
     const bool is_comment = content.front() == '#' || content.front() == '%';
     (is_comment ? comment : header) = content;
     constexpr std::size_t most_remarks = 100;
@@ -221,8 +223,12 @@ bool CsvReader::read_line() {
   text_ = {line_.data(), length};
   if (line_number_ == 1 && text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
   if (text_.ends_with('\r')) text_.remove_suffix(1);
+  if (line_number_ == 1 && (text_.starts_with("\xff\xfe") || text_.starts_with("\xfe\xff")))
+    throw error("text in UTF-16; save it as UTF-8");
   if (const auto control = std::find_if(text_.begin(), text_.end(), is_control); control != text_.end())
-    throw error("the byte " + in_quotes(std::string_view(&*control, 1)) + ": not a text file, but a binary one");
+    throw error(*control == '\r'
+                    ? std::string("lines that end in CR alone; save it with LF or CR LF")
+                    : "the byte " + in_quotes(std::string_view(&*control, 1)) + ": not a text file, but a binary one");
   return true;
 }
 

@@ -299,6 +299,8 @@ Calibration calibration_from_json(std::string_view text, const std::string& name
 
 std::string to_json(const Calibration& calibration) {
   if (!(calibration.wavelength > 0)) throw std::invalid_argument("the wavelength must be positive");
+  if (!calibration.polarimeter.pairs.empty() && !calibration.retarders)
+    throw std::invalid_argument("an instrument file has pairs of states of turning retarders only");
   Reduction(calibration.polarimeter, calibration.covariance);  // throws for what could not be used
   const ordered_json root = calibration_json(calibration);
   require_finite(root, "a number");

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <ostream>
+#include <set>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -251,13 +252,15 @@ struct RawReader::State {
   GeometryColumns geometry;
   ReadingColumns columns;
   ReadStates states;
+  std::vector<StatePair> all;
+  std::set<long> incomplete;  ///< numbers of measurements that have not all pairs
   bool begun = false, waiting = false;
   RawMeasurement row;  ///< wavelength and geometry of the row
   Reading reading;
   long last_line = 0;
 
-  State(std::istream& in, const std::string& file, const ReadStates& all, const ReadingLimits& limits)
-      : name(file), reader(in, file), geometry(reader), columns(reader, limits), states(all) {}
+  State(std::istream& in, const std::string& file, const ReadStates& read, const ReadingLimits& limits)
+      : name(file), reader(in, file), geometry(reader), columns(reader, limits), states(read), all(pairs_of(read)) {}
 
   void read_row() {
     waiting = reader.next();
@@ -300,7 +303,10 @@ bool RawReader::next(RawMeasurement& measurement) {
   }
   measurement.pairs = collected.pairs();
   measurement.readings = collected.ordered(measurement.pairs, [&](const std::string& text) { return s.error(text); });
-  if (measurement.pairs == pairs_of(s.states)) measurement.pairs.clear();
+  if (measurement.pairs == s.all)
+    measurement.pairs.clear();
+  else if (!s.incomplete.insert(number).second)
+    throw s.error(Collected::of(number) + "began further up: its rows must be adjacent");
   return true;
 }
 

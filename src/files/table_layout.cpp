@@ -89,6 +89,11 @@ std::string column_key(std::string_view name, bool upper_case) {
 }
 
 std::optional<std::string> plain_number(std::string_view field) {
+  constexpr std::string_view minus = "\u2212";  // as text processors write it
+  if (field.starts_with(minus)) {
+    const std::string positive(field.substr(minus.size()));
+    return "-" + plain_number(positive).value_or(positive);
+  }
   const std::size_t first = field.find_first_of(",dD");
   if (first == std::string_view::npos) return std::nullopt;
   std::string plain(field);

@@ -22,7 +22,7 @@ bool split(std::string_view line, char separator, std::vector<std::string_view>&
 /// the published f_r12/f_r11.
 std::string column_key(std::string_view name, bool upper_case);
 
-/// A number without what only others write: D for E in exponents, ',' for '.'. Nothing if it has none of these.
+/// A number without what only others write: D for E in exponents, ',' for '.', the minus sign of typeset text. Nothing if it has none of these.
 std::optional<std::string> plain_number(std::string_view field);
 
 }  // namespace mmbrdf

@@ -45,9 +45,11 @@ constexpr std::array<const char*, 4> kind_names{"empty", "polarizer", "wafer", "
 
 void require_valid(const CalibrationOptions& options) {
   if (options.retarders) polarimeter(options.retarders->nominal, options.retarders->dials);
+  if (options.polarizer_near && !std::isfinite(*options.polarizer_near))
+    throw std::invalid_argument("the polarizer's rough azimuth is not finite");
   for (const auto& [arm, states] :
        {std::pair("generator", options.generator_states), {"analyzer", options.analyzer_states}})
-    if (states < 4 || states > most_states)
+    if (!options.retarders && (states < 4 || states > most_states))
       throw std::invalid_argument(std::to_string(states) + " states of the " + arm +
                                   (states < 4 ? ", four are needed" : ", more than " + std::to_string(most_states)));
   if (options.dial_sense != 1 && options.dial_sense != -1)
@@ -71,7 +73,7 @@ void require_valid(const Reference& reference, std::size_t number, const Calibra
   if (reference.kind != ReferenceKind::wafer) return;
   if (!(reference.angle >= 0 && reference.angle < std::numbers::pi / 2))
     throw std::invalid_argument(which + "an angle of incidence of " + shortest(degrees(reference.angle)) + " degrees");
-  if (!options.retarders && !options.film && (reference.s_exceeds_p == 0 || reference.delta_sign == 0))
+  if (!options.film && (reference.s_exceeds_p == 0 || reference.delta_sign == 0))
     throw std::invalid_argument(
         which + "a wafer without signs: give a film, or state whether s exceeds p and the sign of delta");
 }

@@ -16,7 +16,8 @@ FittedReference fitted(const Unknowns& unknowns, std::span<const Reference> refe
   result.kind = reference.kind;
   result.angle = reference.angle;
   result.expected = normalized(reference_matrix(unknowns, references, i, options));
-  result.measured = normalized(measured);
+  result.measured = measured;
+  if (!std::isnan(measured(0, 0))) result.measured = normalized(measured);
   if (reference.kind == ReferenceKind::empty) result.gain = unknowns.gains[i];
   if (reference.kind == ReferenceKind::wafer) {
     result.element = element_of(result.expected);

@@ -7,6 +7,7 @@
 
 #include "mmbrdf/polarimetry/reduction.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
+#include "polarimetry/wafer_signs.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -56,13 +57,24 @@ void judge_pairs(Verdict& verdict, const Calibration& calibration) {
                              ": noise of the readings grows by it");
 }
 
+/// Ten numbers are all that such an instrument is thought to be.
+void judge_misfit(Verdict& verdict, const Calibration& calibration) {
+  if (!calibration.retarders || calibration.degrees_of_freedom == 0 || !verdict.refusal.empty()) return;
+  const double ratio = calibration.chi_squared / static_cast<double>(calibration.degrees_of_freedom);
+  if (ratio > doubtful_misfit)
+    verdict.doubts.push_back("chi^2/dof is " + rounded(ratio, 3) + ", more than " + shortest(doubtful_misfit) +
+                             ": is the noise of the readings larger than it was said to be, or the instrument not what "
+                             "its ten numbers describe: depolarization, background light, another ratio or step?");
+}
+
 /// Fast and slow axes of both retarders exchanged explain air as well: the choice was the nearer to the nominal azimuths.
-void judge_axes(Verdict& verdict, const Calibration& calibration, const std::optional<RetarderOptions>& given) {
-  if (!calibration.retarders || !given || !verdict.refusal.empty()) return;
-  const bool told = std::any_of(calibration.references.begin(), calibration.references.end(), [](const auto& r) {
-    return r.kind == ReferenceKind::wafer || r.kind == ReferenceKind::retarder;
+void judge_axes(Verdict& verdict, const Calibration& c, const std::optional<RetarderOptions>& given) {
+  if (!c.retarders || !given || !verdict.refusal.empty()) return;
+  const bool told = std::any_of(c.references.begin(), c.references.end(), [](const auto& r) {
+    return r.kind == ReferenceKind::wafer ||
+           (r.kind == ReferenceKind::retarder && std::abs(std::sin(r.element.delta)) > calibration::clear_sign);
   });
-  const RotatingRetarders &found = calibration.retarders->values, &nominal = given->nominal;
+  const RotatingRetarders &found = c.retarders->values, &nominal = given->nominal;
   const double off = std::max(std::abs(found.generator.offset - nominal.generator.offset),
                               std::abs(found.analyzer.offset - nominal.analyzer.offset));
   if (!told && off > doubtful_offset)
@@ -80,6 +92,7 @@ Verdict judged(const Calibration& calibration, const std::optional<Film>& film,
   judge_condition(verdict, "analyzer", calibration.analyzer_condition);
   judge_merit(verdict, calibration.figure_of_merit.total);
   judge_pairs(verdict, calibration);
+  judge_misfit(verdict, calibration);
   judge_axes(verdict, calibration, retarders);
   if (film && !calibration.retarders) judge_thickness(verdict, calibration.film_thickness, film->thickness);
   return verdict;

@@ -46,7 +46,7 @@ std::string missing_of_grid(std::span<const StatePair> pairs) {
   for (const std::size_t a : analyzer)
     for (const std::size_t g : generator)
       if (std::find(pairs.begin(), pairs.end(), StatePair{g, a}) == pairs.end())
-        return ": there is none of " + to_string(StatePair{g, a});
+        return "; there is none of " + to_string(StatePair{g, a});
   return "";
 }
 
@@ -88,7 +88,8 @@ Sample reduced(const Reduction& reduction, const RawMeasurement& measurement, do
   const Mueller m = reduction.mueller(readings);
   if (std::isnan(m(0, 0)))
     throw std::invalid_argument(std::to_string(readings.size()) + " readings of rank " +
-                                std::to_string(reduction.rank()) + " do not determine M11" + missing_of_grid(pairs));
+                                std::to_string(reduction.rank()) +
+                                " do not determine M11: more or other states are needed" + missing_of_grid(pairs));
   Sample result = sample(m, wavelength, geometry, solid_angle);
   std::vector<double> variances;
   for (const double reading : readings) variances.push_back(variance(noise, reading));

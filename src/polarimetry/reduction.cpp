@@ -79,12 +79,16 @@ Inverse of_rows(const Polarimeter& polarimeter) {
   const auto [u, v, s] = dense::thin_svd(h);
   const Index readings = index(polarimeter.readings());
   Inverse result{MatrixXd::Zero(16, readings), {}, 0, 1};
+  // One state that is brighter than the others takes nothing from what these determine.
+  VectorXd norms = h.topRows(readings).rowwise().norm();
+  std::nth_element(norms.begin(), norms.begin() + readings / 2, norms.end());
+  const double typical = std::min(s(0), norms(readings / 2) * std::sqrt(static_cast<double>(readings)));
   VectorXd amplified = VectorXd::Constant(16, 1 / rounding);
   for (Index k = 0; k < s.size() && s(k) > rounding * s(0); ++k) {
     result.matrix += v.col(k) * (u.col(k).head(readings).transpose() / s(k));
-    amplified(k) = s(0) / s(k);
+    amplified(k) = typical / s(k);
     result.rank = static_cast<int>(k) + 1;
-    result.condition = amplified(k);
+    result.condition = s(0) / s(k);
   }
   for (Index e = 0; e < 16; ++e)
     result.undetermined[static_cast<std::size_t>(e)] =
@@ -122,6 +126,8 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
   auto solution = std::make_shared<Solution>();
   solution->polarimeter = polarimeter;
   Inverse inverse = inverse_of(polarimeter);
+  if (!inverse.matrix.allFinite())
+    throw std::invalid_argument("states so large or so small that no finite numbers are left");
   solution->inverse = std::move(inverse.matrix);
   solution->undetermined = inverse.undetermined;
   solution->rank = inverse.rank;

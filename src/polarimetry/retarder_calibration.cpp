@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "mmbrdf/polarimetry/reduction.hpp"
@@ -99,13 +100,47 @@ RetarderState instrument_in_air(const RetarderProblem& problem) {
         best = std::move(x);
         least = misfit;
       }
-  tidy(best.instrument, nominal);
-  RotatingRetarders twin = best.instrument;
+  return best;
+}
+
+/// All empty references in one, their gains taken out.
+Reference mean_of(std::span<const Reference> empty) {
+  Reference result = empty.front();
+  VectorXd shape = VectorXd::Zero(index(result.readings.size()));
+  double sum = 0;
+  for (const Reference& reference : empty) {
+    const Map<const VectorXd> readings(reference.readings.data(), shape.size());
+    shape += readings / readings.sum();
+    sum += readings.sum();
+  }
+  const double count = static_cast<double>(empty.size());
+  for (Index j = 0; j < shape.size(); ++j)
+    result.readings[static_cast<std::size_t>(j)] = sum / count * shape(j) / count;
+  return result;
+}
+
+/// The empty references, with the azimuths that are nearest to the nominal ones.
+RetarderState fitted_to_empty(const RetarderProblem& problem) {
+  const RotatingRetarders& nominal = problem.options.retarders->nominal;
+  const RetarderProblem mean({mean_of(problem.references)}, problem.options);
+  RetarderState x = fitted_to_air(instrument_in_air(mean).instrument, problem);
+  tidy(x.instrument, nominal);
+  RotatingRetarders twin = x.instrument;
   exchange_axes(twin.generator);
   exchange_axes(twin.analyzer);
-  if (distance(twin, nominal) < distance(best.instrument, nominal)) best.instrument = twin;
-  tidy(best.instrument, nominal);
-  return best;
+  tidy(twin, nominal);
+  if (distance(twin, nominal) < distance(x.instrument, nominal)) x.instrument = twin;
+  return x;
+}
+
+/// The instrument in other axes: fast axes for slow ones, which air does not tell, and turned by 90 degrees.
+RotatingRetarders other(RotatingRetarders instrument, bool exchanged, bool turned) {
+  for (RetarderArm* arm : {&instrument.generator, &instrument.analyzer}) {
+    if (exchanged) exchange_axes(*arm);
+    arm->offset += turned ? std::numbers::pi / 2 : 0;
+    arm->polarizer += turned ? std::numbers::pi / 2 : 0;
+  }
+  return instrument;
 }
 
 /// From what the instrument makes of the readings of each reference.
@@ -160,6 +195,8 @@ void require_usable(std::span<const Reference> references, const CalibrationOpti
 
 /// The number whose columns of the Jacobian others nearly make up, if there is one.
 void require_identifiable(const dense::Svd& svd, const RetarderProblem& problem, double identifiability) {
+  if (!std::isfinite(identifiability))
+    throw std::invalid_argument("the refinement leaves no finite numbers: are readings and noise of one scale?");
   if (identifiability > least_identifiability) return;
   Index worst = 0;
   svd.v.col(svd.v.cols() - 1).head(index(problem.free.size())).cwiseAbs().maxCoeff(&worst);
@@ -167,29 +204,6 @@ void require_identifiable(const dense::Svd& svd, const RetarderProblem& problem,
       "the references leave the " + parameter_name(problem.free[static_cast<std::size_t>(worst)]) +
       " open: the smallest singular value of what they determine is " + rounded(identifiability, 2) +
       " of the largest, must be above " + shortest(least_identifiability) + "; add frames or references");
-}
-
-/// Signs that are stated with wafers and retarders, or are those of the film, where the readings show them clearly.
-void require_signs_of(const RetarderState& x, const RetarderProblem& problem) {
-  for (std::size_t i = 0; i < problem.references.size(); ++i) {
-    const Reference& r = problem.references[i];
-    if (unknowns_of(r.kind) != 3) continue;
-    const DiattenuatorRetarder found = element_of(normalized(mueller(x.references.elements[i])));
-    int side = r.s_exceeds_p, sign = r.kind == ReferenceKind::retarder && r.delta_sign == 0 ? 1 : r.delta_sign;
-    if (problem.options.film && r.kind == ReferenceKind::wafer) {
-      const DiattenuatorRetarder film = reflection(*problem.options.film, problem.options.wavelength, r.angle);
-      if (side == 0 && std::abs(std::cos(2 * film.psi)) > 0.2) side = std::cos(2 * film.psi) > 0 ? 1 : -1;
-      if (sign == 0 && std::abs(std::sin(film.delta)) > 0.2) sign = film.delta > 0 ? 1 : -1;
-    }
-    constexpr double clear = 0.05;
-    const std::string which = "reference " + std::to_string(i + 1) + ": ";
-    if (side * std::cos(2 * found.psi) < -clear)
-      throw std::invalid_argument(which + "s_exceeds_p is " + std::to_string(side) +
-                                  ", but its readings say the opposite: is the first polarizer's azimuth right?");
-    if (sign * std::sin(2 * found.psi) * std::sin(found.delta) < -clear)
-      throw std::invalid_argument(which + "the sign of delta is " + std::to_string(sign) +
-                                  ", but its readings say the opposite: are the offsets those of the fast axes?");
-  }
 }
 
 std::vector<double> instrument_covariance(const MatrixXd& half, const RetarderProblem& problem, double variance) {
@@ -246,6 +260,50 @@ FittedReference seen(const RetarderState& x, const RetarderProblem& problem, std
   return result;
 }
 
+/// What the end of a fit says of the instrument.
+Calibration calibration_of(const RetarderState& x, const RetarderProblem& problem) {
+  Calibration result;
+  result.wavelength = problem.options.wavelength;
+  result.retarders = CalibratedRetarders{x.instrument, {problem.dials.begin(), problem.dials.end()}, {}};
+  judge(result, x, problem);
+  result.polarimeter = polarimeter(x.instrument, problem.dials);
+  result.covariance = state_covariance(x.instrument, problem.dials, result.retarders->covariance);
+  set_polarizer(result, x.references);
+  result.generator_condition = condition_number(result.polarimeter.generator);
+  result.analyzer_condition = condition_number(result.polarimeter.analyzer);
+  const Reduction reduction(result.polarimeter);
+  for (std::size_t i = 0; i < problem.references.size(); ++i)
+    result.references.push_back(seen(x, problem, i, reduction));
+  const double correction =
+      std::sqrt(static_cast<double>(problem.readings()) / static_cast<double>(result.degrees_of_freedom));
+  result.figure_of_merit = figure_of_merit(result.references, correction);
+  return result;
+}
+
+/// The first of the instruments that explain air alike which has the signs of the references.
+Calibration with_signs_of(const RetarderState& air, const RetarderProblem& problem) {
+  const bool wafer = std::any_of(problem.references.begin(), problem.references.end(),
+                                 [](const Reference& r) { return r.kind == ReferenceKind::wafer; });
+  std::optional<std::invalid_argument> first;
+  for (const bool turned : {false, true})
+    for (const bool exchanged : {false, true}) {
+      if (turned && !wafer) continue;  // a retarder does not tell
+      RetarderState x = air;
+      x.instrument = other(x.instrument, exchanged, turned);
+      x = with_references(x, problem);
+      minimise(x, problem);
+      tidy(x.instrument, problem.options.retarders->nominal);
+      Calibration result = calibration_of(x, problem);
+      try {
+        require_signs(result, problem.references, problem.options);
+        return result;
+      } catch (const std::invalid_argument& refusal) {
+        if (!first) first = refusal;
+      }
+    }
+  throw *first;
+}
+
 }  // namespace
 
 Calibration calibrate_retarders(std::span<const Reference> references, const CalibrationOptions& options) {
@@ -256,28 +314,9 @@ Calibration calibrate_retarders(std::span<const Reference> references, const Cal
   const RetarderProblem problem(std::move(all), options), problem_in_air(std::move(air), options);
   if (problem_in_air.degrees_of_freedom() < 1)
     throw std::invalid_argument("fewer readings of the empty beam than unknowns: more frames are needed");
-  RetarderState x = instrument_in_air(problem_in_air);
-  if (problem.references.size() > problem_in_air.references.size()) {
-    x = with_references(x, problem);
-    minimise(x, problem);
-    tidy(x.instrument, options.retarders->nominal);
-  }
-  require_signs_of(x, problem);
-  Calibration result;
-  result.wavelength = options.wavelength;
-  result.retarders = CalibratedRetarders{x.instrument, {problem.dials.begin(), problem.dials.end()}, {}};
-  judge(result, x, problem);
-  result.polarimeter = polarimeter(x.instrument, problem.dials);
-  result.covariance = state_covariance(x.instrument, problem.dials, result.retarders->covariance);
-  set_polarizer(result, x.references);
-  result.generator_condition = condition_number(result.polarimeter.generator);
-  result.analyzer_condition = condition_number(result.polarimeter.analyzer);
-  const Reduction reduction(result.polarimeter);
-  for (std::size_t i = 0; i < references.size(); ++i) result.references.push_back(seen(x, problem, i, reduction));
-  const double correction =
-      std::sqrt(static_cast<double>(problem.readings()) / static_cast<double>(result.degrees_of_freedom));
-  result.figure_of_merit = figure_of_merit(result.references, correction);
-  return result;
+  const RetarderState x = fitted_to_empty(problem_in_air);
+  if (problem.references.size() == problem_in_air.references.size()) return calibration_of(x, problem_in_air);
+  return with_signs_of(x, problem);
 }
 
 }  // namespace mmbrdf::calibration

@@ -96,6 +96,7 @@ std::vector<DialAngles> dial_angles(double ratio, double step, std::size_t frame
   for (std::size_t j = 0; j < frames; ++j) {
     const double angle = static_cast<double>(j) * step;
     result.push_back({angle, ratio * angle});
+    if (!std::isfinite(ratio * angle)) throw std::invalid_argument("a step and a ratio that leave no finite angles");
   }
   return result;
 }

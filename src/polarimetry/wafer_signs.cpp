@@ -226,6 +226,7 @@ void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> refer
 }
 
 void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options) {
+  require_signs_of_retarders(calibration.references, references);
   const std::vector<SeenWafer> wafers = seen(calibration.references);
   if (wafers.empty()) return;
   const double merit = calibration.figure_of_merit.total;
@@ -244,6 +245,17 @@ void require_signs(Calibration& calibration, std::span<const Reference> referenc
     if (!is_told[k])
       throw std::invalid_argument(std::string("the wafers leave the instrument open: ") + facts[k].name +
                                   " is lost in the noise at all their angles; add wafer angles");
+}
+
+void require_signs_of_retarders(std::span<const FittedReference> found, std::span<const Reference> references) {
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    if (references[i].kind != ReferenceKind::retarder) continue;
+    const int sign = references[i].delta_sign < 0 ? -1 : 1;
+    const DiattenuatorRetarder& element = found[i].element;
+    if (sign * std::sin(2 * element.psi) * std::sin(element.delta) < -clear_sign)
+      throw std::invalid_argument("reference " + std::to_string(i + 1) + ": " + stated("delta_sign", sign) +
+                                  ", but together with the other references its readings say " + std::to_string(-sign));
+  }
 }
 
 void give_orientation(Unknowns& unknowns, const CalibrationOptions& options) {

@@ -22,6 +22,12 @@ void give_signs(std::vector<SeenWafer>& wafers, std::span<const Reference> refer
 /// the film and of no other instrument. Sets the thickness and misfit of the film.
 void require_signs(Calibration& calibration, std::span<const Reference> references, const CalibrationOptions& options);
 
+/// Of Δ, where sin 2ψ sin Δ is this far from 0: noise and errors of references are not.
+inline constexpr double clear_sign = 0.05;
+
+/// Throws std::invalid_argument for a retarder that was found with the other sign of Δ than is stated, or +1.
+void require_signs_of_retarders(std::span<const FittedReference> found, std::span<const Reference> references);
+
 /// Without wafers the sign of S2, S3 and S4 together is open: retarders leave it as it is. Gives it by the polarizer, whose
 /// azimuth at dial 0 must roughly be known. Throws std::invalid_argument if it is not.
 void give_orientation(Unknowns& unknowns, const CalibrationOptions& options);

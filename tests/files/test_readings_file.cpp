@@ -169,6 +169,11 @@ TEST(Readings, MayBeAnyPairsOfStates) {
   EXPECT_EQ(raw[0].pairs, (std::vector<StatePair>{{0, 0}, {1, 1}}));
   EXPECT_EQ(raw[0].readings, (std::vector<double>{4, 3}));
   EXPECT_EQ(raw[1].pairs, (std::vector<StatePair>{{0, 0}}));
+  EXPECT_TRUE(
+      says(complaint([] {
+             parsed_raw(raw_csv("532,45,0,30,180,1,1,1,3\n532,45,0,40,180,2,1,1,4\n532,45,0,30,180,1,2,2,3\n"), {2, 2});
+           }),
+           {"d.csv:4: measurement 1: began further up"}));
   // Those of the instrument need not be said.
   const ReadStates pairwise{2, 2, {{0, 0}, {1, 1}}};
   const RawMeasurement own = parsed_raw(raw_csv("532,45,0,30,180,1,2,2,3\n532,45,0,30,180,1,1,1,4\n"), pairwise)[0];
@@ -274,8 +279,9 @@ TEST(Readings, ThatDoNotDetermineF11AreRefusedWithWhatIsMissing) {
   for (std::size_t j = 0; j < 16; ++j)
     if (j != 5) most.push_back(polarimeter.pair(j));
   EXPECT_EQ(refusal(most),
-            "15 readings of rank 15 do not determine M11: there is none of generator state 2, analyzer state 2");
-  EXPECT_EQ(refusal({{1, 2}}), "1 readings of rank 1 do not determine M11");
+            "15 readings of rank 15 do not determine M11: more or other states are needed; there is none of generator "
+            "state 2, analyzer state 2");
+  EXPECT_EQ(refusal({{1, 2}}), "1 readings of rank 1 do not determine M11: more or other states are needed");
   EXPECT_EQ(refusal({{1, 2}, {0, 0}, {1, 2}}), "generator state 2, analyzer state 3 is there twice");
   EXPECT_EQ(refusal({{4, 0}}),
             "generator state 5, analyzer state 1: the instrument has 4 generator and 4 analyzer states");

@@ -280,6 +280,16 @@ RC_GTEST_PROP(TablesOfOthers, InAnotherFrameAndConventionAreTheSame, ()) {
   RC_ASSERT(from_frame(sample, Frame::xy).normalized == sample.normalized);
 }
 
+TEST(TablesOfOthers, AreReadWithWhatSpreadsheetsAndTypesettersAdd) {
+  const std::string names = "wavelength_nm;theta_i_deg;phi_i_deg;theta_r_deg;phi_r_deg;f11;m12\n";
+  const Read read_one = read("sep=;\n" + names + "532;45;0;30;180;0,3;\u22120,05\n");
+  EXPECT_EQ(read_one.samples[0].f11, 0.3);
+  EXPECT_EQ(read_one.samples[0].normalized(0, 1), -0.05);
+  EXPECT_EQ(refusal("\xff\xfew\0a\0v\0e\0"), "d.csv:1: text in UTF-16; save it as UTF-8");
+  EXPECT_EQ(refusal("wavelength_nm,theta_i_deg\r532,0\r"),
+            "d.csv:1: lines that end in CR alone; save it with LF or CR LF");
+}
+
 // The four intensities of a matrix in the frame sp (theory 6.1), with an uncertainty that is that of a Monte Carlo draw.
 TEST(TablesOfOthers, HaveBrdfsOfSAndP) {
   const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f_ss,f_sp,f_ps,f_pp";

@@ -298,6 +298,12 @@ TEST(Calibration, WithRetardersAndNoiseIsAsGoodAsItsCovarianceSays) {
   EXPECT_NEAR(std::sqrt(sum / predicted), 1, 0.15);  // 20 instruments, each of a few independent errors
 }
 
+TEST(Calibration, RefusesRetardersWhoseSignsContradictEachOther) {
+  std::vector<Reference> references = with_retarders(Goniometer(quiet(), 2), {80}, 3);
+  references.back().delta_sign = -1;
+  EXPECT_TRUE(says(refusal(references, with_polarizer_near(20)), {"delta_sign is stated as", "its readings say"}));
+}
+
 TEST(Calibration, WithoutAWaferAsksRoughlyHowThePolarizerStands) {
   const std::vector<Reference> references = with_retarders(Goniometer(quiet(), 2), {70}, 3);
   EXPECT_TRUE(says(refusal(references, without_film()),

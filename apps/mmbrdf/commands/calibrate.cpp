@@ -66,6 +66,7 @@ Calibration calibrated(const ReferenceFile& file, CalibrationOptions options, co
 
 void calibrate_instrument(Options options, const CommandLine& line) {
   require_kept(options.references, options.output, "references");
+  if (options.retarders && options.linear) throw WrongUsage("--retarders excludes --linear");
   options.calibration.refine = !options.linear;
   if (options.polarizer_near) options.calibration.polarizer_near = radians(*options.polarizer_near);
   const std::string name = data_name(options.references);
@@ -76,7 +77,6 @@ void calibrate_instrument(Options options, const CommandLine& line) {
   if (options.retarders) {
     require_frames(file.states, name);
     options.calibration.retarders = options.retarders->options(file.states.generator);
-    options.calibration.retarders->nominal.extinction = options.calibration.extinction;
   }
   Calibration result = calibrated(file, options.calibration, name);
   heed(judged(result, options.calibration.film, options.calibration.retarders), name);
@@ -113,8 +113,10 @@ constexpr const char* calibrate_footer =
     "\n"
     "Two turning retarders (--retarders) are read frame by frame, generator state j with analyzer state j. "
     "Retardances,\n"
-    "azimuths of the fast axes and of the second polarizer, diattenuations and the drift of the source are fitted, to\n"
-    "empty references alone or with any others; the first polarizer is at 0 unless a wafer or retarder shows more.\n"
+    "azimuths of the fast axes and of the second polarizer, diattenuations, the extinction of the polarizers and the\n"
+    "drift of the source are fitted, to empty references alone or with any others; the first polarizer is at 0 unless "
+    "a\n"
+    "wafer or retarder shows more. STEP is positive if the retarders turn from s towards p.\n"
     "\n"
     "Condition numbers above 100 and figures of merit above 0.5 are refused, those above 10 and 0.05 get a warning.\n"
     "\n"
@@ -140,13 +142,16 @@ Run calibrate_command(CLI::App& app, const CommandLine& line) {
   add_option(app, "--film", o->calibration.film, film_from, "N,T,NS,KS", "The wafer: its film and substrate");
   add_option(app, "--dial-sense", o->calibration.dial_sense, dial_sense, "SENSE",
              "+1: the polarizer's azimuth grows with its dial; -1: it falls [+1]");
-  add_option(app, "--extinction", o->calibration.extinction, extinction, "E", "Of the polarizer, to start from [0]");
+  add_option(app, "--extinction", o->calibration.extinction, extinction, "E",
+             "Of the reference polarizer, to start from [0]");
   add_flag(app, "--polarizer-phase", o->calibration.fit_polarizer_phase, "Fit the polarizer's phase, too");
-  add_option(app, "--polarizer-at", o->polarizer_near, number, "DEG",
-             "Roughly its azimuth at dial 0: needed if there is no wafer");
-  add_retarders(app, o->retarders,
-                "The instrument is two turning retarders: the\nanalyzer's turns RATIO times as far as the\n"
-                "generator's, which does STEP degrees each state;\nboth have this retardance, nearly [90]");
+  const Option near = add_option(app, "--polarizer-at", o->polarizer_near, number, "DEG",
+                                 "Roughly its azimuth at dial 0: needed if there is no wafer");
+  const Option retarders =
+      add_retarders(app, o->retarders,
+                    "The instrument is two turning retarders: the\nanalyzer's turns RATIO times as far as the\n"
+                    "generator's, which does STEP degrees each state;\nboth have this retardance, nearly [90]");
+  retarders.excludes(near);
   add_flag(app, "--linear", o->linear, "Eigenvalue method alone, without refinement and covariance");
   add_reading_options(app, o->saturation, o->calibration.noise);
   set_footer(app, calibrate_footer);

@@ -81,6 +81,10 @@ void note_pairs(const Reducer& reducer, const Reduction& last, std::size_t readi
   if (last.undetermined().any())
     note(name + ": " + pairs(readings) + ", rank " + std::to_string(last.rank()) + ": not determined, and unknown, " +
          element_names(last.undetermined()));
+  constexpr double doubtful = doubtful_condition * doubtful_condition;
+  if (last.undetermined().none() && last.condition() > doubtful)
+    warn(name + ": the condition number of its " + pairs(readings) + " is " + shortest(std::round(last.condition())) +
+         ", more than " + shortest(doubtful) + ": noise of the readings grows by it");
   if (reducer.sets() > 1)
     note(name + ": its measurements have read " + std::to_string(reducer.sets()) +
          " different sets of pairs of states");

@@ -56,7 +56,8 @@ ReferenceFile read_references(std::istream& in, const std::string& name, const R
 void write_references(const std::string& path, const ReferenceFile& file);
 void write_references(std::ostream& out, const ReferenceFile& file);
 
-/// Measurements of a file one at a time, in constant memory: the rows of one measurement must be adjacent.
+/// Measurements of a file one at a time: the rows of one measurement must be adjacent. Memory is constant, but for the
+/// numbers of measurements that have not all pairs.
 class RawReader {
  public:
   /// Reads the header.

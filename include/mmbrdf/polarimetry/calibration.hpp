@@ -50,12 +50,13 @@ struct RetarderOptions {
   RotatingRetarders nominal;
   std::vector<DialAngles> dials;  ///< of each reading
   bool fit_diattenuation = true;
-  bool fit_extinction = false;  ///< of both polarizers
-  bool fit_drift = true;        ///< of the source, linear over the frames of each reference
+  bool fit_extinction = true;  ///< of both polarizers
+  bool fit_drift = true;       ///< of the source, linear over the frames of each reference
 };
 
 struct CalibrationOptions {
-  /// Given: the instrument is of that kind. The states and dial sense below are then not asked.
+  /// Given: the instrument is of that kind. The numbers of states, what is known of the polarizer's azimuth and whether to
+  /// refine are then not asked.
   std::optional<RetarderOptions> retarders = {};
   std::size_t generator_states = 4;
   std::size_t analyzer_states = 4;
@@ -148,8 +149,9 @@ inline constexpr double least_identifiability = 1e-4;
 
 /// An instrument of two turning retarders is found from empty references alone, or with any others, by maximum likelihood
 /// of its few numbers, from the nominal ones; where that ends in no fit, from a hundred others. Of the two instruments that
-/// explain air alike, with the fast axes of both retarders exchanged for the slow ones, it is the one whose azimuths are
-/// nearer to the nominal ones; signs that are stated with a wafer or retarder, or those of a film, must agree with it.
+/// explain air alike, with the fast axes of both retarders exchanged for the slow ones, it is the one that has the signs
+/// of the wafers and retarders, and without these the one whose azimuths are nearer to the nominal ones. Its condition
+/// numbers are not limited: judged() has them.
 ///
 /// Throws std::invalid_argument, naming the reference by its number from 1, for a wrong number of readings, or one that
 /// is not finite; and, saying what is missing, for references that cannot determine the instrument: no empty one, no

@@ -29,6 +29,10 @@ inline constexpr double doubtful_film_change = film_range / 2;
 /// degrees.
 inline constexpr double doubtful_offset = radians(30);
 
+/// Chi squared over degrees of freedom above which turning retarders are doubtful: of a noise law that is half as large as
+/// the noise.
+inline constexpr double doubtful_misfit = 4;
+
 /// Smallest coherency eigenvalue over f11 below which a matrix cannot be physical: noise seldom gets there.
 inline constexpr double impossible_eigenvalue = -0.05;
 

@@ -12,7 +12,8 @@
 namespace mmbrdf {
 
 /// By how much noise of the readings may grow on its way to an element, relative to the largest singular value of the
-/// readings as functions of the elements: beyond, the element counts as not determined.
+/// readings as functions of the elements, or to that of readings that are all as the median one: beyond, the element
+/// counts as not determined.
 inline constexpr double most_amplified = 1e4;
 
 /// Readings to matrices: the least-squares solution of B_j = a_j · M w_j, all readings with the same weight. For a grid
@@ -22,7 +23,7 @@ class Reduction {
  public:
   /// `covariance` is that of the instrument: of the components of w_1, w_2, …, a_1, a_2, …, row-major; none if it is
   /// not known, or exact. Throws std::invalid_argument for states that are not finite, pairs of states that are not
-  /// there, no states or more than most_states, a covariance of another size, or one that is not symmetric and positive
+  /// there, no states or more than most_states, states so large or small that no finite numbers are left, a covariance of another size, or one that is not symmetric and positive
   /// semidefinite (covariance_tolerance).
   explicit Reduction(const Polarimeter& polarimeter, std::span<const double> covariance = {});
 
