@@ -8,14 +8,16 @@
 
 #include "formats/astm.hpp"
 #include "formats/reader.hpp"
+#include "formats/zemax.hpp"
 #include "mmbrdf/text/input.hpp"
 
 namespace mmbrdf {
 namespace {
 
-/// The first one that a file can be: formats within the same container come before the container.
+/// Told one from another by their first bytes or words, so the order does not matter.
 constexpr std::array formats{
     ForeignFormat{"an ASTM E1392 or E2387 file", is_astm, open_astm},
+    ForeignFormat{"a Zemax tabular BSDF file", is_zemax, open_zemax},
 };
 
 const ForeignFormat* format_of(std::string_view head, std::uint64_t size) {
