@@ -7,17 +7,21 @@
 #include <stdexcept>
 
 #include "formats/astm.hpp"
+#include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
+#include "formats/tensor_file.hpp"
 #include "formats/zemax.hpp"
 #include "mmbrdf/text/input.hpp"
 
 namespace mmbrdf {
 namespace {
 
-/// Told one from another by their first bytes or words, so the order does not matter.
+/// The first one that a file can be: formats within the same container come before the container.
 constexpr std::array formats{
     ForeignFormat{"an ASTM E1392 or E2387 file", is_astm, open_astm},
     ForeignFormat{"a Zemax tabular BSDF file", is_zemax, open_zemax},
+    ForeignFormat{"a Mitsuba .pbsdf file", is_pbsdf, open_pbsdf},
+    ForeignFormat{"a tensor file", is_tensor_file, open_other_tensor},
 };
 
 const ForeignFormat* format_of(std::string_view head, std::uint64_t size) {

@@ -157,7 +157,8 @@ void convert(const Options& options, const CommandLine& line) {
 }
 
 constexpr const char* footer =
-    "IN may also be a measurement in another program's format, told by its content: ASTM E1392 and E2387, Zemax.\n"
+    "IN may also be a measurement in another program's format, told by its content: ASTM E1392 and E2387, Zemax, "
+    ".pbsdf.\n"
     "OUT.csv is then a table of samples, in this project's frame, units and signs; a note says how the file was "
     "understood.\n"
     "\n"
