@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "formats/alta.hpp"
 #include "formats/astm.hpp"
+#include "formats/merl.hpp"
 #include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
 #include "formats/tensor_file.hpp"
@@ -20,6 +22,8 @@ namespace {
 constexpr std::array formats{
     ForeignFormat{"an ASTM E1392 or E2387 file", is_astm, open_astm},
     ForeignFormat{"a Zemax tabular BSDF file", is_zemax, open_zemax},
+    ForeignFormat{"an ALTA text file", is_alta, open_alta},
+    ForeignFormat{"a MERL binary file", is_merl, open_merl},
     ForeignFormat{"a Mitsuba .pbsdf file", is_pbsdf, open_pbsdf},
     ForeignFormat{"a tensor file", is_tensor_file, open_other_tensor},
 };
