@@ -105,10 +105,9 @@ class AltaReader : public ForeignFile::Reader {
     columns_ += input_->coordinates + values;
     wavelengths_ =
         source.told_wavelengths(values, std::to_string(values) + (values == 1 ? " value" : " values") + " a row");
-    understood =
-        std::string(input_->name) + (input_->angles ? " in radians" : ", view before light") +
-        ", f11 in sr^-1 = " + (output_.empty() ? "values, of which the file does not say what they are" : output_) +
-        (cosine_ ? " / cos(theta_r)" : "") + " at " + nanometre_text(wavelengths_) + " as told";
+    understood = std::string(input_->name) + (input_->angles ? " in radians" : ", view before light") +
+                 ", f11 in sr^-1 = " + (output_.empty() ? "the values, since no #PARAM_OUT says another" : output_) +
+                 (cosine_ ? " / cos(theta_r)" : "") + " at " + nanometre_text(wavelengths_) + " as told";
     if (input_->coordinates == 3) understood += "; phi_i = 0";
     if (columns_ > input_->coordinates + values) understood += ", vertical segments not read";
   }
@@ -208,6 +207,7 @@ class AltaReader : public ForeignFile::Reader {
 }  // namespace
 
 bool is_alta(std::string_view head, std::uint64_t) {
+  head = head.substr(0, head.find('\0'));  // the binary form, which is refused, has a header, too
   return has_keyword(head, "#DIM") || has_keyword(head, "#PARAM_IN") || has_keyword(head, "#ALTA");
 }
 

@@ -8,6 +8,7 @@
 
 #include "formats/alta.hpp"
 #include "formats/astm.hpp"
+#include "formats/bird.hpp"
 #include "formats/merl.hpp"
 #include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
@@ -24,6 +25,7 @@ constexpr std::array formats{
     ForeignFormat{"a Zemax tabular BSDF file", is_zemax, open_zemax},
     ForeignFormat{"an ALTA text file", is_alta, open_alta},
     ForeignFormat{"a MERL binary file", is_merl, open_merl},
+    ForeignFormat{"a BiRD JSON file", is_bird, open_bird},
     ForeignFormat{"a Mitsuba .pbsdf file", is_pbsdf, open_pbsdf},
     ForeignFormat{"a tensor file", is_tensor_file, open_other_tensor},
 };

@@ -35,7 +35,7 @@ inline constexpr std::size_t foreign_head = 65536;
 /// The same of a file. Throws std::runtime_error if it cannot be opened.
 std::string foreign_format(const std::string& path);
 
-/// A file in one of these formats, read in memory that does not grow with it.
+/// A file in one of these formats, read in memory that does not grow with it; of JSON alone all is held.
 ///
 /// Constructor and read() throw std::runtime_error for a file that is in no such format, is cut off, has dimensions or
 /// numbers that cannot be, or does not fit to the options; the message is one line with the path, then line, field or
