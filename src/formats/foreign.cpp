@@ -10,6 +10,7 @@
 #include "formats/astm.hpp"
 #include "formats/bird.hpp"
 #include "formats/merl.hpp"
+#include "formats/netcdf.hpp"
 #include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
 #include "formats/tensor_file.hpp"
@@ -26,6 +27,7 @@ constexpr std::array formats{
     ForeignFormat{"an ALTA text file", is_alta, open_alta},
     ForeignFormat{"a MERL binary file", is_merl, open_merl},
     ForeignFormat{"a BiRD JSON file", is_bird, open_bird},
+    ForeignFormat{"a NetCDF file", is_netcdf, open_netcdf},
     ForeignFormat{"a Mitsuba .pbsdf file", is_pbsdf, open_pbsdf},
     ForeignFormat{"a tensor file", is_tensor_file, open_other_tensor},
 };
