@@ -13,6 +13,7 @@
 #include "formats/netcdf.hpp"
 #include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
+#include "formats/rgl.hpp"
 #include "formats/tensor_file.hpp"
 #include "formats/zemax.hpp"
 #include "mmbrdf/text/input.hpp"
@@ -29,6 +30,7 @@ constexpr std::array formats{
     ForeignFormat{"a BiRD JSON file", is_bird, open_bird},
     ForeignFormat{"a NetCDF file", is_netcdf, open_netcdf},
     ForeignFormat{"a Mitsuba .pbsdf file", is_pbsdf, open_pbsdf},
+    ForeignFormat{"an RGL .bsdf file", is_rgl, open_rgl},
     ForeignFormat{"a tensor file", is_tensor_file, open_other_tensor},
 };
 

@@ -9,43 +9,12 @@
 
 #include "given/foreign.hpp"
 #include "given/random_model.hpp"
+#include "given/tensor_file.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
 
 namespace mmbrdf {
 namespace {
-
-struct Field {
-  std::string name;
-  std::uint8_t type;
-  std::vector<std::uint64_t> shape;
-  std::string data;
-};
-
-std::string tensor_file(const std::vector<Field>& fields) {
-  std::string head("tensor_file\0\1\0", 14);
-  append(head, static_cast<std::uint32_t>(fields.size()));
-  std::uint64_t offset = head.size();
-  for (const Field& field : fields) offset += 13 + field.name.size() + 8 * field.shape.size();
-  std::string data;
-  for (const Field& field : fields) {
-    while ((offset + data.size()) % 8 != 0) data += '\0';
-    append(head, static_cast<std::uint16_t>(field.name.size()));
-    head += field.name;
-    append(head, static_cast<std::uint16_t>(field.shape.size()));
-    append(head, field.type);
-    append(head, offset + data.size());
-    for (const std::uint64_t size : field.shape) append(head, size);
-    data += field.data;
-  }
-  return head + data;
-}
-
-std::string singles(const std::vector<double>& values) {
-  std::string bytes;
-  for (const double value : values) append(bytes, static_cast<float>(value));
-  return bytes;
-}
 
 /// Source and detector; the angles are rounded to single precision, as the file has them.
 struct Beams {
@@ -90,7 +59,7 @@ Axes some_axes() {
   return axes;
 }
 
-std::vector<Field> fields(const Model& model, const Axes& axes, const std::vector<std::uint16_t>& nm) {
+std::vector<TensorArray> fields(const Model& model, const Axes& axes, const std::vector<std::uint16_t>& nm) {
   std::vector<double> values;
   for (const double p : axes.phi_d)
     for (const double d : axes.theta_d)
@@ -104,12 +73,13 @@ std::vector<Field> fields(const Model& model, const Axes& axes, const std::vecto
   std::string wavelengths;
   for (const std::uint16_t one : nm) append(wavelengths, one);
   const auto axis = [](const std::string& name, const std::vector<double>& angles) {
-    return Field{name, 10, {1, angles.size()}, singles(angles)};
+    return TensorArray{name, 10, {1, angles.size()}, singles(angles)};
   };
   return {
       axis("phi_d", axes.phi_d), axis("theta_d", axes.theta_d), axis("theta_h", axes.theta_h),
-      Field{"wvls", 3, {nm.size()}, wavelengths},
-      Field{"M", 10, {axes.phi_d.size(), axes.theta_d.size(), axes.theta_h.size(), nm.size(), 4, 4}, singles(values)}};
+      TensorArray{"wvls", 3, {nm.size()}, wavelengths},
+      TensorArray{
+          "M", 10, {axes.phi_d.size(), axes.theta_d.size(), axes.theta_h.size(), nm.size(), 4, 4}, singles(values)}};
 }
 
 /// Elements are stored in single precision, 6e-8 of the largest.
@@ -139,7 +109,7 @@ TEST(Pbsdf, GivesTheMatricesOfTheModelInTheFrameXy) {
 
 TEST(Pbsdf, CountsNodesThatWereNotMeasured) {
   const Folder folder;
-  std::vector<Field> all = fields(material("ptfe-532"), some_axes(), {532});
+  std::vector<TensorArray> all = fields(material("ptfe-532"), some_axes(), {532});
   const float nan = std::nanf("");
   std::memcpy(all[4].data.data() + 64 * 6 + 4, &nan, 4);  // theta_d 8, theta_h 5
   all[4].data.replace(64, 64, std::string(64, '\0'));     // theta_d 0, theta_h 5: zeros
@@ -150,12 +120,12 @@ TEST(Pbsdf, CountsNodesThatWereNotMeasured) {
 TEST(Pbsdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   const Folder folder;
   const std::string path = folder / "x";
-  const std::vector<Field> good = fields(material("ptfe-532"), some_axes(), {532});
+  const std::vector<TensorArray> good = fields(material("ptfe-532"), some_axes(), {532});
   put(path, tensor_file(good));
   expect_refused_where_cut(path);
   EXPECT_TRUE(says(foreign_refusal(path, {0.532}), {"x: says its wavelengths itself: leave out --wavelength 532 nm"}));
-  const auto refusal = [&](const std::function<void(std::vector<Field>&)>& change) {
-    std::vector<Field> changed = good;
+  const auto refusal = [&](const std::function<void(std::vector<TensorArray>&)>& change) {
+    std::vector<TensorArray> changed = good;
     change(changed);
     put(path, tensor_file(changed));
     return foreign_refusal(path);

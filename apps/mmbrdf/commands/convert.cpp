@@ -158,8 +158,9 @@ void convert(const Options& options, const CommandLine& line) {
 
 constexpr const char* footer =
     "IN may also be a measurement in another program's format, told by its content: ASTM E1392 and E2387, Zemax,\n"
-    "ALTA, MERL, BiRD JSON, NetCDF, Mitsuba's .pbsdf. OUT.csv is then a table of samples, in this project's frame,\n"
-    "units and signs; a note says how the file was understood.\n"
+    "ALTA, MERL, BiRD JSON, NetCDF, RGL .bsdf, Mitsuba's .pbsdf. OUT.csv is then a table of samples, in this "
+    "project's\n"
+    "frame, units and signs; a note says how the file was understood.\n"
     "\n"
     "Of a model, OUT is JSON, or the published coefficient layout if it ends in .csv; isotropic models have that form\n"
     "too, exactly.\n"
