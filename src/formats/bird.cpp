@@ -249,8 +249,8 @@ class BirdReader : public ForeignFile::Reader {
 bool is_bird(std::string_view head, std::uint64_t) {
   const std::size_t first = head.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  return first != std::string_view::npos && head[first] == '{' &&
-         (has("brdf_json_schema") || has("BiRD") || (has("\"theta_i\"") && has("\"values\"")));
+  return first != std::string_view::npos && head[first] == '{' && !has("\"mmbrdf ") &&  // our own may name such a file
+         (has("brdf_json_schema") || (has("\"theta_i\"") && has("\"values\"")));
 }
 
 std::unique_ptr<ForeignFile::Reader> open_bird(const Source& source) { return std::make_unique<BirdReader>(source); }

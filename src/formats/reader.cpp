@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats/reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -29,7 +30,10 @@ void Source::require_none_told() const {
 }
 
 void SampleSink::add(const Sample& sample) {
-  if (std::isnan(sample.f11)) return not_measured();
+  const auto infinite = [](double value) { return std::isinf(value); };
+  if (std::isnan(sample.f11) || std::isinf(sample.f11) || std::ranges::any_of(sample.normalized.elements, infinite) ||
+      std::ranges::any_of(sample.uncertainty.elements, infinite))
+    return not_measured();
   if (!above_horizon(sample.geometry)) return below_horizon();
   waiting_.push_back(sample);
   ++samples_;

@@ -59,7 +59,7 @@ class ZemaxReader : public ForeignFile::Reader {
                         std::to_string(axes_[0].angles.size() * axes_[1].angles.size()) + " incidences: cut off?");
     sink.finish(path_);
     passed_over = sink.passed_over("values");
-    if (repeated > 0) passed_over += "; " + std::to_string(repeated) + " values that repeat a direction passed over";
+    if (repeated > 0) passed_over += "; repeats of a direction passed over: " + std::to_string(repeated);
   }
 
  private:

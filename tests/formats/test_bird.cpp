@@ -167,5 +167,10 @@ TEST(Bird, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(foreign_refusal(path), {"no object data"}));
 }
 
+TEST(Bird, IsNoModelThatNamesOne) {
+  const std::string model = R"({"format": "mmbrdf model", "provenance": {"data": "brdf_json_schema"}})";
+  EXPECT_EQ(foreign_format(model, model.size()), "");
+}
+
 }  // namespace
 }  // namespace mmbrdf

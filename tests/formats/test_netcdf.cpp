@@ -52,9 +52,10 @@ void write(const std::string& path, const std::map<std::string, std::size_t>& ax
     numbers.push_back(id);
   }
   nc_enddef(file);
-  for (std::size_t v = 0; v < variables.size(); ++v)
-    if (!variables[v].values.empty())
-      ASSERT_EQ(nc_put_var_double(file, numbers[v], variables[v].values.data()), NC_NOERR);
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    if (variables[v].values.empty()) continue;
+    ASSERT_EQ(nc_put_var_double(file, numbers[v], variables[v].values.data()), NC_NOERR);
+  }
   ASSERT_EQ(nc_close(file), NC_NOERR);
 }
 

@@ -60,8 +60,9 @@ TEST(Zemax, TurnsAnglesAboutTheSpecularRayIntoThoseOfTheSurface) {
                       std::abs(s.geometry.reflected.theta - 35 * degree) < 1e-12 &&
                       std::abs(std::cos(s.geometry.reflected.phi) + 1) < 1e-12);
   EXPECT_TRUE(found);
-  EXPECT_TRUE(says(read.understood, {"a Zemax tabular BSDF file: PlaneSymmetrical", "633 nm as told", "TIS not read",
-                                     "of 39 values at or below the horizon passed over", "9 values that repeat"}));
+  EXPECT_TRUE(says(read.understood,
+                   {"a Zemax tabular BSDF file: PlaneSymmetrical", "633 nm as told", "TIS not read",
+                    "of 39 values at or below the horizon passed over", "repeats of a direction passed over: 9"}));
 }
 
 TEST(Zemax, HasSampleRotationsAndBothSides) {

@@ -48,3 +48,26 @@ def test_coordinates_may_share_an_axis(tmp_path):
     data, _ = converted(tmp_path / "x.nc", tmp_path / "x.csv")
     np.testing.assert_allclose(data.theta_r_deg, angles[::-1], atol=1e-12)
     np.testing.assert_allclose(data.mueller, model.evaluate(532.0, *data.geometry), rtol=0, atol=1e-13)
+
+
+def test_read_foreign_gives_what_the_program_writes(tmp_path):
+    text = "VARS theta_i,phi_i,theta_s,phi_s,R,G\n0.5,0,0.25,3,0.31,0.32\n0.5,0,1.5707963,3,0.1,0.1\n"
+    (tmp_path / "x.astm").write_text(text)
+    data = mmbrdf.read_foreign(tmp_path / "x.astm", wavelength_nm=[633, 532])
+    same, _ = converted(tmp_path / "x.astm", tmp_path / "x.csv", "--wavelength", "633,532")
+    np.testing.assert_array_equal(data.f11, [0.31, 0.32])
+    np.testing.assert_array_equal(data.f11, same.f11)
+    np.testing.assert_array_equal(data.wavelength_nm, same.wavelength_nm)
+    assert "as told" in data.read_as and "2 of 4 values at or below the horizon" in data.read_as
+
+
+def test_what_a_file_does_not_say_is_asked_for(tmp_path):
+    (tmp_path / "x.astm").write_text("VARS theta_i,phi_i,theta_s,phi_s,BRDF\n0.5,0,0.25,3,0.31\n")
+    with pytest.raises(OSError, match="does not say the wavelength"):
+        mmbrdf.read_foreign(tmp_path / "x.astm")
+    with pytest.raises(OSError, match="is an ASTM E1392 or E2387 file"):
+        mmbrdf.read_samples(tmp_path / "x.astm")
+    with pytest.raises(OSError, match="is an ASTM E1392 or E2387 file"):
+        mmbrdf.load(tmp_path / "x.astm")
+    with pytest.raises(FileNotFoundError):
+        mmbrdf.read_foreign(tmp_path / "nowhere")

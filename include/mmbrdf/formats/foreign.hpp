@@ -57,7 +57,7 @@ class ForeignFile {
   /// Whether its samples have uncertainties.
   bool has_uncertainties() const;
 
-  /// Hands over all samples, a few thousand at a time, in the order of the file. Rows and nodes of which a direction is at
+  /// Hands over all samples, a few thousand at a time, in the order of the file; once. Rows and nodes of which a direction is at
   /// or below the horizon are passed over, as are those that the format marks as not measured.
   void read(const std::function<void(std::span<const Sample>)>& use);
 
