@@ -10,6 +10,11 @@
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
+namespace {
+
+constexpr double largest_value = 1e100;  // as tables of samples have it: squares and sums stay finite
+
+}  // namespace
 
 std::runtime_error Source::error(const std::string& what) const { return std::runtime_error(path + ": " + what); }
 
@@ -30,9 +35,9 @@ void Source::require_none_told() const {
 }
 
 void SampleSink::add(const Sample& sample) {
-  const auto infinite = [](double value) { return std::isinf(value); };
-  if (std::isnan(sample.f11) || std::isinf(sample.f11) || std::ranges::any_of(sample.normalized.elements, infinite) ||
-      std::ranges::any_of(sample.uncertainty.elements, infinite))
+  const auto beyond = [](double value) { return std::abs(value) > largest_value; };
+  if (std::isnan(sample.f11) || beyond(sample.f11) || std::ranges::any_of(sample.normalized.elements, beyond) ||
+      std::ranges::any_of(sample.uncertainty.elements, beyond))
     return not_measured();
   if (!above_horizon(sample.geometry)) return below_horizon();
   waiting_.push_back(sample);

@@ -41,7 +41,7 @@ class SampleSink {
  public:
   explicit SampleSink(const UseSamples& use) : use_(use) { waiting_.reserve(some); }
 
-  /// Unless a direction is at or below the horizon, f11 is NaN, or a number overflowed when it was scaled or divided.
+  /// Unless a direction is at or below the horizon, f11 is NaN, or a number is beyond 1e100, as after a division by nearly 0.
   void add(const Sample& sample);
   void below_horizon(std::uint64_t count = 1) { below_ += count; }
   void not_measured(std::uint64_t count = 1) { empty_ += count; }

@@ -135,6 +135,7 @@ TEST(Alta, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal(good + "45 0 0.2 0 0.3\n"), {"x:7: coordinate 1: 45 is no such angle in radians"}));
   EXPECT_TRUE(says(refusal(good + "0.1 0 0.2 0 nan\n"), {"x:7: value: 'nan'"}));
   EXPECT_TRUE(says(refusal(good), {"x: no samples"}));
+  EXPECT_TRUE(says(refusal(good + "0.1 0 0.2 0 1e200\n"), {"x: no samples above the horizon that were measured"}));
   EXPECT_TRUE(says(refusal(head("COS_TH", 1)), {"x:5: #PARAM_IN COS_TH", "let ALTA write one of SPHERICAL"}));
   EXPECT_TRUE(says(refusal(head("CARTESIAN", 4)), {"#DIM says 4 coordinates, but CARTESIAN has 6"}));
   EXPECT_TRUE(says(refusal(head("CARTESIAN", 6, "ENERGY")), {"x:6: #PARAM_OUT ENERGY: is no BRDF"}));
