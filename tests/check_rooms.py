@@ -21,6 +21,7 @@ LINES = [
     ["polarimetry"],
     ["fitting"],
     ["quantities"],
+    ["formats"],
     ["files"],
 ]
 LEVEL = {room: level for level, rooms in enumerate(LINES) for room in rooms}

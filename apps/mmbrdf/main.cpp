@@ -43,7 +43,7 @@ constexpr Command commands[] = {
     {"reduce", "Turn the readings of a polarimeter into samples, with uncertainties.", reduce_command},
     {"info", "Print what a model holds and where it is valid.", info_command},
     {"materials", "List the built-in models.", materials_command},
-    {"convert", "Turn a model into another file format or basis.", convert_command},
+    {"convert", "Turn a model, or a measurement of another program, into another format.", convert_command},
 };
 
 constexpr const char* footer =

@@ -13,6 +13,7 @@
 
 #include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/subsets.hpp"
+#include "mmbrdf/formats/foreign.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "pickles.hpp"
 
@@ -126,6 +127,20 @@ DatasetPointer samples_of(const std::filesystem::path& path, const ColumnNames& 
     DatasetPointer data = pointer(std::move(samples));
     data->read_as = reader.understood();
     data->reduction = reader.reduction();
+    return data;
+  });
+}
+
+DatasetPointer foreign_samples_of(const std::filesystem::path& path, const std::optional<Given>& wavelength_nm) {
+  require_readable(path);
+  ForeignOptions options;
+  if (wavelength_nm) options.wavelengths = micrometres(numbers("wavelength_nm", *wavelength_nm));
+  return without_gil([&] {
+    ForeignFile file(path, options);
+    std::vector<Sample> samples;
+    file.read([&](std::span<const Sample> some) { samples.insert(samples.end(), some.begin(), some.end()); });
+    DatasetPointer data = pointer(std::move(samples));
+    data->read_as = file.understood();
     return data;
   });
 }
@@ -261,6 +276,15 @@ void bind_samples(py::module_& m) {
         "skip_incomplete passes over rows\nwith NA or NaN, or without an angle or wavelength; frame and convention are "
         "those of the matrices: xy, or sp of f_ss ... f_pp.\nRaises OSError for a file that cannot be read, with line "
         "and column for one that holds something else.");
+  m.def(
+      "read_foreign", foreign_samples_of, py::arg("path"), py::arg("wavelength_nm") = py::none(),
+      "A Dataset from a measurement in another program's format, told by its content: ASTM E1392 and E2387, Zemax, "
+      "ALTA, "
+      "MERL,\nBiRD JSON, NetCDF, RGL .bsdf, Mitsuba's .pbsdf; read_as says how it was understood. wavelength_nm is "
+      "what "
+      "such a file does\nnot say: its wavelength, or one for each of its values at a geometry. All samples are held in "
+      "memory. Raises OSError for a\nfile that cannot be read, with line, field or offset for one that holds something "
+      "else.");
   m.def(
       "_holds_samples",
       [](const std::filesystem::path& path) {

@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <istream>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "files/table_layout.hpp"
@@ -58,15 +55,6 @@ std::string without_comment_marks(std::string_view line) {
 }
 
 }  // namespace
-
-std::ifstream open_input(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw std::runtime_error(path + ": is a folder, not a file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(path + ": cannot be opened: " + std::generic_category().message(errno));
-  return in;
-}
 
 bool has_ending(std::string_view path, std::string_view ending) {
   const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };

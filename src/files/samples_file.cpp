@@ -8,6 +8,7 @@
 
 #include "files/sample_columns.hpp"
 #include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/formats/foreign.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
 
@@ -18,6 +19,22 @@ constexpr std::string_view rotation_name = "sample_rotation_deg";
 
 /// The line of a table's names, as it is known to be read.
 void list(std::string& text, const std::string& part) { text += (text.empty() ? "" : ", ") + part; }
+
+/// Throws if these are no samples but a measurement in a format of other programs; a pipe is not looked at.
+std::istream& own_table(std::istream& in, const std::string& name) {
+  const std::istream::pos_type begin = in.tellg();
+  if (begin == std::istream::pos_type(-1)) return in;
+  std::string head(foreign_head, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  in.clear();
+  const auto size = static_cast<std::uint64_t>(in.seekg(0, std::ios::end).tellg() - begin);
+  in.seekg(begin);
+  if (const std::string format = foreign_format(head, size); !format.empty())
+    throw std::runtime_error(name + ": is " + format + ", no table of samples; this makes one of it: mmbrdf convert " +
+                             shown_name(name) + " OUT.csv");
+  return in;
+}
 
 std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -39,7 +56,7 @@ bool have_uncertainties(std::span<const Sample> samples) {
 SampleReader::SampleReader(std::istream& in, const std::string& name, const SampleTable& table)
     : name_(name),
       table_(table),
-      reader_(in, name, table.columns),
+      reader_(own_table(in, name), name, table.columns),
       geometry_(reader_),
       elements_(std::make_unique<ElementColumns>(reader_)),
       rotation_(reader_.find(rotation_name)) {
@@ -138,6 +155,7 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name, cons
 }
 
 bool holds_samples(const std::string& path) {
+  if (!foreign_format(path).empty()) return true;  // whoever reads them says what to do
   std::ifstream in = open_input(path);
   std::string comment;
   for (std::string line; std::getline(in, line);) {
@@ -161,32 +179,40 @@ void write_samples(const std::string& path, std::span<const Sample> samples, con
   write_file(path, [&](std::ostream& out) { write_samples(out, samples, reduction); });
 }
 
+SampleWriter::SampleWriter(std::ostream& out, const Elements& measured, bool with_uncertainties, bool in_micrometres)
+    : out_(out), written_(measured), with_uncertainties_(with_uncertainties), in_micrometres_(in_micrometres) {
+  written_.set(0);  // a file needs the column of f11
+  out << (in_micrometres ? "wavelength_um" : "wavelength_nm") << ",theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
+  for (const char* prefix : {"", "u_"})
+    for (std::size_t e = 0; e < 16 && (*prefix == 0 || with_uncertainties); ++e)
+      if (written_[e]) out << ',' << prefix << sample_element(e);
+  out << '\n';
+}
+
+void SampleWriter::write(std::span<const Sample> samples) {
+  for (const Sample& sample : samples) {
+    const Elements unknown = not_measured(sample);
+    out_ << shortest(in_micrometres_ ? sample.wavelength : in_nanometres(sample.wavelength));
+    for (const Direction& direction : {sample.geometry.incident, sample.geometry.reflected})
+      out_ << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
+    Mueller values = sample.normalized;
+    values(0, 0) = sample.f11;
+    for (const Mueller* numbers : std::array<const Mueller*, 2>{&values, &sample.uncertainty})
+      for (std::size_t e = 0; e < 16 && (numbers == &values || with_uncertainties_); ++e)
+        if (written_[e]) out_ << ',' << (unknown[e] ? "" : shortest(numbers->elements[e]));
+    out_ << '\n';
+  }
+}
+
 void write_samples(std::ostream& out, std::span<const Sample> samples, const std::string& reduction) {
   require_valid(samples);
   if (std::ranges::any_of(reduction, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
     throw std::invalid_argument("the text on the reduction has a line end or another control character");
   const bool with_uncertainties = have_uncertainties(samples);
-  Elements never = samples.empty() ? Elements{} : not_measured(samples);
-  never.reset(0);  // a file needs the column of f11
+  const Elements measured = samples.empty() ? Elements{}.set() : ~not_measured(samples);
   const bool x_rays = std::ranges::any_of(samples, [](const Sample& s) { return s.wavelength < 0.01; });
   if (!reduction.empty()) out << "# reduction: " << reduction << '\n';
-  out << (x_rays ? "wavelength_um" : "wavelength_nm") << ",theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
-  for (const char* prefix : {"", "u_"})
-    for (std::size_t e = 0; e < 16 && (*prefix == 0 || with_uncertainties); ++e)
-      if (!never[e]) out << ',' << prefix << sample_element(e);
-  out << '\n';
-  for (const Sample& sample : samples) {
-    const Elements unknown = not_measured(sample);
-    out << shortest(x_rays ? sample.wavelength : in_nanometres(sample.wavelength));
-    for (const Direction& direction : {sample.geometry.incident, sample.geometry.reflected})
-      out << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
-    Mueller values = sample.normalized;
-    values(0, 0) = sample.f11;
-    for (const Mueller* numbers : std::array<const Mueller*, 2>{&values, &sample.uncertainty})
-      for (std::size_t e = 0; e < 16 && (numbers == &values || with_uncertainties); ++e)
-        if (!never[e]) out << ',' << (unknown[e] ? "" : shortest(numbers->elements[e]));
-    out << '\n';
-  }
+  SampleWriter(out, measured, with_uncertainties, x_rays).write(samples);
 }
 
 }  // namespace mmbrdf

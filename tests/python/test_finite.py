@@ -16,7 +16,7 @@ CALLS = 25  # of each function
 SLOW = {"compare": 6, "projected_on_isotropic": 6, "optimal_angles": 4, "bihemispherical_uncertainty": 8}  # fewer
 
 # What reads or writes files, or takes time: other tests have them.
-OTHERS = """load load_instrument load_model read_samples calibrate reduce report select subsets plan choose fit symmetry_tests report_json
+OTHERS = """load load_instrument load_model read_foreign read_samples calibrate reduce report select subsets plan choose fit symmetry_tests report_json
     model_diagnostics sample_diagnostics outliers materials quantities material average average_uncertainty""".split()
 
 

@@ -14,6 +14,7 @@
 #include "options/arguments.hpp"
 #include "options/certificate.hpp"
 #include "options/files.hpp"
+#include "options/foreign.hpp"
 #include "pages/describe.hpp"
 #include "pages/output.hpp"
 
@@ -131,7 +132,15 @@ void record(Model& model, const Options& options) {
   if (!options.certificate.empty()) record_certificate(model, options.certificate);
 }
 
+/// A measurement in another program's format: no model, so what is recorded in one has no place.
+void convert_samples(const Options& o) {
+  if (o.family || o.orders || o.reflectance || o.angles || !o.certificate.empty() || !o.name.empty())
+    throw WrongUsage("convert", o.input + " holds samples: of the options, --wavelength alone goes with them");
+  write_as_samples(o.input, o.output, o.wavelengths_nm);
+}
+
 void convert(const Options& options, const CommandLine& line) {
+  if (is_foreign(options.input)) return convert_samples(options);
   if (options.orders && options.family == Family::germer2017)
     throw WrongUsage("--orders", "goes with the isotropic basis only");
   require_model_kept(options.input, options.output);
@@ -148,8 +157,13 @@ void convert(const Options& options, const CommandLine& line) {
 }
 
 constexpr const char* footer =
-    "OUT is JSON, or the published coefficient layout if it ends in .csv; isotropic models have that form too, "
-    "exactly.\n"
+    "IN may also be a measurement in another program's format, told by its content: ASTM E1392 and E2387, Zemax,\n"
+    "ALTA, MERL, BiRD JSON, NetCDF, RGL .bsdf, Mitsuba's .pbsdf. OUT.csv is then a table of samples, in this "
+    "project's\n"
+    "frame, units and signs; a note says how the file was understood.\n"
+    "\n"
+    "Of a model, OUT is JSON, or the published coefficient layout if it ends in .csv; isotropic models have that form\n"
+    "too, exactly.\n"
     "germer2017 models become isotropic by projection: the nearest model, not the same one; how near is printed.\n"
     "Coefficient files say neither to which wavelengths and angles they were fitted nor by which reflectance f11 was\n"
     "divided: tell it.\n"
@@ -162,6 +176,7 @@ constexpr const char* footer =
     "\n"
     "Examples:\n"
     "  mmbrdf convert ptfe ptfe.csv\n"
+    "  mmbrdf convert goniometer.astm samples.csv --wavelength 633\n"
     "  mmbrdf convert PTFE.coeff.csv ptfe.json --basis isotropic --wavelength 351,532,633,1064 \\\n"
     "      --angles 75,81.87 --reflectance 351:0.976,532:0.984,633:0.984,1064:0.983\n"
     "  mmbrdf convert ptfe plaque.json --certificate 8:443:0.990+-0.004,8:532:0.988+-0.004";
@@ -170,13 +185,14 @@ constexpr const char* footer =
 
 Run convert_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
-  add_model(app, o->input, "IN");
+  add_model(app, o->input, "IN")
+      .description("Built-in name, JSON model, coefficient CSV, or a\nmeasurement to be made samples");
   add_output_file(app, "OUT", o->output, " ", "File to write").required();
   add_option(app, "--basis", o->family, family_to_convert_to, "NAME", "isotropic or germer2017 [that of IN]");
   add_option(app, "--orders", o->orders, orders_from, "N,M",
              "Highest radial orders of the isotropic basis, of f11\nand of the other elements [those of IN]");
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
-             "Record these as the fitted wavelengths, in nm");
+             "Record these as the fitted wavelengths, in nm; of a\nmeasurement that does not say them, its own");
   add_option(app, "--angles", o->angles, angles_degrees, "THETA_I,THETA_R",
              "Record these as the largest fitted polar angles, in\ndegrees");
   add_option(app, "--reflectance", o->reflectance, reflectance_from, "NM:R[,...]|FILE",

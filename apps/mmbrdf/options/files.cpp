@@ -15,8 +15,10 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/files/write_file.hpp"
+#include "mmbrdf/formats/foreign.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "options/arguments.hpp"
+#include "options/foreign.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -82,6 +84,9 @@ std::string base_name(const std::string& path) { return std::filesystem::path(pa
 Model open_model(const std::string& name) {
   if (!is_built_in(name) && !std::filesystem::exists(name))
     throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(materials()) + ")");
+  if (is_foreign(name))
+    throw std::runtime_error(name + ": is " + foreign_format(name) + ", no model; mmbrdf convert " + shown_name(name) +
+                             " OUT.csv makes samples of it, and mmbrdf fit a model of them");
   Model model = is_built_in(name) ? material(name) : load_model(name);
   warn_of_missing_elements(model);
   return model;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <fstream>
 #include <iosfwd>
 #include <map>
 #include <span>
@@ -13,12 +12,9 @@
 #include <vector>
 
 #include "mmbrdf/geometry/geometry.hpp"
+#include "mmbrdf/text/input.hpp"
 
 namespace mmbrdf {
-
-/// Opens a file for reading. Throws std::runtime_error, naming the path and the reason, if that fails or it is a
-/// folder.
-std::ifstream open_input(const std::string& path);
 
 /// Whether the path ends so, in either case: ".csv"
 bool has_ending(std::string_view path, std::string_view ending);

@@ -37,7 +37,7 @@ class ElementColumns;
 /// Samples of a file one at a time, in constant memory: see read_samples.
 class SampleReader {
  public:
-  /// Reads the header.
+  /// Reads the header. Refuses a file in another program's format (foreign.hpp), and says which one it is.
   SampleReader(std::istream& in, const std::string& name, const SampleTable& table = {});
   ~SampleReader();
   /// The next sample; false at the end.
@@ -64,7 +64,8 @@ class SampleReader {
   long rows_ = 0, passed_over_ = 0, lost_ = 0;
 };
 
-/// Whether a file begins as one of samples does, and none of a model: its first line, but for empty ones and comments,
+/// Whether a file begins as one of samples does, and none of a model: as one of another program's formats (foreign.hpp),
+/// or its first line, but for empty ones and comments,
 /// with a letter, a quote or a comma, or with a number behind a comment that names angles. Throws std::runtime_error for a
 /// file that cannot be opened.
 bool holds_samples(const std::string& path);
@@ -83,5 +84,19 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name, cons
 /// only some have uncertainties, and for a text with a line end.
 void write_samples(const std::string& path, std::span<const Sample> samples, const std::string& reduction = "");
 void write_samples(std::ostream& out, std::span<const Sample> samples, const std::string& reduction = "");
+
+/// The same, some samples at a time, in constant memory. Not checked: they must be valid.
+class SampleWriter {
+ public:
+  /// Writes the header line: columns of these elements, and of f11; wavelengths in nanometres, or below 10 nm
+  /// in micrometres. `out` must outlive the writer.
+  SampleWriter(std::ostream& out, const Elements& measured, bool with_uncertainties, bool in_micrometres = false);
+  void write(std::span<const Sample> samples);
+
+ private:
+  std::ostream& out_;
+  Elements written_;
+  bool with_uncertainties_, in_micrometres_;
+};
 
 }  // namespace mmbrdf

@@ -1,0 +1,12 @@
+# NetCDF files are read where the library is there; without it the program says so of such a file.
+find_path(NETCDF_INCLUDE netcdf.h)
+find_library(NETCDF_LIBRARY netcdf)
+if(NETCDF_INCLUDE AND NETCDF_LIBRARY)
+  set(MMBRDF_HAS_NETCDF ON)
+  target_include_directories(mmbrdf SYSTEM PRIVATE ${NETCDF_INCLUDE})
+  target_link_libraries(mmbrdf PRIVATE ${NETCDF_LIBRARY})
+  set_source_files_properties(src/formats/netcdf.cpp src/formats/netcdf_variables.cpp PROPERTIES
+    COMPILE_DEFINITIONS MMBRDF_NETCDF)
+else()
+  message(STATUS "NetCDF (libnetcdf-dev) is not there: built without it")
+endif()

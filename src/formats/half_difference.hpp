@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rusinkiewicz' coordinates: the half direction h between source and detector, and the source as seen from it.
+#pragma once
+
+#include "mmbrdf/geometry/geometry.hpp"
+
+namespace mmbrdf {
+
+/// With h at azimuth 0; z may be below the horizon.
+struct HalfDifference {
+  Vector3 incident, reflected;
+  /// (i × o) / |i × o|, and its limit where i = o: perpendicular to the scattering plane.
+  Vector3 perpendicular;
+};
+
+/// At difference azimuth 0 the source is farther from the normal than h. Angles in radians.
+HalfDifference half_difference(double theta_h, double theta_d, double phi_d);
+
+/// Whether both directions are above the horizon.
+bool above_horizon(const HalfDifference& directions);
+
+/// Of an isotropic sample: φ_i = 0 and φ_r = φ_r − φ_i in (−π, π]. Along the normal azimuths are 0. The directions must be
+/// above the horizon.
+Geometry isotropic_geometry(const Vector3& incident, const Vector3& reflected);
+
+}  // namespace mmbrdf

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/netcdf_variables.hpp"
+
+#ifdef MMBRDF_NETCDF
+
+#include <netcdf.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "formats/byte_file.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+/// Of a text with its length in front, in words of four bytes.
+std::uint64_t name_size(const char* name) { return 4 + (std::string_view(name).size() + 3) / 4 * 4; }
+
+}  // namespace
+
+NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
+  // Absolute, so that no name of a file is taken for an address.
+  if (const int status = nc_open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
+    throw std::runtime_error(path + ": not to be opened as NetCDF: " + nc_strerror(status) + "; cut off?");
+}
+
+NetcdfFile::~NetcdfFile() { nc_close(id_); }
+
+void NetcdfFile::require(int status, const std::string& what) const {
+  if (status != NC_NOERR) throw std::runtime_error(path_ + ": " + what + ": " + nc_strerror(status));
+}
+
+std::optional<NetcdfVariable> NetcdfFile::variable(const std::string& name) const {
+  NetcdfVariable result{name, 0, {}, NC_FILL_DOUBLE};
+  const int status = nc_inq_varid(id_, name.c_str(), &result.id);
+  if (status == NC_ENOTVAR) return {};
+  require(status, name);
+  nc_type type = NC_NAT;
+  int count = 0;
+  require(nc_inq_var(id_, result.id, nullptr, &type, &count, nullptr, nullptr), name);
+  result.dimensions.resize(static_cast<std::size_t>(count));
+  require(nc_inq_vardimid(id_, result.id, result.dimensions.data()), name);
+  if (type == NC_CHAR || type == NC_STRING || type > NC_STRING) throw error(name, "holds no numbers");
+  for (const char* packed : {"scale_factor", "add_offset"})
+    if (nc_inq_att(id_, result.id, packed, nullptr, nullptr) == NC_NOERR)
+      throw error(name, std::string(packed) + ": packed numbers cannot be read; write them unpacked");
+  std::size_t length = 0;
+  if (nc_inq_attlen(id_, result.id, "_FillValue", &length) == NC_NOERR && length == 1)
+    require(nc_get_att_double(id_, result.id, "_FillValue", &result.fill), name);
+  else if (type == NC_FLOAT)
+    result.fill = static_cast<double>(NC_FILL_FLOAT);
+  return result;
+}
+
+std::uint64_t NetcdfFile::attribute_size(int variable, int count) const {
+  std::uint64_t result = 8;
+  for (int a = 0; a < count; ++a) {
+    std::array<char, NC_MAX_NAME + 1> name{};
+    nc_type type = NC_NAT;
+    std::size_t length = 0, size = 0;
+    require(nc_inq_attname(id_, variable, a, name.data()), "an attribute");
+    require(nc_inq_att(id_, variable, name.data(), &type, &length), name.data());
+    require(nc_inq_type(id_, type, nullptr, &size), name.data());
+    result += name_size(name.data()) + 8 + (length * size + 3) / 4 * 4;
+  }
+  return result;
+}
+
+// The classic format (Unidata, "File Format Specifications"): header, then the variables.
+std::uint64_t NetcdfFile::needed_size() const {
+  int format = 0, dimensions = 0, variables = 0, attributes = 0;
+  require(nc_inq_format(id_, &format), "format");
+  if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return 0;
+  require(nc_inq(id_, &dimensions, &variables, &attributes, nullptr), "header");
+  std::array<char, NC_MAX_NAME + 1> name{};
+  std::uint64_t header = 8 + 8 + attribute_size(NC_GLOBAL, attributes) + 8, numbers = 0;
+  for (int d = 0; d < dimensions; ++d) header += name_size(dimension_name(d).c_str()) + 4;
+  for (int v = 0; v < variables; ++v) {
+    nc_type type = NC_NAT;
+    int count = 0, own = 0;
+    std::size_t size = 0;
+    require(nc_inq_var(id_, v, name.data(), &type, &count, nullptr, &own), "a variable");
+    std::vector<int> axes(static_cast<std::size_t>(count));
+    require(nc_inq_vardimid(id_, v, axes.data()), name.data());
+    require(nc_inq_type(id_, type, nullptr, &size), name.data());
+    header +=
+        name_size(name.data()) + 4 + 4 * axes.size() + attribute_size(v, own) + (format == NC_FORMAT_CLASSIC ? 12 : 16);
+    std::uint64_t bytes = size;
+    for (const int axis : axes) bytes = product(bytes, length(axis));
+    if (bytes > std::numeric_limits<std::uint64_t>::max() / 2 - numbers)
+      return std::numeric_limits<std::uint64_t>::max();
+    numbers += bytes;
+  }
+  return header + numbers;
+}
+
+std::size_t NetcdfFile::length(int dimension) const {
+  std::size_t result = 0;
+  require(nc_inq_dimlen(id_, dimension, &result), "a dimension");
+  return result;
+}
+
+std::string NetcdfFile::dimension_name(int dimension) const {
+  std::array<char, NC_MAX_NAME + 1> name{};
+  require(nc_inq_dimname(id_, dimension, name.data()), "a dimension");
+  return name.data();
+}
+
+std::string NetcdfFile::text(const NetcdfVariable& variable, const std::string& attribute) const {
+  constexpr std::size_t longest = 65535;
+  for (const int where : {variable.id, NC_GLOBAL}) {
+    nc_type type = NC_NAT;
+    std::size_t length = 0;
+    if (nc_inq_att(id_, where, attribute.c_str(), &type, &length) != NC_NOERR) continue;
+    if (type == NC_CHAR && length <= longest) {
+      std::string result(length, '\0');
+      require(nc_get_att_text(id_, where, attribute.c_str(), result.data()), attribute);
+      return result.substr(0, result.find('\0'));
+    }
+    if (type == NC_STRING && length == 1) {
+      char* one = nullptr;
+      require(nc_get_att_string(id_, where, attribute.c_str(), &one), attribute);
+      const std::string result = one == nullptr ? "" : one;
+      nc_free_string(1, &one);
+      return result;
+    }
+    throw error(variable.name, "attribute " + attribute + " is no text");
+  }
+  return "";
+}
+
+void NetcdfFile::read(const NetcdfVariable& variable, const std::vector<std::size_t>& start,
+                      const std::vector<std::size_t>& count, std::span<double> values) const {
+  const int status = nc_get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
+  if (status != NC_NOERR && status != NC_ERANGE)
+    throw error(variable.name, std::string(nc_strerror(status)) + ": cut off?");
+  for (double& value : values)
+    if (value == variable.fill) value = std::numeric_limits<double>::quiet_NaN();
+}
+
+std::runtime_error NetcdfFile::error(const std::string& variable, const std::string& what) const {
+  return std::runtime_error(path_ + ": variable " + shown_name(variable) + ": " + what);
+}
+
+}  // namespace mmbrdf
+
+#endif

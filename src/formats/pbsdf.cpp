@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/pbsdf.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "formats/half_difference.hpp"
+#include "formats/tensor_file.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+constexpr double single = 1e-5;  // radians: angles are in single precision, or in few digits
+
+/// A beam along k with its axis ⊥: the angle, doubled, from ⊥ to s, which is at `phi` + 90 degrees in the surface.
+Mueller to_sp(const Vector3& k, const Vector3& perpendicular, double phi) {
+  const Vector3& x = perpendicular;
+  const Vector3 y{k[1] * x[2] - k[2] * x[1], k[2] * x[0] - k[0] * x[2], k[0] * x[1] - k[1] * x[0]};
+  const double s_x = -std::sin(phi), s_y = std::cos(phi);
+  const double c = x[0] * s_x + x[1] * s_y, s = y[0] * s_x + y[1] * s_y;
+  return rotator(c * c - s * s, 2 * c * s);
+}
+
+double azimuth(const Vector3& v) { return v[0] == 0 && v[1] == 0 ? 0 : std::atan2(v[1], v[0]); }
+
+/// A node: its geometry, and what turns its matrices into the frame xy there.
+struct Node {
+  explicit Node(const HalfDifference& directions)
+      : geometry(isotropic_geometry(directions.incident, directions.reflected)) {
+    const auto& [i, o, perpendicular] = directions;
+    // Of incident light s is z × k as well, and points the other way: half a turn, which changes no Stokes vector.
+    const Mueller incident = to_sp({-i[0], -i[1], -i[2]}, perpendicular, azimuth(i));
+    const Mueller reflected = to_sp(o, perpendicular, azimuth(o));
+    const FrameAngles angles = angles_to_xy(geometry, Frame::sp);
+    left = rotator(angles.scattered) * reflected;
+    right = transpose(rotator(angles.incident) * incident);
+  }
+  Geometry geometry;
+  Mueller left, right;
+};
+
+class PbsdfReader : public ForeignFile::Reader {
+ public:
+  explicit PbsdfReader(const Source& source) : path_(source.path), file_(source) {
+    source.require_none_told();
+    const double half = std::numbers::pi / 2;
+    phi_d_ = angles("phi_d", -2 * std::numbers::pi, 2 * std::numbers::pi);
+    theta_d_ = angles("theta_d", 0, half);
+    theta_h_ = angles("theta_h", 0, half);
+    wavelengths_ = file_.axis("wvls");
+    for (double& wavelength : wavelengths_) {
+      wavelength /= 1000;
+      require_wavelength(wavelength, path_ + ": field wvls");
+    }
+    matrices_ = file_.field("M");
+    file_.require_shape(matrices_, {phi_d_.size(), theta_d_.size(), theta_h_.size(), wavelengths_.size(), 4, 4});
+    measured.set();
+    understood = std::to_string(phi_d_.size()) + " phi_d, " + std::to_string(theta_d_.size()) + " theta_d, " +
+                 std::to_string(theta_h_.size()) + " theta_h at " + nanometre_text(wavelengths_) +
+                 ", f_ij in sr^-1 about the scattering plane, S4 > 0 right-handed, made into those of the frame xy and "
+                 "S4 > 0 left-handed; phi_i = 0";
+  }
+
+  void read(const UseSamples& use) override {
+    SampleSink sink(use);
+    // Both ends of the circle are there, and are one.
+    const bool closed = std::abs(phi_d_.back() - phi_d_.front() - 2 * std::numbers::pi) < single;
+    const std::size_t azimuths = phi_d_.size() - (closed && phi_d_.size() > 1 ? 1 : 0);
+    std::vector<double> values(theta_h_.size() * wavelengths_.size() * 16);
+    for (std::size_t p = 0; p < azimuths; ++p)
+      for (std::size_t d = 0; d < theta_d_.size(); ++d) {
+        file_.read(matrices_, (p * theta_d_.size() + d) * values.size(), values);
+        for (std::size_t h = 0; h < theta_h_.size(); ++h)
+          add(half_difference(theta_h_[h], theta_d_[d], phi_d_[p]),
+              std::span(values).subspan(h * wavelengths_.size() * 16, wavelengths_.size() * 16), sink);
+      }
+    sink.finish(path_);
+    passed_over = sink.passed_over("matrices");
+  }
+
+ private:
+  std::vector<double> angles(const std::string& name, double least, double most) {
+    std::vector<double> values = file_.axis(name);
+    for (double& value : values) {
+      if (value < least - single || value > most + single)
+        throw file_.error(file_.field(name),
+                          shortest(value) + " is not in [" + rounded(least, 5) + ", " + rounded(most, 5) + "] radians");
+      value = std::clamp(value, least, most);
+    }
+    return values;
+  }
+
+  void add(const HalfDifference& directions, std::span<const double> values, SampleSink& sink) const {
+    if (!above_horizon(directions)) return sink.below_horizon(wavelengths_.size());
+    const Node node(directions);
+    for (std::size_t w = 0; w < wavelengths_.size(); ++w) {
+      Mueller m;
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(16 * w), 16, m.elements.begin());
+      // Zeros are what is written where nothing was measured.
+      if (!std::ranges::all_of(m.elements, [](double e) { return std::isfinite(e); }) || m(0, 0) == 0) {
+        sink.not_measured();
+        continue;
+      }
+      const double f11 = m(0, 0);
+      m = convert((1 / f11) * m, StokesConvention::s_first_right, StokesConvention::germer2017);
+      m = node.left * m * node.right;
+      m(0, 0) = 1;
+      sink.add({.wavelength = wavelengths_[w], .geometry = node.geometry, .f11 = f11, .normalized = m});
+    }
+  }
+
+  std::string path_;
+  TensorFile file_;
+  std::vector<double> phi_d_, theta_d_, theta_h_, wavelengths_;
+  TensorField matrices_;
+};
+
+}  // namespace
+
+bool is_pbsdf(std::string_view head, std::uint64_t) {
+  const std::vector<std::string> names = tensor_names(head);
+  return std::ranges::any_of(names, [](const std::string& name) {
+    return name == "M" || name == "theta_d" || name == "theta_h" || name == "phi_d" || name == "wvls";
+  });
+}
+
+std::unique_ptr<ForeignFile::Reader> open_pbsdf(const Source& source) { return std::make_unique<PbsdfReader>(source); }
+
+}  // namespace mmbrdf

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// ASTM E1392 and E2387 text as goniometers' programs write it: keywords, VARS with the names of columns, rows in radians.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+
+#include "given/foreign.hpp"
+#include "mmbrdf/files/samples_file.hpp"
+
+namespace mmbrdf {
+namespace {
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.9g", value);
+  return buffer;
+}
+
+/// Angles in nine digits: 1e-9 of an angle, and less than that of f.
+constexpr double nine_digits = 2e-9;
+
+std::string rows(int* count = nullptr) {
+  std::string result;
+  for (const double theta_i : {0.0, 20.0, 50.0})
+    for (const double phi_i : {0.0, 75.0})
+      for (const double theta_s : {0.0, 35.0, 70.0, 90.0})
+        for (const double phi_s : {0.0, 130.0, 250.0}) {
+          const double f = oriented(at(theta_i * degree, phi_i * degree), at(theta_s * degree, phi_s * degree));
+          for (const double angle : {theta_i, phi_i, theta_s, phi_s}) result += text(angle * degree) + ",";
+          result += text(f) + "\n";
+          if (count != nullptr) ++*count;
+        }
+  return result;
+}
+
+std::string file() {
+  int count = 0;
+  const std::string all = rows(&count);
+  return "SAMPLE_NAME ground glass\nNUM_POINTS " + std::to_string(count) + "\nVARS theta_i,phi_i,theta_s,phi_s,BRDF\n" +
+         all;
+}
+
+TEST(Astm, GivesTheBrdfAtItsDirections) {
+  const Folder folder;
+  put(folder / "x.txt", file());
+  const ForeignRead read = read_foreign_file(folder / "x.txt", {0.633});
+  ASSERT_EQ(read.samples.size(), 54U);
+  expect_values(read.samples, oriented, nine_digits);
+  EXPECT_EQ(read.samples[0].wavelength, 0.633);
+  EXPECT_EQ(read.understood,
+            "an ASTM E1392 or E2387 file: angles in radians, f11 in sr^-1 = BRDF at 633 nm as told, phi_i of the "
+            "source, phi_s of the detector; 18 of 72 rows at or below the horizon passed over");
+  EXPECT_EQ(not_measured(read.samples[0]).count(), 15U);
+}
+
+TEST(Astm, KeepsTheSignOfNoise) {
+  const Folder folder;
+  put(folder / "x", "NUM_POINTS 2\r\nVARS theta_i,phi_i,theta_s,phi_s,BRDF\r\n0,0,0.5,0,-1e-4\r\n0,0,-0.5,0,2e-4\r\n");
+  const ForeignRead read = read_foreign_file(folder / "x", {0.5});
+  EXPECT_EQ(read.samples.at(0).f11, -1e-4);
+  EXPECT_NEAR(std::cos(read.samples.at(1).geometry.reflected.phi), -1, 1e-15);  // −theta is the other side
+}
+
+TEST(Astm, HasWavelengthsInTheNamesOfColumnsOrIsTold) {
+  const Folder folder;
+  const std::string two = "VARS theta_i,phi_i,theta_s,phi_s,450nm,550 nm\n0.1,0,0.2,0,0.3,0.4\n";
+  put(folder / "two", two);
+  const ForeignRead read = read_foreign_file(folder / "two");
+  EXPECT_EQ(read.samples.at(1).wavelength, 0.55);
+  EXPECT_EQ(read.samples.at(1).f11, 0.4);
+  EXPECT_TRUE(says(foreign_refusal(folder / "two", {0.5}), {"says its wavelengths itself", "500 nm"}));
+  put(folder / "rgb", "VARS theta_i,phi_i,theta_s,phi_s,R,G,B\n0.1,0,0.2,0,0.3,0.4,0.5\n");
+  EXPECT_TRUE(says(foreign_refusal(folder / "rgb"), {"rgb: does not say the wavelength", "R, G, B", "one for each"}));
+  EXPECT_TRUE(says(foreign_refusal(folder / "rgb", {0.5}), {"one for each, not 500 nm"}));
+  EXPECT_EQ(read_foreign_file(folder / "rgb", {0.61, 0.55, 0.47}).samples.at(2).wavelength, 0.47);
+  EXPECT_TRUE(says(foreign_refusal(folder / "rgb", {0.61, 0.55, 4.7e-4}), {"0.47 nm is no wavelength"}));
+}
+
+TEST(Astm, IsRefusedInOneLineIfItIsCutOffOrWrong) {
+  const Folder folder;
+  const std::string path = folder / "x";
+  put(path, file());
+  expect_refused_where_cut(path, {0.633});
+  EXPECT_TRUE(
+      says(foreign_refusal(path), {"x: does not say the wavelength of its column BRDF: tell it, --wavelength NM"}));
+  const std::string head = "VARS theta_i,phi_i,theta_s,phi_s,BRDF\n";
+  const auto refusal = [&](const std::string& rows) {
+    put(path, head + rows);
+    return foreign_refusal(path, {0.633});
+  };
+  EXPECT_TRUE(says(refusal("0,0,45,0,1\n"), {"x:2: theta_s: 45 is no angle in radians"}));
+  EXPECT_TRUE(says(refusal("0,0,0.5,0,1\n0,0,0.5,0,nan\n"), {"x:3: BRDF", "nan"}));
+  EXPECT_TRUE(says(refusal("0,0,0.5,0\n"), {"x:2: 4 values, but VARS has 5 columns"}));
+  EXPECT_TRUE(says(refusal(""), {"x: no samples"}));
+  put(path, "NUM_POINTS 99999999999999\n" + head + "0,0,0.5,0,1\n");
+  EXPECT_TRUE(says(foreign_refusal(path, {0.633}), {"NUM_POINTS is 99999999999999, but there are 1 rows"}));
+  put(path, "NUM_POINTS 1\nVARS theta_i,phi_i,phi_s,BRDF\n0,0,0,1\n");
+  EXPECT_TRUE(says(foreign_refusal(path, {0.633}), {"x:2: VARS has no column theta_s"}));
+}
+
+TEST(Astm, IsNoTableOfSamplesAndSaysHowToMakeOne) {
+  const Folder folder;
+  put(folder / "x.astm", file());
+  const std::string message = complaint([&] { read_samples(folder / "x.astm"); });
+  EXPECT_TRUE(says(message, {"x.astm: is an ASTM E1392 or E2387 file, no table of samples", "mmbrdf convert"}));
+  EXPECT_TRUE(holds_samples(folder / "x.astm"));
+}
+
+}  // namespace
+}  // namespace mmbrdf

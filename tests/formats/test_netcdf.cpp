@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NetCDF, written here with the library's own calls: over a grid with scalar and one-dimensional coordinates, as xarray
+// writes it, and over a list of samples.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "given/foreign.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/model/prepared.hpp"
+
+#ifdef MMBRDF_NETCDF
+#include <netcdf.h>
+#endif
+
+namespace mmbrdf {
+namespace {
+
+#ifndef MMBRDF_NETCDF
+TEST(Netcdf, IsRefusedInOneLineByABuildWithoutIt) {
+  const Folder folder;
+  put(folder / "x", std::string("CDF\1", 4) + std::string(100, '\0'));
+  EXPECT_TRUE(says(foreign_refusal(folder / "x"), {"x: a NetCDF file, but this build of mmbrdf has no NetCDF"}));
+}
+#else
+
+struct Variable {
+  std::string name;
+  std::vector<std::string> axes;
+  std::vector<double> values;
+  std::map<std::string, std::string> attributes;
+};
+
+void write(const std::string& path, const std::map<std::string, std::size_t>& axes,
+           const std::vector<Variable>& variables, int format) {
+  int file = 0;
+  ASSERT_EQ(nc_create(path.c_str(), NC_CLOBBER | format, &file), NC_NOERR);
+  std::map<std::string, int> ids;
+  for (const auto& [name, length] : axes) nc_def_dim(file, name.c_str(), length, &ids[name]);
+  std::vector<int> numbers;
+  for (const Variable& one : variables) {
+    std::vector<int> dimensions;
+    for (const std::string& axis : one.axes) dimensions.push_back(ids.at(axis));
+    int id = 0;
+    ASSERT_EQ(
+        nc_def_var(file, one.name.c_str(), NC_DOUBLE, static_cast<int>(dimensions.size()), dimensions.data(), &id),
+        NC_NOERR);
+    for (const auto& [name, text] : one.attributes) nc_put_att_text(file, id, name.c_str(), text.size(), text.c_str());
+    numbers.push_back(id);
+  }
+  nc_enddef(file);
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    if (variables[v].values.empty()) continue;
+    ASSERT_EQ(nc_put_var_double(file, numbers[v], variables[v].values.data()), NC_NOERR);
+  }
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+}
+
+using Attributes = std::map<std::string, std::string>;
+
+const std::vector<double> theta_i{5, 40, 70}, theta_r{0, 25, 60, 90}, phi_r{0, 80, 180, 290};
+
+/// phi_i = 20 as a scalar, theta_r and phi_r as axes, theta_i as an axis before them.
+std::vector<Variable> grid(const PreparedModel& model, Frame frame, const std::string& convention) {
+  std::vector<double> values;
+  for (const double ti : theta_i)
+    for (const double tr : theta_r)
+      for (const double pr : phi_r) {
+        const Geometry g = in_degrees(ti, 20, tr, pr);
+        Mueller m = change_frame(model.evaluate(g), g, Frame::xy, frame);
+        if (convention.starts_with("s_first_right"))
+          for (int k = 0; k < 3; ++k) m(3, k) = -m(3, k), m(k, 3) = -m(k, 3);
+        values.insert(values.end(), m.elements.begin(), m.elements.end());
+      }
+  return {{"theta_i_deg", {"theta_i_deg"}, theta_i, {{"units", "degree"}}},
+          {"theta_r_deg", {"theta_r_deg"}, theta_r, {{"units", "degree"}}},
+          {"phi_r_deg", {"phi_r_deg"}, phi_r, {{"units", "degree"}}},
+          {"phi_i_deg", {}, {20}, {{"units", "degree"}}},
+          {"wavelength_nm", {}, {532}, {{"units", "nm"}}},
+          {"brdf",
+           {"theta_i_deg", "theta_r_deg", "phi_r_deg", "row", "column"},
+           values,
+           {{"units", "sr-1"}, {"frame", to_string(frame)}, {"convention", convention}}}};
+}
+
+const std::map<std::string, std::size_t> grid_axes{
+    {"theta_i_deg", 3}, {"theta_r_deg", 4}, {"phi_r_deg", 4}, {"row", 4}, {"column", 4}};
+
+TEST(Netcdf, GivesMatricesInTheFrameXyWhateverThatOfTheFile) {
+  const Folder folder;
+  const PreparedModel model = prepare(random_model(Family::isotropic, {5, 4}, 0, 4), 0.532);
+  for (const int format : {NC_NETCDF4, NC_64BIT_OFFSET, 0})
+    for (const auto& [frame, convention] :
+         {std::pair{Frame::xy, "germer2017: S2 = first axis - second axis"}, std::pair{Frame::sp, "s_first_right"}}) {
+      write(folder / "x", grid_axes, grid(model, frame, convention), format);
+      const ForeignRead read = read_foreign_file(folder / "x");
+      ASSERT_EQ(read.samples.size(), 36U);
+      for (const Sample& s : read.samples) {
+        EXPECT_NEAR(s.geometry.incident.phi / degree, 20, 1e-12);
+        const Mueller expected = model.evaluate(s.geometry);
+        for (std::size_t e = 0; e < 16; ++e)
+          ASSERT_NEAR(s.f11 * s.normalized.elements[e], expected.elements[e], 1e-13) << element_name(e);
+      }
+      EXPECT_TRUE(
+          says(read.understood, {"a NetCDF file: sixteen elements in sr^-1 over (theta_i_deg, theta_r_deg, phi_r_deg)",
+                                 "frame " + to_string(frame), "12 of 48 matrices at or below the horizon"}));
+    }
+}
+
+/// f11 of many samples in one list, more than are read at once, with uncertainties, and one that was never written.
+TEST(Netcdf, GivesAListOfSamplesWithUncertainties) {
+  const Folder folder;
+  constexpr std::size_t count = 150000;
+  std::vector<std::vector<double>> columns(6);
+  for (std::size_t n = 0; n < count; ++n) {
+    const double ti = static_cast<double>(n % 80), pi = static_cast<double>(n % 359), tr = static_cast<double>(n % 77),
+                 pr = static_cast<double>(n % 353);
+    for (const auto& [c, value] : {std::pair{0, ti}, {1, pi}, {2, tr}, {3, pr}})
+      columns[static_cast<std::size_t>(c)].push_back(value);
+    columns[4].push_back(n == 7 ? NC_FILL_DOUBLE
+                                : oriented(at(ti * degree, pi * degree), at(tr * degree, pr * degree)));
+    columns[5].push_back(0.01);
+  }
+  std::vector<Variable> variables;
+  for (const auto& [c, name] : {std::pair{0, "theta_i_deg"}, {1, "phi_i_deg"}, {2, "theta_r_deg"}, {3, "phi_r_deg"}})
+    variables.push_back({name, {"sample"}, columns[static_cast<std::size_t>(c)], {}});
+  variables.push_back({"brdf", {"sample"}, columns[4], {{"units", "1/sr"}}});
+  variables.push_back({"uncertainty", {"sample"}, columns[5], {{"units", "1/sr"}}});
+  write(folder / "x", {{"sample", count}}, variables, NC_NETCDF4);
+  const ForeignRead read = read_foreign_file(folder / "x", {0.633});
+  EXPECT_EQ(read.samples.size(), count - 1);
+  expect_values(read.samples, oriented, 1e-14);
+  EXPECT_EQ(read.samples[100000].uncertainty(0, 0), 0.01);
+  EXPECT_EQ(read.understood,
+            "a NetCDF file: f11 in sr^-1 over (sample) at 633 nm as told; 1 of 150000 values not measured, "
+            "passed over");
+  EXPECT_TRUE(says(foreign_refusal(folder / "x"), {"x: does not say the wavelength of its values"}));
+}
+
+TEST(Netcdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
+  const Folder folder;
+  const std::string path = folder / "x";
+  const PreparedModel model = prepare(random_model(Family::isotropic, {2, 2}, 0, 4), 0.532);
+  for (const int format : {NC_NETCDF4, 0}) {
+    write(path, grid_axes, grid(model, Frame::xy, "germer2017"), format);
+    expect_refused_where_cut(path);
+  }
+  EXPECT_TRUE(says(foreign_refusal(path, {0.5}), {"x: says its wavelengths itself"}));
+  const auto refusal = [&](const std::function<void(std::vector<Variable>&)>& change) {
+    std::vector<Variable> variables = grid(model, Frame::xy, "germer2017");
+    change(variables);
+    write(path, grid_axes, variables, 0);
+    return foreign_refusal(path);
+  };
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].attributes.erase("frame"); }), {"brdf: no attribute frame"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].attributes["frame"] = "lab"; }), {"brdf: frame 'lab' is not one of xy"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].attributes["units"] = "percent"; }), {"units 'percent' are none of"}));
+  EXPECT_TRUE(
+      says(refusal([](auto& v) { v[0].attributes["units"] = "rad"; }), {"theta_i_deg: units 'rad' contradict"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].name = "f"; }), {"x: no variable brdf"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[1].name = "theta"; }), {"x: no variable theta_r_deg"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[0].values[0] = 95; }), {"x: ", "95"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[0].values[0] = HUGE_VAL; }), {"theta_i_deg: a value is missing"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].values[0] = HUGE_VAL; }), {"brdf: an element is infinite"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[4].values[0] = 0.5; }), {"wavelength_nm: 0.5 nm is no wavelength"}));
+  EXPECT_TRUE(says(refusal([](auto& v) {
+                     v[5].axes = {"row", "column", "theta_i_deg"};
+                     v[5].values.resize(48);
+                   }),
+                   {"the last two axes must be row, column"}));
+  write(path, {{"sample", std::size_t(1) << 40}}, {{"brdf", {"sample"}, {}, {{"units", "1/sr"}}}}, NC_NETCDF4);
+  EXPECT_TRUE(says(foreign_refusal(path, {0.5}), {"numbers are more than a file of"}));
+}
+#endif
+
+}  // namespace
+}  // namespace mmbrdf

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// RGL materials. The writer here finds the normal that a sample is turned into by integrating the density of visible
+// normals cell by cell, and by bisection; the reader has closed forms.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "given/foreign.hpp"
+#include "given/tensor_file.hpp"
+
+namespace mmbrdf {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Rows of nodes over the unit square, in single precision as in the file.
+struct Nodes {
+  std::size_t nx, ny;
+  std::vector<double> values;
+
+  double operator()(double x, double y) const {
+    const double a = std::min(std::floor(x * double(nx - 1)), double(nx - 2)), s = x * double(nx - 1) - a;
+    const double b = std::min(std::floor(y * double(ny - 1)), double(ny - 2)), t = y * double(ny - 1) - b;
+    const auto node = [&](double column, double row) { return values[std::size_t(row) * nx + std::size_t(column)]; };
+    return node(a, b) * (1 - s) * (1 - t) + node(a + 1, b) * s * (1 - t) + node(a, b + 1) * (1 - s) * t +
+           node(a + 1, b + 1) * s * t;
+  }
+};
+
+Nodes nodes(std::size_t nx, std::size_t ny, const std::function<double(double, double)>& f) {
+  Nodes result{nx, ny, {}};
+  for (std::size_t y = 0; y < ny; ++y)
+    for (std::size_t x = 0; x < nx; ++x)
+      result.values.push_back(static_cast<float>(f(double(x) / double(nx - 1), double(y) / double(ny - 1))));
+  return result;
+}
+
+/// Of a function that is linear within each of `cells` equal parts of [0, 1], from 0 to u: Simpson's rule is exact.
+double integral(const std::function<double(double)>& f, std::size_t cells, double u) {
+  double sum = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    const double a = double(c) / double(cells), b = std::min(double(c + 1) / double(cells), u);
+    if (b > a) sum += (b - a) / 6 * (f(a) + 4 * f((a + b) / 2) + f(b));
+  }
+  return sum;
+}
+
+double place(const std::function<double(double)>& f, std::size_t cells, double part) {
+  double low = 0, high = 1;
+  for (int n = 0; n < 60; ++n) {
+    const double middle = (low + high) / 2;
+    (integral(f, cells, middle) < part * integral(f, cells, 1) ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+struct Material {
+  std::vector<double> theta_i, phi_i;
+  std::vector<float> nm;  // none: rgb
+  bool isotropic;
+};
+
+constexpr std::size_t samples_per_side = 5;
+
+double scale(std::size_t wavelength) { return 1 + 0.5 * double(wavelength); }
+
+std::vector<TensorArray> fields(const Material& material, const Brdf& f) {
+  const auto ndf = nodes(6, 4, [](double x, double y) { return 2 - x + 0.3 * std::sin(5 * y); });
+  const auto sigma = nodes(4, 3, [](double x, double y) { return 1 - 0.4 * x + 0.1 * y; });
+  const std::size_t colours = material.nm.empty() ? 3 : material.nm.size();
+  std::vector<double> vndf, spectra;
+  for (const double phi : material.phi_i)
+    for (const double theta : material.theta_i) {
+      const auto density =
+          nodes(7, 5, [&](double x, double y) { return 0.2 + (1 - x) * (1 + std::cos(6 * y + phi)) + theta * x; });
+      vndf.insert(vndf.end(), density.values.begin(), density.values.end());
+      const Vector i = at(theta, phi);
+      for (std::size_t w = 0; w < colours; ++w)
+        for (std::size_t row = 0; row < samples_per_side; ++row)
+          for (std::size_t column = 0; column < samples_per_side; ++column) {
+            const double sx = double(column) / (samples_per_side - 1), sy = double(row) / (samples_per_side - 1);
+            const auto of_row = [&](double y) { return integral([&](double x) { return density(x, y); }, 6, 1); };
+            const double v = place(of_row, 4, sy), u = place([&](double x) { return density(x, v); }, 6, sx);
+            const Vector m = at(u * u * pi / 2, (2 * v - 1) * pi + (material.isotropic ? phi : 0));
+            const Vector o = sum(2 * dot(m, i), m, -1, i);
+            const double s = sigma(std::sqrt(theta * 2 / pi), (phi + pi) / (2 * pi));
+            spectra.push_back(o[2] > 0 ? 4 * s * scale(w) * f(i, o) * o[2] / ndf(u, v) : 0);
+          }
+    }
+  const std::uint64_t n_p = material.phi_i.size(), n_t = material.theta_i.size(), side = samples_per_side;
+  std::string wavelengths;
+  for (const float one : material.nm) append(wavelengths, one);
+  std::vector<TensorArray> all{
+      {"description", 1, {4}, "test"},
+      {"theta_i", 10, {n_t}, singles(material.theta_i)},
+      {"phi_i", 10, {n_p}, singles(material.phi_i)},
+      {"ndf", 10, {4, 6}, singles(ndf.values)},
+      {"sigma", 10, {3, 4}, singles(sigma.values)},
+      {"vndf", 10, {n_p, n_t, 5, 7}, singles(vndf)},
+      {material.nm.empty() ? "rgb" : "spectra", 10, {n_p, n_t, colours, side, side}, singles(spectra)},
+      {"jacobian", 1, {1}, "\1"}};
+  if (!material.nm.empty()) all.push_back({"wavelengths", 10, {colours}, wavelengths});
+  return all;
+}
+
+std::vector<double> as_singles(std::vector<double> values) {
+  for (double& value : values) value = static_cast<float>(value);
+  return values;
+}
+
+const Material turned_about{as_singles({0.05, 0.6, 1.1}), as_singles({-3, -1, 0.5, 2.5}), {450, 532.5F}, false};
+const Material same_all_round{as_singles({0.05, 0.6, 1.1}), {0}, {}, true};
+
+/// Spectra are in single precision, 6e-8, and samples at the sides of the square are moved inwards by as much, which f cos
+/// feels some tens of times where the detector is low.
+constexpr double single = 1e-5;
+
+TEST(Rgl, GivesTheBrdfOfEachSampleOfNormals) {
+  const Folder folder;
+  put(folder / "x", tensor_file(fields(turned_about, oriented)));
+  const ForeignRead read = read_foreign_file(folder / "x");
+  EXPECT_GE(read.samples.size(), 200U);
+  for (const Sample& s : read.samples) {
+    const double part = s.wavelength == 0.45 ? scale(0) : scale(1);
+    ASSERT_NEAR(s.f11, part * oriented(to_source(s), to_detector(s)), single);
+  }
+  EXPECT_TRUE(says(read.understood, {"an RGL .bsdf file: 3 theta_i, 4 phi_i, 5 x 5 samples", "at 450 and 532.5 nm",
+                                     "spectra * ndf / (4 sigma cos(theta_r)) = f11"}));
+}
+
+TEST(Rgl, IsIsotropicIfItHasOneAzimuthAndIsToldTheWavelengthsOfColours) {
+  const Folder folder;
+  put(folder / "x", tensor_file(fields(same_all_round, isotropic)));
+  EXPECT_TRUE(says(foreign_refusal(folder / "x"), {"x: does not say the wavelength of its 3 colours"}));
+  const ForeignRead read = read_foreign_file(folder / "x", {0.61, 0.55, 0.465});
+  EXPECT_GE(read.samples.size(), 60U);
+  for (const Sample& s : read.samples) {
+    const std::size_t w = s.wavelength == 0.61 ? 0 : s.wavelength == 0.55 ? 1 : 2;
+    ASSERT_NEAR(s.f11, scale(w) * isotropic(to_source(s), to_detector(s)), single);
+    EXPECT_EQ(s.geometry.incident.phi, 0);
+  }
+}
+
+TEST(Rgl, IsRefusedInOneLineIfItIsCutOffOrWrong) {
+  const Folder folder;
+  const std::string path = folder / "x";
+  const std::vector<TensorArray> good = fields(turned_about, oriented);
+  put(path, tensor_file(good));
+  expect_refused_where_cut(path);
+  EXPECT_TRUE(says(foreign_refusal(path, {0.5}), {"x: says its wavelengths itself"}));
+  const auto refusal = [&](std::size_t field, const std::function<void(TensorArray&)>& change) {
+    std::vector<TensorArray> changed = good;
+    change(changed[field]);
+    put(path, tensor_file(changed));
+    return foreign_refusal(path);
+  };
+  EXPECT_TRUE(says(refusal(5, [](TensorArray& f) { f.shape = {4, 3, 7}; }), {"field vndf: must have 4 axes"}));
+  EXPECT_TRUE(says(refusal(5,
+                           [](TensorArray& f) {
+                             f.shape = {3, 4, 5, 7};
+                           }),
+                   {"field vndf: shape [3, 4, 5, 7], but"}));
+  EXPECT_TRUE(says(refusal(6, [](TensorArray& f) { f.shape[4] = 1ULL << 60; }), {"field spectra: shape", "cut off?"}));
+  EXPECT_TRUE(says(refusal(3, [](TensorArray& f) { f.shape = {24, 1}; }), {"field ndf: must have 2 axes"}));
+  EXPECT_TRUE(
+      says(refusal(5, [](TensorArray& f) { f.data.replace(0, 4, singles({-1})); }), {"field vndf: -1 is no density"}));
+  EXPECT_TRUE(says(refusal(1,
+                           [](TensorArray& f) {
+                             f.data = singles({10, 30, 60});
+                           }),
+                   {"field theta_i: 10 is not in [0, 1.5708]"}));
+  EXPECT_TRUE(says(refusal(8,
+                           [](TensorArray& f) {
+                             f.data = singles({0.45, 0.53});
+                           }),
+                   {"field wavelengths: 0.4", "is no wavelength"}));
+  EXPECT_TRUE(says(refusal(4, [](TensorArray& f) { f.name = "other"; }), {"x: no field sigma"}));
+}
+
+}  // namespace
+}  // namespace mmbrdf
