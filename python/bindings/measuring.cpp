@@ -257,6 +257,8 @@ void bind_files(py::module_& m) {
         require_limit(saturation);
         const ReadingNoise law = noise_from(noise);
         const auto* const calibrated = std::get_if<InstrumentPointer>(&instrument);
+        if (calibrated && !*calibrated)
+          throw py::type_error("instrument: must be a Calibration or a Polarimeter, not None");
         const Polarimeter p = calibrated ? (*calibrated)->polarimeter : std::get<Polarimeter>(instrument);
         const double wavelength = calibrated ? (*calibrated)->wavelength : 0;
         std::vector<Sample> samples =

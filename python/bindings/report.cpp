@@ -15,6 +15,47 @@
 
 namespace mmbrdf::python {
 
+namespace {
+
+/// {"theta_i": (0, 30)}
+py::dict hole_object(const Hole& hole) {
+  py::dict result;
+  const auto add = [&](const char* name, const std::optional<Hole::Degrees>& part) {
+    if (part) result[name] = py::make_tuple(part->from, part->to);
+  };
+  add("theta_i", hole.theta_i);
+  add("theta_r", hole.theta_r);
+  add("phi_r_phi_i", hole.phi);
+  return result;
+}
+
+py::array_t<double> array_of(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+py::object missing_object(const MissingShares& missing) {
+  py::array_t<double> detector = array_of(missing.detector);
+  return record("Missing", array_of(missing.theta_deg), array_of(missing.phi_deg), array_of(missing.theta_i),
+                detector.reshape({static_cast<py::ssize_t>(missing.theta_deg.size()),
+                                  static_cast<py::ssize_t>(missing.phi_deg.size())}));
+}
+
+py::object inspection_object(const Dataset& data) {
+  const Inspection seen = without_gil([&] { return inspect(data.samples); });
+  const auto finding = [](const Finding& one) {
+    return record("Finding", one.fault, one.evidence, one.remedy,
+                  tuple_of(one.samples, [](std::size_t i) { return py::int_(i); }));
+  };
+  py::dict rows;
+  for (const auto& [name, text] : inspection_rows(seen, data.samples)) rows[py::str(name)] = text;
+  return record("Inspection", tuple_of(seen.findings, finding), seen.f11_residual, seen.unsupported, seen.hole,
+                tuple_of(seen.untested, [](const Untested& one) { return record("Untested", one.fault, one.reason); }),
+                hole_object(seen.hole_at), missing_object(seen.missing), array_of(seen.residuals), rows,
+                verdict_line(seen));
+}
+
+}  // namespace
+
 void bind_report(py::module_& m) {
   m.def(
       "report_json",
@@ -32,21 +73,14 @@ void bind_report(py::module_& m) {
       "prints: title, warnings, model, fit, realizability, reflectances and, with samples, residuals, symmetries,\n"
       "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
   m.def(
-      "inspect",
-      [](const Dataset& data) {
-        const Inspection seen = without_gil([&] { return inspect(data.samples); });
-        return record(
-            "Inspection",
-            tuple_of(seen.findings,
-                     [](const Finding& one) { return record("Finding", one.fault, one.evidence, one.remedy); }),
-            seen.f11_residual, seen.unsupported, seen.hole);
-      },
-      py::arg("data"),
+      "inspect", [](const Dataset& data) { return inspection_object(data); }, py::arg("data"),
       "What is wrong with samples, as far as they betray it, before they are fitted: an Inspection. Fill values, "
       "elements\n"
       "that are not divided, matrices that cannot exist, zeros, repeated rows, wavelengths; by fits of low order to "
       "the\n"
-      "first wavelength the scale of f11, a cosine too many or too few, folded azimuths, frame and signs.");
+      "first wavelength radians that are called degrees, the scale of f11, a cosine too many or too few, folded "
+      "azimuths,\n"
+      "frame and signs, and which of these could not be seen. residuals are nan where there is no fit.");
   m.def("_to_place_of", &to_place_of, py::arg("value"), py::arg("uncertainty"),
         "A number to the place where two digits of its standard uncertainty end; six digits without one.");
   m.def(

@@ -126,7 +126,7 @@ def load(path: str | _os.PathLike[str]) -> Model | Dataset:
 
 
 def _write_report(
-    model: Model,
+    model: Model | None,
     data: Dataset | None,
     path: str | _os.PathLike[str],
     *,
@@ -136,9 +136,10 @@ def _write_report(
     theta_i_deg: float = 45,
 ) -> None:
     """Writes one self-contained HTML page: what `mmbrdf report` prints about a model, and samples beside it, with pictures.
+    Without a model, None, what `mmbrdf inspect` says of samples before they are fitted, with pictures.
 
     name, data_name  what the model and the samples are called
-    wavelength_nm    at which to report; None: at those it was fitted to, or else those of the samples
+    wavelength_nm    at which to report; None: at those it was fitted to, or else those of the samples; without a model: all
     theta_i_deg      angle of incidence of the pictures of the model
 
     Needs matplotlib. Raises TypeError for what is not a model and samples, ValueError for samples that do not go

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A report on a model as one HTML page: what `mmbrdf report` prints, with pictures. Nothing in it is loaded from elsewhere."""
+"""A report on a model, or on samples before there is one, as one HTML page: what `mmbrdf report` or `mmbrdf inspect` prints,
+with pictures. Nothing in it is loaded from elsewhere."""
 
 from __future__ import annotations
 
@@ -32,6 +33,7 @@ table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabu
 th, td { padding: .22rem .7rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 thead th { background: var(--soft); border-bottom: 2px solid var(--line); }
 thead th, thead + tbody td { white-space: nowrap; } thead + tbody td.number { text-align: right; }
+table.words thead + tbody td:not(:first-child) { white-space: normal; } pre { background: var(--soft); padding: .6rem 1rem; overflow-x: auto; }
 figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
 .pair { display: flex; flex-wrap: wrap; gap: 1rem; } .pair figure { flex: 1 1 22rem; }
 @media print { body { max-width: none; } h2 { break-after: avoid; } figure { break-inside: avoid; } }
@@ -81,7 +83,7 @@ def _section(value: Any) -> str:
     return "<ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in value) + "</ul>"
 
 
-def _picture(figure: Any, caption: str, kind: str = "png") -> str:
+def picture(figure: Any, caption: str, kind: str = "png") -> str:
     """The figure within the page: svg for curves, png for maps."""
     buffer = io.BytesIO()
     # Without a date the same model gives the same page.
@@ -97,20 +99,20 @@ def _picture(figure: Any, caption: str, kind: str = "png") -> str:
 def _model_pictures(model: Model, wavelength_nm: float | None, theta_i_deg: float, phi_i_deg: float) -> Iterator[str]:
     wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm, "
     at = f"{wavelength}theta_i = {theta_i_deg:g}, phi_i = {phi_i_deg:g} degrees"
-    yield _picture(
+    yield picture(
         plot.hemisphere(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
         f"The model over the hemisphere of reflected directions, {at}: f11, and the other elements divided by it.",
     )
     yield '<div class="pair">'
     bands = ", with bands of k = 2" if model.has_covariance else ""
     if not {"12", "21", "22"} & set(model.not_measured):
-        yield _picture(
+        yield picture(
             plot.in_plane_curves(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
             f"Co- and cross-polarized BRDF in the plane of incidence, {at}{bands}.",
             "svg",
         )
     if not model.not_measured:
-        yield _picture(
+        yield picture(
             plot.realizability_map(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
             f"Smallest coherency eigenvalue / f11, {at}: a matrix where it is negative cannot exist.",
         )
@@ -142,7 +144,7 @@ def _residual_pictures(model: Model, data: Dataset, wavelength_nm: float, phi_i_
     for theta_i_deg in dict.fromkeys((angles[0], angles[len(angles) // 2], angles[-1])):
         figure, _ = plot.residual_map(model, here, wavelength_nm, float(theta_i_deg), phi_i_deg=phi_i_deg)
         at = f"{wavelength_nm:g} nm, theta_i = {theta_i_deg:g}, phi_i = {phi_i_deg:g} degrees"
-        yield _picture(figure, f"Samples - model at {at}.")
+        yield picture(figure, f"Samples - model at {at}.")
 
 
 def _on_a_grid(data: Dataset) -> bool:
@@ -154,7 +156,7 @@ def _on_a_grid(data: Dataset) -> bool:
 def _spectra(model: Model) -> Iterator[str]:
     for power in range(model.powers + 1):
         caption = f"Coefficients that multiply the wavelength in micrometres to the power {power}."
-        yield _picture(plot.coefficient_spectrum(model, power=power)[0], caption, "svg")
+        yield picture(plot.coefficient_spectrum(model, power=power)[0], caption, "svg")
 
 
 def _pictures_behind(
@@ -179,8 +181,18 @@ def _wavelengths(model: Model, data: Dataset | None) -> list[float] | None:
     return list(model.wavelengths_nm or (data.wavelengths_nm if data is not None else ()) or model.reflectance) or None
 
 
+def _samples_page(
+    data: Dataset, data_name: str, wavelength_nm: float | Sequence[float] | None, path: str | None = None
+) -> str:
+    from . import _inspection
+
+    chosen = None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
+    data = data if chosen is None else data.at_wavelengths(chosen)
+    return _inspection.page(data, data_name, _inspection.fit_command(path or data_name, chosen))
+
+
 def page(
-    model: Model,
+    model: Model | None,
     data: Dataset | None = None,
     *,
     name: str = "",
@@ -189,11 +201,14 @@ def page(
     theta_i_deg: float = 45,
 ) -> str:
     """The report as HTML text: see mmbrdf.report()."""
-    require("model", model, Model)
+    if model is not None or data is None:
+        require("model", model, Model)
     if data is not None:
         require("data", data, Dataset)
         if len(data) == 0:
             raise ValueError(f"{data_name}: no samples")
+    if model is None:
+        return _samples_page(data, data_name, wavelength_nm)
     theta_i_deg = number("theta_i_deg", theta_i_deg)
     if wavelength_nm is None:
         chosen = _wavelengths(model, data)
@@ -218,6 +233,12 @@ def page(
         parts += [f"<h2>{html.escape(field.capitalize().replace('_', ' '))}</h2>", _section(value)]
         for heading, pictures in _pictures_behind(field, model, data, chosen or [None], theta_i_deg).items():
             parts += [f"<h2>{html.escape(heading)}</h2>", *pictures]
+    return document(title, parts, escaped=True)
+
+
+def document(title: str, parts: Sequence[str], *, escaped: bool = False) -> str:
+    """A whole page of these parts."""
+    title = title if escaped else html.escape(title)
     body = "\n".join(parts)
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n'
@@ -240,28 +261,42 @@ def _require_kept(output: str, inputs: Sequence[str | None]) -> None:
             raise ValueError(f"{output}: would overwrite {name}")
 
 
+def _opened(name: str) -> Model | Dataset:
+    return material(name) if name in materials() else load(name)
+
+
+def _page_of(options: argparse.Namespace) -> str:
+    """Of a model with or without samples, or of samples."""
+    model = _opened(options.model)
+    if isinstance(model, Dataset) and options.data is None:
+        return _samples_page(model, Path(options.model).name, options.wavelength, options.model)
+    data = load(options.data) if options.data else None
+    for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
+        if thing is not None and not isinstance(thing, kind):
+            raise ValueError(f"{name}: expected a {kind.__name__.lower()}")
+    names = {"name": Path(options.model).name, "data_name": Path(options.data or "").name}
+    return page(model, data, wavelength_nm=options.wavelength, theta_i_deg=options.theta_i, **names)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """python3 -m mmbrdf.report"""
     parser = argparse.ArgumentParser(prog="python3 -m mmbrdf.report", description=__doc__)
-    parser.add_argument("model", metavar="MODEL", help="built-in name, JSON model or coefficient CSV")
-    parser.add_argument("data", metavar="DATA.csv", nargs="?", help="samples to set beside it")
+    parser.add_argument(
+        "model",
+        metavar="MODEL",
+        help="built-in name, JSON model or coefficient CSV; or DATA.csv alone, before it is fitted",
+    )
+    parser.add_argument("data", metavar="DATA.csv", nargs="?", help="samples to set beside a model")
     parser.add_argument("-o", "--output", metavar="REPORT.html", required=True, help="where the page goes")
     parser.add_argument("-w", "--wavelength", metavar="NM", type=float, nargs="+", help="wavelengths to report on")
     parser.add_argument(
-        "--theta-i", metavar="DEG", type=float, default=45, help="angle of incidence of the pictures [45]"
+        "--theta-i", metavar="DEG", type=float, default=45, help="angle of incidence of the pictures of a model [45]"
     )
     options = parser.parse_args(arguments)
     built_in = options.model in materials()
     try:
         _require_kept(options.output, [options.data] if built_in else [options.model, options.data])
-        model = material(options.model) if built_in else load(options.model)
-        data = load(options.data) if options.data else None
-        for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
-            if thing is not None and not isinstance(thing, kind):
-                raise ValueError(f"{name}: expected a {kind.__name__.lower()}")
-        names = {"name": Path(options.model).name, "data_name": Path(options.data or "").name}
-        text = page(model, data, wavelength_nm=options.wavelength, theta_i_deg=options.theta_i, **names)
-        write(options.output, text)
+        write(options.output, _page_of(options))
     except (OSError, ValueError) as error:
         print(f"{parser.prog}: {error}", file=sys.stderr)
         return 1

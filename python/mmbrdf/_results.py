@@ -84,11 +84,39 @@ class Finding(_NamedTuple):
     fault     'fill values'
     evidence  'f11 = -999 in 20 samples: 3, 17, ...', counted from 1
     remedy    what mends it; '': that depends
+    samples   which, counted from 0; (): all, or that depends
     """
 
     fault: str
     evidence: str
     remedy: str
+    samples: tuple[int, ...] = ()
+
+
+class Untested(_NamedTuple):
+    """A fault that inspect() would not have seen, and why.
+
+    fault   'cosine'
+    reason  '3 samples, and a fit of low order has 14 coefficients'
+    """
+
+    fault: str
+    reason: str
+
+
+class Missing(_NamedTuple):
+    """Which share of the pairs of directions no samples support: arrays, nan beyond the angles of the samples, empty if not
+    known.
+
+    theta_deg, phi_deg  (N,), (M,) the nodes at which it is known; phi is that between source and detector, 0 to 180
+    theta_i             (N,) for each polar angle of the source
+    detector            (N, M) for each theta_r and phi of the detector
+    """
+
+    theta_deg: _Array
+    phi_deg: _Array
+    theta_i: _Array
+    detector: _Array
 
 
 class Inspection(_NamedTuple):
@@ -98,12 +126,30 @@ class Inspection(_NamedTuple):
     f11_residual  rms of f11 - a fit of low order, relative to that of f11: noise and fine structure; 0: no fit
     unsupported   share of the pairs of directions within their angles that no samples support
     hole          where most of these are, in words; '': at most a twentieth
+    untested      what else might be wrong, for all that these samples say
+    hole_deg      and in numbers: 'theta_i', 'theta_r', 'phi_r_phi_i' (without sign), each from one angle to another, if more
+                  than half is missing there and not everywhere
+    missing       the same for each direction: Missing
+    residuals     f11 - that fit of each sample, in sr^-1; nan: other wavelengths, and fill values
+    rows          what `mmbrdf inspect` says the samples are: names and texts
+    verdict       'nothing seems to be wrong'; '' with findings
     """
 
     findings: tuple[Finding, ...]
     f11_residual: float
     unsupported: float
     hole: str
+    untested: tuple[Untested, ...]
+    hole_deg: dict[str, tuple[float, float]]
+    missing: Missing
+    residuals: _Array
+    rows: dict[str, str]
+    verdict: str
+
+    def __repr__(self) -> str:
+        found = ", ".join(one.fault for one in self.findings) or self.verdict
+        untested = ", ".join(one.fault for one in self.untested)
+        return f"<mmbrdf.Inspection: {found}{'; cannot be told: ' * bool(untested)}{untested}>"
 
 
 class SubsetSplit(_NamedTuple):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""python3 -m mmbrdf.report MODEL [DATA.csv] -o REPORT.html: see mmbrdf.report(), which this module can be called as."""
+"""python3 -m mmbrdf.report MODEL [DATA.csv] -o REPORT.html, or DATA.csv alone: see mmbrdf.report(), which this module can be
+called as."""
 
 import sys
 import types

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <stdexcept>
 
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
@@ -16,10 +14,8 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double folded = 1.5;  // times the rms of the other elements: beyond it the mirror-odd ones are mixed up
-constexpr int coarser = 2;      // than the steps of a report
-constexpr std::size_t enough_samples = 60;
-constexpr double beyond_doubt = 2;
+constexpr double folded = 1.5;     // times the rms of the other elements: beyond it the mirror-odd ones are mixed up
+constexpr int coarser = 2;         // than the steps of a report
 constexpr double rounding = 1e-9;  // rms of simulated data without noise
 
 /// Of the elements that change sign where the sample is seen in a mirror, or of the others but 11.
@@ -83,65 +79,6 @@ std::string condition_warning(const FitResult& result) {
          "; choose lower orders, or trust the model only where its uncertainty is small";
 }
 
-/// Of the first wavelength, evenly spread.
-std::vector<Sample> without_fills(std::span<const Sample> samples) {
-  const double typical = typical_f11(samples);
-  std::vector<Sample> here;
-  std::ranges::copy_if(samples, std::back_inserter(here), [&](const Sample& s) {
-    return same_wavelength(s.wavelength, samples.front().wavelength) && !is_fill(s, typical);
-  });
-  const std::size_t count = std::min(here.size(), most_tried);
-  for (std::size_t i = 0; i < count; ++i) here[i] = here[i * here.size() / count];
-  here.resize(count);
-  return here;
-}
-
-double rms_of_f11(std::span<const Sample> samples) {
-  double squares = 0, count = 0;
-  for (const Sample& sample : samples)
-    if (!std::isnan(sample.f11)) squares += sample.f11 * sample.f11, ++count;
-  return count > 0 ? std::sqrt(squares / count) : 0;
-}
-
-double relative_rms(std::span<const Sample> samples, const FitResult& fitted) {
-  const double all = rms_of_f11(samples);
-  return all > 0 ? fitted.elements[0].rms / all : 0;
-}
-
-/// Reciprocity tells whether f11 has a cosine of the receiver too many or too few.
-Finding cosine_finding(std::span<const Sample> samples, const FitOptions& options) {
-  constexpr double grazing = 0.1;  // cos θr: the division would make noise of it
-  const auto residual = [&](int power) {
-    std::vector<Sample> scaled;
-    for (Sample sample : samples) {
-      const double cosine = std::cos(sample.geometry.reflected.theta);
-      if (cosine < grazing || std::isnan(sample.f11)) continue;
-      sample.f11 *= std::pow(cosine, power);
-      for (std::size_t e = 1; e < 16; ++e) sample.normalized.elements[e] = std::numeric_limits<double>::quiet_NaN();
-      sample.uncertainty = {};
-      scaled.push_back(sample);
-    }
-    return relative_rms(scaled, fit(scaled, {Family::isotropic, inspected_orders}, options));
-  };
-  const double as_is = residual(0), divided = residual(-1), multiplied = residual(1);
-  const bool too_many = divided <= multiplied;
-  const double better = std::max(std::min(divided, multiplied), rounding);
-  if (!(as_is > better_convention * better)) return {};
-  return {"cosine",
-          "a reciprocal f11 leaves " + rounded(100 * as_is, 2) + " %, but " + rounded(100 * better, 2) +
-              " % after it is " + (too_many ? "divided" : "multiplied") + " by cos theta_r",
-          too_many ? "is it f cos theta_r? Call the column f_cos (columns f_cos=f11)"
-                   : "was it divided by cos theta_r once too often? Multiply the column by it"};
-}
-
-std::string convention_remedy(std::span<const ConventionFit> fits) {
-  const std::string& best = std::ranges::min_element(fits, {}, &ConventionFit::rms)->read_as;
-  if (best.starts_with("frame ")) return "frame " + best.substr(6) + " (--frame)";
-  if (best.find("transposed") != std::string::npos)
-    return "exchange m12 and m21, m13 and m31 ..., or change the signs of 13, 31, 23, 32, 34 and 43";
-  return "change the signs in the table; where both beams have another convention: --convention";
-}
-
 void add(std::vector<std::string>& warnings, std::string line) {
   if (!line.empty()) warnings.push_back(std::move(line));
 }
@@ -166,36 +103,6 @@ std::vector<std::string> data_warnings(const FitResult& result) {
   add(warnings, chi_squared_warning(result));
   add(warnings, condition_warning(result));
   return warnings;
-}
-
-Inspection inspect(std::span<const Sample> samples) {
-  Inspection result;
-  result.findings = row_findings(samples);
-  if (samples.empty()) throw std::invalid_argument("there are no samples");
-  const std::vector<Sample> some = without_fills(samples);
-  FitOptions options;
-  options.minimum_norm = true;
-  try {
-    const FitResult fitted = fit(some, {Family::isotropic, inspected_orders}, options);
-    const Validity& validity = fitted.model.validity;
-    result.sides = fitted.sides;
-    result.f11_residual = relative_rms(some, fitted);
-    result.unsupported = unsupported_share(validity, some.front().wavelength);
-    result.hole = unsupported_line(validity, some.front().wavelength);
-    const auto found = f11_diagnostics(fitted.model, some.front().wavelength, fitted_theta_max(validity), coarser);
-    // Few samples leave much to the smallest norm.
-    if (const std::string line = energy_line(found, "of a fit of low order");
-        !line.empty() && (some.size() >= enough_samples || found.dhr > beyond_doubt))
-      result.findings.push_back({"scale of f11", line, ""});
-    if (Finding cosine = cosine_finding(some, options); !cosine.fault.empty()) result.findings.push_back(cosine);
-    if (const std::string line = sides_warning(fitted); line.find("folded") != std::string::npos)
-      result.findings.push_back({"azimuths", line, "give phi_i and phi_r as they were, from -180 to 180 or 0 to 360"});
-    if (const auto fits = convention_fits(some, inspected_orders); !convention_warning(fits).empty())
-      result.findings.push_back({"frame or signs", convention_warning(fits), convention_remedy(fits)});
-  } catch (const std::invalid_argument& error) {
-    result.findings.push_back({"no fit", error.what(), ""});
-  }
-  return result;
 }
 
 std::vector<std::string> fit_warnings(const FitResult& result, std::span<const Sample> samples,

@@ -2,7 +2,9 @@
 #include "mmbrdf/quantities/trust.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -68,13 +70,41 @@ void visit_nodes(const Validity& validity, double wavelength, const auto& visit)
   }
 }
 
-/// "theta_i 0 to 30", the part where more than half is missing; empty if that is everywhere or nowhere.
-std::string missing_part(const std::string& name, const MissingAt& at) {
+/// All that are missing, and by each angle.
+struct AllMissing {
+  Missing all;
+  MissingAt theta_i, theta_r, phi;
+};
+
+AllMissing all_missing(const Validity& validity, double wavelength) {
+  AllMissing result;
+  visit_nodes(validity, wavelength, [&](const Geometry& g, double weight, bool missing) {
+    result.all.add(weight, missing);
+    result.theta_i[std::round(degrees(g.incident.theta))].add(weight, missing);
+    result.theta_r[std::round(degrees(g.reflected.theta))].add(weight, missing);
+    result.phi[std::round(std::abs(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360)))].add(weight,
+                                                                                                         missing);
+  });
+  return result;
+}
+
+/// The part where more than half is missing; none if that is everywhere or nowhere.
+std::optional<Hole::Degrees> missing_part(const MissingAt& at) {
   const auto lacks = [](const auto& one) { return one.second.share() > 0.5; };
   const auto first = std::ranges::find_if(at, lacks);
-  if (first == at.end() || std::ranges::all_of(at, lacks)) return "";
-  const auto end = std::find_if_not(first, at.end(), lacks);
-  const std::string from = rounded(first->first, 3), to = rounded(std::prev(end)->first, 3);
+  if (first == at.end() || std::ranges::all_of(at, lacks)) return {};
+  return Hole::Degrees{first->first, std::prev(std::find_if_not(first, at.end(), lacks))->first};
+}
+
+Hole hole_of(const AllMissing& missing) {
+  if (!(missing.all.share() > much_unsupported)) return {};
+  return {missing_part(missing.theta_i), missing_part(missing.theta_r), missing_part(missing.phi)};
+}
+
+/// "theta_i 0 to 30"; empty for none.
+std::string part_line(const std::string& name, const std::optional<Hole::Degrees>& part) {
+  if (!part) return "";
+  const std::string from = rounded(part->from, 3), to = rounded(part->to, 3);
   return name + " " + from + (to == from ? "" : " to " + to);
 }
 
@@ -127,28 +157,52 @@ double fitted_theta_max(const Validity& validity) {
 }
 
 double unsupported_share(const Validity& validity, double wavelength) {
-  Missing all;
-  visit_nodes(validity, wavelength, [&](const Geometry&, double weight, bool missing) { all.add(weight, missing); });
-  return all.share();
+  return all_missing(validity, wavelength).all.share();
+}
+
+Hole unsupported_part(const Validity& validity, double wavelength) {
+  return hole_of(all_missing(validity, wavelength));
 }
 
 std::string unsupported_line(const Validity& validity, double wavelength) {
-  Missing all;
-  MissingAt theta_i, theta_r, phi;
-  visit_nodes(validity, wavelength, [&](const Geometry& g, double weight, bool missing) {
-    all.add(weight, missing);
-    theta_i[std::round(degrees(g.incident.theta))].add(weight, missing);
-    theta_r[std::round(degrees(g.reflected.theta))].add(weight, missing);
-    phi[std::round(std::abs(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360)))].add(weight, missing);
-  });
+  const AllMissing missing = all_missing(validity, wavelength);
+  const Missing& all = missing.all;
   if (!(all.share() > much_unsupported)) return "";
+  const Hole hole = hole_of(missing);
   std::string parts;
   for (const std::string& part :
-       {missing_part("phi_r - phi_i", phi), missing_part("theta_i", theta_i), missing_part("theta_r", theta_r)})
+       {part_line("phi_r - phi_i", hole.phi), part_line("theta_i", hole.theta_i), part_line("theta_r", hole.theta_r)})
     if (!part.empty()) parts += (parts.empty() ? ", most at " : ", at ") + part;
   return "no samples support " + (all.share() < 0.995 ? rounded(100 * all.share(), 2) : "100") +
          " % of the pairs of directions within the fitted angles" + parts + (parts.empty() ? "" : " degrees") +
          ": what is said there is an extrapolation";
+}
+
+MissingShares missing_shares(const Validity& validity, double wavelength) {
+  if (validity.supported.empty() || validity.supported.front().pairs.grid() != DirectionPairs::Grid::isotropic)
+    return {};
+  std::map<double, std::size_t> thetas, phis;  // places of the nodes' angles
+  const auto angles_of = [](const Geometry& g) {
+    return std::array{std::round(degrees(g.incident.theta)), std::round(degrees(g.reflected.theta)),
+                      std::round(degrees(g.reflected.phi))};
+  };
+  const DirectionPairs& grid = validity.supported.front().pairs;
+  for (std::size_t node = 0; node < grid.nodes(); ++node)
+    thetas[angles_of(grid.geometry(node))[0]] = phis[angles_of(grid.geometry(node))[2]] = 0;
+  MissingShares result;
+  for (auto& [theta, place] : thetas) place = result.theta_deg.size(), result.theta_deg.push_back(theta);
+  for (auto& [phi, place] : phis) place = result.phi_deg.size(), result.phi_deg.push_back(phi);
+  std::vector<Missing> sources(thetas.size()), detectors(thetas.size() * phis.size());
+  visit_nodes(validity, wavelength, [&](const Geometry& g, double, bool missing) {
+    const auto [theta_i, theta_r, phi] = angles_of(g);
+    const auto weight = [](const Direction& d) { return std::sin(d.theta) * std::cos(d.theta) + 1e-6; };
+    sources[thetas[theta_i]].add(weight(g.reflected), missing);
+    detectors[thetas[theta_r] * phis.size() + phis[phi]].add(weight(g.incident), missing);
+  });
+  const auto share = [](const Missing& one) { return one.whole > 0 ? one.share() : std::nan(""); };
+  std::ranges::transform(sources, std::back_inserter(result.theta_i), share);
+  std::ranges::transform(detectors, std::back_inserter(result.detector), share);
+  return result;
 }
 
 std::string not_positive_line(const F11Diagnostics& found, const std::string& where) {

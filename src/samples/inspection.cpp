@@ -142,13 +142,13 @@ std::vector<Finding> row_findings(std::span<const Sample> samples, std::span<con
     const std::string example = std::abs(largest_element(first)) > impossible && !(std::abs(first.f11) > impossible)
                                     ? "elements up to " + rounded(largest_element(first), 4)
                                     : "f11 = " + (std::isnan(first.f11) ? "" : rounded(first.f11, 6));
-    result.push_back({"fill values", example + " in " + named(fills), "leave these rows out"});
+    result.push_back({"fill values", example + " in " + named(fills), "leave these rows out", fills});
   }
   const auto beyond = which_are(
       samples, [&](const Sample& s) { return largest_element(s) > beyond_one && (all_wrong || !is_fill(s, typical)); });
   if (are_many(beyond, samples.size()))
     result.push_back({"elements not divided", "elements beyond " + rounded(beyond_one, 2) + " in " + named(beyond),
-                      "are they divided by f11, and in no percent? m12 ... m44 are M12 / M11 ..."});
+                      "are they divided by f11, and in no percent? m12 ... m44 are M12 / M11 ...", beyond});
   const auto impossible_ones = which_are(samples, [&](const Sample& s) {
     return !is_fill(s, typical) && not_measured(s).none() && largest_element(s) <= beyond_one &&
            realizability_margin(s.normalized) < -not_realizable;
@@ -157,18 +157,20 @@ std::vector<Finding> row_findings(std::span<const Sample> samples, std::span<con
     result.push_back({"matrices that cannot exist",
                       "the smallest coherency eigenvalue is below " + rounded(-not_realizable, 2) + " of f11 in " +
                           named(impossible_ones),
-                      "are columns exchanged, or signs of single elements wrong?"});
+                      "are columns exchanged, or signs of single elements wrong?", impossible_ones});
   if (const std::string list = zeros(samples); !list.empty())
-    result.push_back({"zeros", "exactly 0 in all samples: " + list,
-                      "leave out the columns of what was not measured, so that it is unknown and not 0"});
+    result.push_back({"zeros",
+                      "exactly 0 in all samples: " + list,
+                      "leave out the columns of what was not measured, so that it is unknown and not 0",
+                      {}});
   if (const auto again = repeated(samples); !again.empty())
     result.push_back({"repeated rows", "the same in every number as an earlier one: " + named(again),
-                      "leave them out: a reading counts once"});
+                      "leave them out: a reading counts once", again});
   const auto far = which_are(
       samples, [](const Sample& s) { return s.wavelength < shortest_wavelength || s.wavelength > longest_wavelength; });
   if (!far.empty())
     result.push_back({"wavelengths", shortest(in_nanometres(samples[far.front()].wavelength)) + " nm in " + named(far),
-                      "is the unit nanometres (wavelength_nm) or micrometres (wavelength_um)?"});
+                      "is the unit nanometres (wavelength_nm) or micrometres (wavelength_um)?", far});
   return result;
 }
 

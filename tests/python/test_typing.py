@@ -20,6 +20,9 @@ mmbrdf.plot.hemisphere(model, 532, 60)
 mmbrdf.plot.residual_map(model, data, None, 60)
 mmbrdf.plot.polar_in_plane([model], [532, 633])
 mmbrdf.report(model, data, "report.html", theta_i_deg=60)
+seen: mmbrdf.Inspection = mmbrdf.inspect(data)
+mmbrdf.plot.directions(data, 532, inspection=seen)
+mmbrdf.report(None, data[list(seen.findings[0].samples)], "page.html")
 f11 = model.evaluate(532, 45, 0, [0, 30], 180)[..., 0, 0] + 1
 names = model.evaluate(532, 45, 0, [0, 30], 180, as_xarray=True).dims
 u = model.evaluate_uncertainty(theta_i_deg=45, phi_i_deg=0, theta_r_deg=0, phi_r_deg=0)
@@ -55,7 +58,7 @@ def test_a_program_that_is_right_passes(tmp_path, cache):
 @pytest.mark.parametrize(
     "wrong, message",
     [
-        ('mmbrdf.report(data, data, "report.html")', 'incompatible type "Dataset"; expected "Model"'),
+        ('mmbrdf.report(data, data, "report.html")', 'incompatible type "Dataset"; expected'),
         ("mmbrdf.plot.in_plane_curves(mmbrdf.fit(data), 532)", 'incompatible type "FitResult"; expected "Model"'),
         ('mmbrdf.plot.hemisphere(model, "532", 60)', 'incompatible type "str"'),
         ("model.evaluate(532)", 'No overload variant of "evaluate"'),

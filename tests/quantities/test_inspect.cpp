@@ -149,5 +149,127 @@ TEST(Inspect, OfF11AloneAsksNothingOfTheOthers) {
   EXPECT_EQ(found(samples), "scale of f11");
 }
 
+/// As if angles in radians were called degrees.
+void in_radians(Samples& samples) {
+  each(samples, [](Sample& s) {
+    for (Direction* d : {&s.geometry.incident, &s.geometry.reflected})
+      *d = {radians(d->theta), radians(std::remainder(d->phi, 2 * std::numbers::pi))};
+  });
+}
+
+Samples in_plane_of(Samples samples) {
+  std::erase_if(samples, [](const Sample& s) { return side(s.geometry) != plane_of_incidence; });
+  return samples;
+}
+
+Samples on_grid() { return simulate(material("ptfe-532"), std::vector{0.532}, germer2017_grid(), 0.006, 1); }
+
+TEST(Inspect, TellsAnglesInRadiansFromDegreesAndNothingElseThen) {
+  for (Samples samples : {measured(1), measured(3, "ptfe"), on_grid(), in_plane_of(on_grid())}) {
+    EXPECT_EQ(found(samples), "");
+    in_radians(samples);
+    EXPECT_EQ(found(samples), "angles in radians") << samples.size();
+    EXPECT_EQ(inspect(samples).untested.size(), 4U);
+  }
+}
+
+/// Of a cone around the normal and azimuths close to the plane of incidence, with a peak of `width` degrees.
+Samples narrow(double width, double phi_max, double speckle, unsigned long seed) {
+  Samples samples =
+      simulate(material("ptfe-532"), std::vector{0.532}, random_geometries(200, seed, radians(1.5)), speckle, seed);
+  double phase = 0;
+  for (Sample& s : samples) {
+    s.geometry.incident.phi = 0;
+    s.geometry.reflected.phi = radians(phi_max) * std::sin(phase += 2.4);
+    const double x = degrees(s.geometry.incident.theta - s.geometry.reflected.theta);
+    s.f11 *= 0.01 + std::exp(-x * x / (width * width));
+  }
+  return samples;
+}
+
+TEST(Inspect, TakesNoNarrowConeForRadians) {
+  for (const double width : {0.2, 1.0, 5.0})
+    for (const double phi_max : {0.0, 6.2})
+      for (const double speckle : {0.0, 0.03})
+        EXPECT_EQ(found(narrow(width, phi_max, speckle, 5)), "") << width << " " << phi_max << " " << speckle;
+  Mueller unknown;
+  unknown.elements.fill(std::numeric_limits<double>::quiet_NaN());
+  unknown(0, 0) = 1;
+  Samples scan;  // in the plane of incidence, in steps of 0.05 degrees
+  for (int i = -30; i <= 30; ++i)
+    for (const double theta_i : {0.0, 0.25, 0.5, 0.75, 1.0})
+      scan.push_back({.wavelength = 0.532,
+                      .geometry = {direction_from_degrees(theta_i, 0), direction_from_degrees(0.05 * i, 0)},
+                      .f11 = 0.3 + std::exp(-0.1 * (i - 20 * theta_i) * (i - 20 * theta_i)),
+                      .normalized = unknown});
+  EXPECT_EQ(found(scan), "");
+}
+
+std::string untested(const Samples& samples) {
+  std::string list;
+  for (const Untested& one : inspect(samples).untested) list += (list.empty() ? "" : ", ") + one.fault;
+  return list;
+}
+
+TEST(Inspect, SaysWhatFewSamplesCannotTell) {
+  Samples few = measured(1);
+  few.resize(3);
+  EXPECT_EQ(found(few), "");
+  const Inspection seen = inspect(few);
+  EXPECT_EQ(to_string(seen.untested.front()),
+            "cannot be told: scale of f11: 3 samples, of 60 that it takes to know a reflectance");
+  EXPECT_NE(untested(few).find("cosine"), std::string::npos);
+  EXPECT_NE(untested(few).find("frame or signs"), std::string::npos);
+  EXPECT_EQ(verdict_line(seen), "nothing seems to be wrong, as far as can be told");
+}
+
+TEST(Inspect, SaysThatACosineCannotBeToldFromOneAngleOfIncidence) {
+  EXPECT_EQ(untested(on_grid()).find("cosine"), std::string::npos);
+  Samples samples = on_grid();
+  std::erase_if(samples, [](const Sample& s) { return std::abs(degrees(s.geometry.incident.theta) - 45) > 1; });
+  EXPECT_NE(untested(samples).find("cosine"), std::string::npos);
+}
+
+TEST(Inspect, TakesNoReflectanceFromHalfAHemisphere) {
+  Samples half = on_grid();
+  std::erase_if(half,
+                [](const Sample& s) { return std::cos(s.geometry.reflected.phi - s.geometry.incident.phi) <= 0; });
+  EXPECT_EQ(found(half), "");
+  EXPECT_NE(untested(half).find("scale of f11"), std::string::npos);
+}
+
+TEST(Inspect, SaysThatNoiseHidesTheFrame) {
+  const Inspection noisy = inspect(measured(1, "ptfe-532", 0.05));
+  ASSERT_EQ(noisy.untested.size(), 1U);
+  EXPECT_EQ(noisy.untested.front().reason, "residuals would be less than 1.5 times as large however it is read");
+}
+
+TEST(Inspect, GivesTheHoleInNumbersAndTheResidualOfEachSample) {
+  Samples samples = on_grid();
+  EXPECT_FALSE(inspect(samples).hole_at.phi);
+  std::erase_if(samples, [](const Sample& s) {
+    return std::abs(std::remainder(s.geometry.reflected.phi - s.geometry.incident.phi, 2 * std::numbers::pi)) <
+           radians(90.0 - 1e-6);
+  });
+  samples[7].f11 = -999;
+  const Inspection seen = inspect(samples);
+  ASSERT_TRUE(seen.hole_at.phi);
+  EXPECT_EQ(seen.hole_at.phi->from, 0);
+  EXPECT_NEAR(seen.hole_at.phi->to, 70, 10);  // samples count as far as the next nodes, 10 degrees apart
+  EXPECT_NE(seen.hole.find("phi_r - phi_i 0 to " + std::to_string(std::lround(seen.hole_at.phi->to))),
+            std::string::npos);
+  EXPECT_EQ(seen.findings.front().samples, std::vector<std::size_t>{7});
+  ASSERT_EQ(seen.residuals.size(), samples.size());
+  double squares = 0, all = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(std::isnan(seen.residuals[i]), i == 7);
+    if (i == 7) continue;
+    squares += seen.residuals[i] * seen.residuals[i];
+    all += samples[i].f11 * samples[i].f11;
+  }
+  // The fit is to 1500 samples at most: here to all.
+  EXPECT_NEAR(std::sqrt(squares / all), seen.f11_residual, 1e-9);
+}
+
 }  // namespace
 }  // namespace mmbrdf

@@ -27,13 +27,6 @@ struct Options {
   Format format = Format::text;
 };
 
-std::string element_list(const Elements& elements) {
-  std::vector<std::string> names;
-  for (std::size_t e = 0; e < 16; ++e)
-    if (elements[e]) names.push_back(element_name(e));
-  return names.size() == 16 ? "all sixteen" : joined(names);
-}
-
 struct Angles {
   double smallest = 90, largest = 0;  // degrees
 };
@@ -47,14 +40,15 @@ Angles angles(const std::vector<Sample>& samples, Direction Geometry::*direction
   return result;
 }
 
-std::string sides_text(Sides sides) {
-  if (sides == plane_of_incidence) return "in the plane of incidence only";
-  if ((sides & negative_side) && (sides & positive_side)) return "on both sides of the plane of incidence";
-  return "on one side of the plane of incidence";
-}
-
-bool have_uncertainties(const std::vector<Sample>& samples) {
-  return std::ranges::all_of(samples, [](const Sample& s) { return has_uncertainty(s); });
+nlohmann::ordered_json hole_json(const Hole& hole) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  const auto add = [&](const char* name, const std::optional<Hole::Degrees>& part) {
+    if (part) json[name] = {part->from, part->to};
+  };
+  add("theta_i", hole.theta_i);
+  add("theta_r", hole.theta_r);
+  add("phi_r_phi_i", hole.phi);
+  return json;
 }
 
 /// The command that fits the file as it was read here.
@@ -76,39 +70,33 @@ nlohmann::ordered_json facts(const Inspection& seen, const std::vector<Sample>& 
   for (const double wavelength : wavelengths(samples)) json["wavelengths_nm"].push_back(in_nanometres(wavelength));
   for (std::size_t e = 0; e < 16; ++e)
     if (!missing[e]) json["elements"].push_back(element_name(e));
-  json["uncertainties"] = have_uncertainties(samples);
+  json["uncertainties"] = std::ranges::all_of(samples, [](const Sample& s) { return has_uncertainty(s); });
   json["theta_i_deg"] = {incident.smallest, incident.largest};
   json["theta_r_deg"] = {reflected.smallest, reflected.largest};
-  json["sides"] = sides_text(seen.sides);
+  json["sides"] = sides_line(seen.sides);
   json["unsupported"] = seen.unsupported;
   json["hole"] = seen.hole;
+  json["hole_deg"] = hole_json(seen.hole_at);
   json["f11_residual"] = seen.f11_residual;
   json["findings"] = nlohmann::ordered_json::array();
   for (const Finding& one : seen.findings)
     json["findings"].push_back({{"fault", one.fault}, {"evidence", one.evidence}, {"remedy", one.remedy}});
+  json["untested"] = nlohmann::ordered_json::array();
+  for (const Untested& one : seen.untested) json["untested"].push_back({{"fault", one.fault}, {"reason", one.reason}});
   return json;
 }
 
 void print_text(const Inspection& seen, const std::vector<Sample>& samples, const Options& options,
                 const CommandLine& line) {
-  const auto row = [](const char* name, const std::string& text) {
-    std::cout << format("%-13s", name) << text << '\n';
-  };
-  const auto span = [](const Angles& a) { return format("%.4g ... %.4g degrees", a.smallest, a.largest); };
   std::cout << printable(data_name(options.data), longest_text) << ": "
             << counted(static_cast<long>(samples.size()), "sample") << " at " << nanometre_list(wavelengths(samples))
             << "\n\n";
-  row("elements", element_list(~not_measured(samples)) +
-                      (have_uncertainties(samples) ? ", with their uncertainties" : ", without uncertainties"));
-  row("theta_i", span(angles(samples, &Geometry::incident)));
-  row("theta_r", span(angles(samples, &Geometry::reflected)) + ", " + sides_text(seen.sides));
-  row("covered", format("%.0f %% of the pairs of directions within these angles", 100 * (1 - seen.unsupported)));
-  if (!seen.hole.empty()) row("", seen.hole);
-  if (seen.f11_residual > 0)
-    row("residual", format("%.2g %% of f11: noise, and what a fit of low order misses", 100 * seen.f11_residual));
+  for (const auto& [name, text] : inspection_rows(seen, samples))
+    std::cout << format("%-13s", name.c_str()) << text << '\n';
   std::cout << '\n';
   for (const Finding& one : seen.findings) std::cout << printable(to_string(one), 4 * longest_text) << '\n';
-  if (seen.findings.empty()) std::cout << "nothing seems to be wrong\n";
+  for (const Untested& one : seen.untested) std::cout << printable(to_string(one), 4 * longest_text) << '\n';
+  if (const std::string verdict = verdict_line(seen); !verdict.empty()) std::cout << verdict << '\n';
   std::cout << '\n' << next_command(options, line) << '\n';
 }
 
@@ -131,11 +119,13 @@ constexpr const char* footer =
     "Looks at the samples before they are fitted, and names what they betray, each with its evidence and what mends "
     "it:\n"
     "fill values, elements that are not divided by f11, matrices that cannot exist, columns of zeros, repeated rows,\n"
-    "wavelengths beyond 0.1 ... 20 um; by fits of low order to the samples of the first wavelength a reflectance "
-    "above\n"
-    "1, a cosine too many or too few, folded azimuths, and another frame or other signs. mmbrdf fit warns of the "
-    "same.\n"
-    "Ends with the command that fits the file.\n"
+    "wavelengths beyond 0.1 ... 20 um; by fits of low order to the samples of the first wavelength radians that are "
+    "called\n"
+    "degrees, a reflectance above 1, a cosine too many or too few, folded azimuths, and another frame or other signs. "
+    "Of\n"
+    "these it says which could not be seen in such data, and why. mmbrdf fit warns of most. Ends with the command that "
+    "fits\n"
+    "the file. The same with pictures: python3 -m mmbrdf.report DATA.csv -o PAGE.html\n"
     "\n"
     "Example:\n"
     "  mmbrdf inspect data.csv";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/samples/inspection.hpp"
 
 namespace mmbrdf {
@@ -45,26 +46,51 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
                                       std::span<const long> numbers = {});
 inline constexpr std::size_t most_checked = 12;
 
+/// A fault that would not have been seen, and why.
+struct Untested {
+  std::string fault;   ///< "cosine"
+  std::string reason;  ///< "3 samples, and a fit of low order has 14 coefficients"
+};
+
+/// "cannot be told: cosine: 3 samples, and a fit of low order has 14 coefficients"
+std::string to_string(const Untested& untested);
+
 /// What data are, seen before they are fitted.
 struct Inspection {
-  std::vector<Finding> findings;  ///< what is wrong with them; empty if nothing seems to be
+  std::vector<Finding> findings;   ///< what is wrong with them; empty if nothing seems to be
+  std::vector<Untested> untested;  ///< what else might be, for all that these data say
   Sides sides = no_side;
   double f11_residual =
       0;  ///< rms of f11 − fit of low order, relative to that of f11: noise and fine structure; 0: none
-  double unsupported = 0;  ///< unsupported_share() of that fit
-  std::string hole;        ///< unsupported_line() of it
+  std::vector<double> residuals;  ///< f11 − that fit of each sample, sr⁻¹; NaN where there is none
+  double unsupported = 0;         ///< unsupported_share() of that fit
+  std::string hole;               ///< unsupported_line() of it
+  Hole hole_at;                   ///< unsupported_part() of it
+  MissingShares missing;          ///< missing_shares() of it
 };
 
 /// row_findings(), and of fits of low orders (inspected_orders, isotropic, of minimum norm) to the samples of the first
 /// wavelength, most_tried at most, without fill values:
 ///
+///   angles in radians        that are taken for degrees: then none of the following is looked at
 ///   scale of f11             energy_line(): percent, π, a factor
 ///   cosine                   f11 is reciprocal after it is divided by cos θr, or multiplied by it: better_convention
 ///   azimuths, frame          sides_warning of folded azimuths, convention_warning()
 ///   no fit                   why there is none
 ///
-/// Each with the option or column that mends it. Throws std::invalid_argument for invalid samples, or none.
+/// Each with the option or column that mends it. A fault that is not found is untested if it, planted in these data, would
+/// not be found either; and so are the last three with fewer samples than twice the coefficients of the fit, and the scale
+/// with fewer than 60, a fifth of the pairs of directions missing, or theta_r below 30 degrees. Throws std::invalid_argument for invalid samples, or none.
 Inspection inspect(std::span<const Sample> samples);
 inline constexpr Orders inspected_orders{4, 3};
+
+/// What they are, in words: rows of a name, which may be empty, and what it is. And a line on what was looked at, if there
+/// are no findings: "nothing seems to be wrong".
+struct InspectionRow {
+  std::string name, text;
+};
+std::vector<InspectionRow> inspection_rows(const Inspection& seen, std::span<const Sample> samples);
+std::string verdict_line(const Inspection& seen);
+std::string sides_line(Sides sides);
 
 }  // namespace mmbrdf

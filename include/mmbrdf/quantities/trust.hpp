@@ -2,7 +2,9 @@
 /// Where a model is not physical, and in which words.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "mmbrdf/model/model.hpp"
 
@@ -50,6 +52,25 @@ double unsupported_share(const Validity& validity, double wavelength);
 std::string unsupported_line(const Validity& validity, double wavelength);
 
 inline constexpr double much_unsupported = 0.05;
+
+/// That part in numbers, from one node of DirectionPairs to another: where more than half of the pairs at such an angle are
+/// missing. None where that is at all angles, or at no such angle.
+struct Hole {
+  struct Degrees {
+    double from = 0, to = 0;
+  };
+  std::optional<Degrees> theta_i, theta_r, phi;  ///< phi: |phi_r - phi_i|
+};
+Hole unsupported_part(const Validity& validity, double wavelength);
+
+/// And for pictures: which share of the pairs is missing for each theta_i, and for each theta_r and |phi_r - phi_i|; NaN
+/// beyond the fitted angles. Empty where no pairs are known, or not those of an isotropic sample.
+struct MissingShares {
+  std::vector<double> theta_deg, phi_deg;  ///< of the nodes
+  std::vector<double> theta_i;             ///< at each of theta_deg
+  std::vector<double> detector;            ///< at each of theta_deg, and there at each of phi_deg
+};
+MissingShares missing_shares(const Validity& validity, double wavelength);
 
 /// How a geometry is called in sentences: "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees".
 std::string place_line(const Geometry& geometry);

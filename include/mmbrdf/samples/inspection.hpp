@@ -2,6 +2,7 @@
 /// What a table of samples betrays of itself, row by row and without a model.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,9 +13,10 @@ namespace mmbrdf {
 
 /// A fault that the data show, and what mends it.
 struct Finding {
-  std::string fault;     ///< "fill values"
-  std::string evidence;  ///< "f11 = -999 in 20 samples: 3, 17, 18, …"
-  std::string remedy;    ///< "leave these rows out"; empty where that depends
+  std::string fault;                   ///< "fill values"
+  std::string evidence;                ///< "f11 = -999 in 20 samples: 3, 17, 18, …"
+  std::string remedy;                  ///< "leave these rows out"; empty where that depends
+  std::vector<std::size_t> samples{};  ///< which, counted from 0; none: all, or it depends
 };
 
 /// "fill values: f11 = -999 in 20 samples: 3, 17, …: leave these rows out"

@@ -16,16 +16,20 @@ from .curves import in_plane_curves, polar_in_plane, subset_study
 from .maps import depolarization_map, realizability_map
 from .designs import plan
 from .panels import hemisphere, residual_map
+from .samples import directions, low_order_residuals, suspicious
 from .spectrum import coefficient_spectrum
 
 __all__ = [
     "coefficient_spectrum",
     "depolarization_map",
+    "directions",
     "hemisphere",
     "in_plane_curves",
+    "low_order_residuals",
     "plan",
     "polar_in_plane",
     "realizability_map",
     "residual_map",
     "subset_study",
+    "suspicious",
 ]
