@@ -25,7 +25,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 struct Reduction::Solution {
   Polarimeter polarimeter;
-  MatrixXd inverse;  ///< H⁺, 16 × readings
+  MatrixXd rows;     ///< H, readings × 16
+  MatrixXd inverse;  ///< H⁺
   Elements undetermined;
   int rank = 16;
   double condition = 1;
@@ -69,15 +70,21 @@ Inverse of_arms(const dense::Svd& generator, const dense::Svd& analyzer, double 
   return result;
 }
 
-Inverse of_rows(const Polarimeter& polarimeter) {
-  MatrixXd h = MatrixXd::Zero(std::max<Index>(index(polarimeter.readings()), 16), 16);  // rows of 0 for all of V
+MatrixXd rows_of(const Polarimeter& polarimeter) {
+  MatrixXd h(index(polarimeter.readings()), 16);
   for (std::size_t j = 0; j < polarimeter.readings(); ++j) {
     const auto [p, q] = polarimeter.pair(j);
     for (std::size_t e = 0; e < 16; ++e)
       h(index(j), index(e)) = polarimeter.analyzer[q][e / 4] * polarimeter.generator[p][e % 4];
   }
+  return h;
+}
+
+Inverse of_rows(const MatrixXd& rows) {
+  MatrixXd h = MatrixXd::Zero(std::max<Index>(rows.rows(), 16), 16);  // rows of 0 for all of V
+  h.topRows(rows.rows()) = rows;
   const auto [u, v, s] = dense::thin_svd(h);
-  const Index readings = index(polarimeter.readings());
+  const Index readings = rows.rows();
   Inverse result{MatrixXd::Zero(16, readings), {}, 0, 1};
   // One state that is brighter than the others takes nothing from what these determine.
   VectorXd norms = h.topRows(readings).rowwise().norm();
@@ -96,14 +103,14 @@ Inverse of_rows(const Polarimeter& polarimeter) {
   return result;
 }
 
-Inverse inverse_of(const Polarimeter& polarimeter) {
+Inverse inverse_of(const Polarimeter& polarimeter, const MatrixXd& rows) {
   if (polarimeter.pairs.empty() && polarimeter.generator.size() >= 4 && polarimeter.analyzer.size() >= 4) {
     const dense::Svd generator = dense::thin_svd(columns(polarimeter.generator));
     const dense::Svd analyzer = dense::thin_svd(columns(polarimeter.analyzer));
     const double condition = generator.s(0) / generator.s(3) * (analyzer.s(0) / analyzer.s(3));
     if (condition <= most_amplified) return of_arms(generator, analyzer, condition);
   }
-  return of_rows(polarimeter);
+  return of_rows(rows);
 }
 
 MuellerCovariance covariance_of(const MatrixXd& matrix, const Elements& undetermined) {
@@ -125,7 +132,8 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
   require_usable(polarimeter);
   auto solution = std::make_shared<Solution>();
   solution->polarimeter = polarimeter;
-  Inverse inverse = inverse_of(polarimeter);
+  solution->rows = rows_of(polarimeter);
+  Inverse inverse = inverse_of(polarimeter, solution->rows);
   if (!inverse.matrix.allFinite())
     throw std::invalid_argument("states so large or so small that no finite numbers are left");
   solution->inverse = std::move(inverse.matrix);
@@ -159,7 +167,9 @@ Mueller Reduction::mueller(std::span<const double> readings) const {
   const Eigen::Map<const VectorXd> b(readings.data(), index(readings.size()));
   if (!b.allFinite()) throw std::invalid_argument("a reading is not finite");
   Mueller m;
-  Eigen::Map<Eigen::Matrix<double, 16, 1>>(m.elements.data()) = solution_->inverse * b;
+  Eigen::Map<Eigen::Matrix<double, 16, 1>> x(m.elements.data());
+  x = solution_->inverse * b;
+  x += solution_->inverse * (b - solution_->rows * x);  // what rounding of the inverse left
   return with_unknown(m, solution_->undetermined);
 }
 
