@@ -10,18 +10,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "formats/byte_file.hpp"
+#include "formats/netcdf_header.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
-namespace {
-
-/// Of a text with its length in front, in words of four bytes.
-std::uint64_t name_size(const char* name) { return 4 + (std::string_view(name).size() + 3) / 4 * 4; }
-
-}  // namespace
-
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
+  require_classic_header(path);
   // Absolute, so that no name of a file is taken for an address.
   if (const int status = nc_open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
     throw std::runtime_error(path + ": not to be opened as NetCDF: " + nc_strerror(status) + "; cut off?");
@@ -53,48 +47,6 @@ std::optional<NetcdfVariable> NetcdfFile::variable(const std::string& name) cons
   else if (type == NC_FLOAT)
     result.fill = static_cast<double>(NC_FILL_FLOAT);
   return result;
-}
-
-std::uint64_t NetcdfFile::attribute_size(int variable, int count) const {
-  std::uint64_t result = 8;
-  for (int a = 0; a < count; ++a) {
-    std::array<char, NC_MAX_NAME + 1> name{};
-    nc_type type = NC_NAT;
-    std::size_t length = 0, size = 0;
-    require(nc_inq_attname(id_, variable, a, name.data()), "an attribute");
-    require(nc_inq_att(id_, variable, name.data(), &type, &length), name.data());
-    require(nc_inq_type(id_, type, nullptr, &size), name.data());
-    result += name_size(name.data()) + 8 + (length * size + 3) / 4 * 4;
-  }
-  return result;
-}
-
-// The classic format (Unidata, "File Format Specifications"): header, then the variables.
-std::uint64_t NetcdfFile::needed_size() const {
-  int format = 0, dimensions = 0, variables = 0, attributes = 0;
-  require(nc_inq_format(id_, &format), "format");
-  if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return 0;
-  require(nc_inq(id_, &dimensions, &variables, &attributes, nullptr), "header");
-  std::array<char, NC_MAX_NAME + 1> name{};
-  std::uint64_t header = 8 + 8 + attribute_size(NC_GLOBAL, attributes) + 8, numbers = 0;
-  for (int d = 0; d < dimensions; ++d) header += name_size(dimension_name(d).c_str()) + 4;
-  for (int v = 0; v < variables; ++v) {
-    nc_type type = NC_NAT;
-    int count = 0, own = 0;
-    std::size_t size = 0;
-    require(nc_inq_var(id_, v, name.data(), &type, &count, nullptr, &own), "a variable");
-    std::vector<int> axes(static_cast<std::size_t>(count));
-    require(nc_inq_vardimid(id_, v, axes.data()), name.data());
-    require(nc_inq_type(id_, type, nullptr, &size), name.data());
-    header +=
-        name_size(name.data()) + 4 + 4 * axes.size() + attribute_size(v, own) + (format == NC_FORMAT_CLASSIC ? 12 : 16);
-    std::uint64_t bytes = size;
-    for (const int axis : axes) bytes = product(bytes, length(axis));
-    if (bytes > std::numeric_limits<std::uint64_t>::max() / 2 - numbers)
-      return std::numeric_limits<std::uint64_t>::max();
-    numbers += bytes;
-  }
-  return header + numbers;
 }
 
 std::size_t NetcdfFile::length(int dimension) const {
