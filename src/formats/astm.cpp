@@ -51,8 +51,9 @@ class AstmReader : public ForeignFile::Reader {
   void read(const UseSamples& use) override {
     SampleSink sink(use);
     std::uint64_t rows = 0;
-    for (; file_.next(); ++rows) {
+    while (file_.next()) {
       if (file_.line()[0] == '#') continue;
+      ++rows;
       const std::vector<std::string_view> row = fields(file_.line());
       if (row.size() != columns_.size())
         throw file_.error(std::to_string(row.size()) + " values, but VARS has " + std::to_string(columns_.size()) +
