@@ -16,7 +16,7 @@ struct NetcdfVariable {
   std::string name;
   int id = 0;
   std::vector<int> dimensions;
-  double fill = 0;  ///< stands for no value
+  std::vector<double> missing;  ///< each stands for no value
 };
 
 class NetcdfFile {
@@ -45,6 +45,7 @@ class NetcdfFile {
 
  private:
   void require(int status, const std::string& what) const;
+  std::vector<double> missing_values(const std::string& name, int id, int type) const;
 
   std::string path_;
   int id_ = -1;

@@ -181,6 +181,37 @@ TEST(Netcdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(foreign_refusal(path, {0.5}), {"numbers are more than a file of"}));
 }
 
+/// f11 of four samples in another type, of which the last ones stand for no value.
+std::vector<Sample> typed(const Folder& folder, nc_type type, const std::vector<double>& values,
+                          const std::vector<double>& missing) {
+  int file = 0, axis = 0;
+  EXPECT_EQ(nc_create((folder / "x").c_str(), NC_CLOBBER | NC_NETCDF4, &file), NC_NOERR);
+  nc_def_dim(file, "sample", values.size(), &axis);
+  std::map<std::string, int> ids;
+  for (const std::string name : {"theta_i_deg", "theta_r_deg", "phi_r_deg"})
+    nc_def_var(file, name.c_str(), NC_DOUBLE, 0, nullptr, &ids[name]);
+  nc_def_var(file, "brdf", type, 1, &axis, &ids["brdf"]);
+  nc_put_att_text(file, ids["brdf"], "units", 4, "sr-1");
+  if (!missing.empty())
+    nc_put_att_double(file, ids["brdf"], "missing_value", NC_DOUBLE, missing.size(), missing.data());
+  nc_enddef(file);
+  const double angle = 30;
+  for (const char* name : {"theta_i_deg", "theta_r_deg", "phi_r_deg"}) nc_put_var_double(file, ids[name], &angle);
+  EXPECT_EQ(nc_put_var_double(file, ids["brdf"], values.data()), NC_NOERR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  return read_foreign_file(folder / "x", {0.5}).samples;
+}
+
+TEST(Netcdf, TakesMissingValuesAndDefaultFillsOfItsTypeForNoValues) {
+  const Folder folder;
+  EXPECT_EQ(typed(folder, NC_DOUBLE, {1, 2, -9999, -8888}, {-9999, -8888}).size(), 2U);
+  EXPECT_EQ(typed(folder, NC_FLOAT, {1, 2, 1e20, 3}, {1e20}).size(), 3U);
+  EXPECT_EQ(typed(folder, NC_SHORT, {1, 2, 3, NC_FILL_SHORT}, {}).size(), 3U);
+  EXPECT_EQ(typed(folder, NC_INT, {1, 2, -1, NC_FILL_INT}, {-1}).size(), 2U);
+  EXPECT_EQ(typed(folder, NC_UINT, {1, 2, 3, NC_FILL_UINT}, {}).size(), 3U);
+  EXPECT_EQ(typed(folder, NC_UBYTE, {1, 2, 3, NC_FILL_UBYTE}, {}).size(), 4U);
+}
+
 /// Of a record dimension too: where the library's own reader took gigabytes, or crashed.
 TEST(Netcdf, IsReadOrRefusedInOneLineWhateverByteOfAClassicHeaderIsWrong) {
   const Folder folder;
