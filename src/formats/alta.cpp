@@ -121,7 +121,7 @@ class AltaReader : public ForeignFile::Reader {
     for (; there_; there_ = file_.next())
       if (file_.line()[0] != '#') add_row(sink);
     sink.finish(path_);
-    passed_over = sink.passed_over(wavelengths_.size() > 1 ? "values" : "rows");
+    passed_over = sink.passed_over(wavelengths_.size() > 1 ? "values" : "rows") + file_.end_note();
   }
 
  private:

@@ -66,7 +66,7 @@ class AstmReader : public ForeignFile::Reader {
       throw file_.error("NUM_POINTS is " + shortest(*points_) + ", but there are " + std::to_string(rows) +
                         " rows: cut off? Correct NUM_POINTS if all are there");
     sink.finish(path_);
-    passed_over = sink.passed_over(values_.size() > 1 ? "values" : "rows");
+    passed_over = sink.passed_over(values_.size() > 1 ? "values" : "rows") + file_.end_note();
   }
 
  private:

@@ -146,6 +146,15 @@ TEST(Alta, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(foreign_refusal(path), {"x: does not say the wavelength of its 1 value a row"}));
 }
 
+TEST(Alta, AsksWhetherItIsCompleteIfItsLastLineHasNoEnd) {
+  const Folder folder;
+  const std::string text = head("SPHERICAL_TL_PL_TV_PV", 4) + "0.1 0 0.2 0 0.3\n0.1 0 0.3 0 0.35";
+  put(folder / "x", text);
+  EXPECT_TRUE(says(read_foreign_file(folder / "x", {0.5}).understood, {"; its last line has no end: is it complete?"}));
+  put(folder / "x", text + "\n");
+  EXPECT_EQ(read_foreign_file(folder / "x", {0.5}).understood.find("no end"), std::string::npos);
+}
+
 TEST(Alta, IsNoTableOfSamplesWithACommentThatReadsLikeIts) {
   for (const std::string comment : {"#ALTA of last year", "#DIM of the lamp: 3", "#DIM 3 1", "#PARAM_IN words"}) {
     const std::string table = comment + "\nwavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11\n";

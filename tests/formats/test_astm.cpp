@@ -70,6 +70,15 @@ TEST(Astm, CountsNoCommentAsARow) {
   EXPECT_TRUE(says(foreign_refusal(folder / "x", {0.5}), {"NUM_POINTS is 3, but there are 2 rows"}));
 }
 
+TEST(Astm, AsksWhetherItIsCompleteIfItsLastLineHasNoEnd) {
+  const Folder folder;
+  const std::string text = "VARS theta_i,theta_s,phi_s,BRDF\n0,0.5,0,0.1\n0,0.6,0,0.25";
+  put(folder / "x", text);
+  EXPECT_TRUE(says(read_foreign_file(folder / "x", {0.5}).understood, {"; its last line has no end: is it complete?"}));
+  put(folder / "x", text + "\n");
+  EXPECT_EQ(read_foreign_file(folder / "x", {0.5}).understood.find("no end"), std::string::npos);
+}
+
 TEST(Astm, HasWavelengthsInTheNamesOfColumnsOrIsTold) {
   const Folder folder;
   const std::string two = "VARS theta_i,phi_i,theta_s,phi_s,450nm,550 nm\n0.1,0,0.2,0,0.3,0.4\n";
