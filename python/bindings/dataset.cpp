@@ -134,6 +134,7 @@ DatasetPointer samples_of(const std::filesystem::path& path, const ColumnNames& 
 DatasetPointer foreign_samples_of(const std::filesystem::path& path, const std::optional<Given>& wavelength_nm) {
   require_readable(path);
   ForeignOptions options;
+  options.told_by = "wavelength_nm=";
   if (wavelength_nm) options.wavelengths = micrometres(numbers("wavelength_nm", *wavelength_nm));
   return without_gil([&] {
     ForeignFile file(path, options);

@@ -88,6 +88,10 @@ constexpr std::array parametrizations{
                     }},
 };
 
+bool is_count(std::string_view word) {
+  return std::ranges::all_of(word, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
 class AltaReader : public ForeignFile::Reader {
  public:
   explicit AltaReader(const Source& source) : file_(source.path), path_(source.path) {
@@ -117,7 +121,7 @@ class AltaReader : public ForeignFile::Reader {
     for (; there_; there_ = file_.next())
       if (file_.line()[0] != '#') add_row(sink);
     sink.finish(path_);
-    passed_over = sink.passed_over(wavelengths_.size() > 1 ? "values" : "rows");
+    passed_over = sink.passed_over(wavelengths_.size() > 1 ? "values" : "rows") + file_.end_note();
   }
 
  private:
@@ -208,7 +212,15 @@ class AltaReader : public ForeignFile::Reader {
 
 bool is_alta(std::string_view head, std::uint64_t) {
   head = head.substr(0, head.find('\0'));  // the binary form, which is refused, has a header, too
-  return has_keyword(head, "#DIM") || has_keyword(head, "#PARAM_IN") || has_keyword(head, "#ALTA");
+  bool dimensions = false, input = false;
+  for (; !head.empty() && !(dimensions && input); head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1)) {
+    const std::vector<std::string_view> words = fields(head.substr(0, head.find('\n')));
+    if (words.empty()) continue;
+    if (words[0][0] != '#') return false;
+    if (words.size() > 2 && words[0] == "#DIM") dimensions = is_count(words[1]) && is_count(words[2]);
+    if (words.size() > 1 && words[0] == "#PARAM_IN") input = true;
+  }
+  return dimensions && input;
 }
 
 std::unique_ptr<ForeignFile::Reader> open_alta(const Source& source) { return std::make_unique<AltaReader>(source); }

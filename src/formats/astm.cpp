@@ -51,8 +51,9 @@ class AstmReader : public ForeignFile::Reader {
   void read(const UseSamples& use) override {
     SampleSink sink(use);
     std::uint64_t rows = 0;
-    for (; file_.next(); ++rows) {
+    while (file_.next()) {
       if (file_.line()[0] == '#') continue;
+      ++rows;
       const std::vector<std::string_view> row = fields(file_.line());
       if (row.size() != columns_.size())
         throw file_.error(std::to_string(row.size()) + " values, but VARS has " + std::to_string(columns_.size()) +
@@ -65,7 +66,7 @@ class AstmReader : public ForeignFile::Reader {
       throw file_.error("NUM_POINTS is " + shortest(*points_) + ", but there are " + std::to_string(rows) +
                         " rows: cut off? Correct NUM_POINTS if all are there");
     sink.finish(path_);
-    passed_over = sink.passed_over(values_.size() > 1 ? "values" : "rows");
+    passed_over = sink.passed_over(values_.size() > 1 ? "values" : "rows") + file_.end_note();
   }
 
  private:

@@ -244,13 +244,38 @@ class BirdReader : public ForeignFile::Reader {
   std::vector<Sample> samples_;
 };
 
+constexpr std::string_view blanks = " \t\r\n";
+constexpr std::array<std::string_view, 7> variables{"\"BRDF\"",    "\"uBRDF\"", "\"theta_i\"",     "\"phi_i\"",
+                                                    "\"theta_r\"", "\"phi_r\"", "\"wavelength_i\""};
+
+/// Whether a text goes on with this behind blanks; it is then taken from its beginning.
+bool takes(std::string_view& text, std::string_view what) {
+  const std::string_view rest = text.substr(std::min(text.find_first_not_of(blanks), text.size()));
+  if (!rest.starts_with(what)) return false;
+  text = rest.substr(what.size());
+  return true;
+}
+
+/// A model or instrument of this project, which may name a file in this format.
+bool is_own(std::string_view head) {
+  constexpr std::string_view key = "\"format\"";
+  for (std::size_t at = head.find(key); at != std::string_view::npos; at = head.find(key, at + 1)) {
+    std::string_view rest = head.substr(at + key.size());
+    if (takes(rest, ":") && takes(rest, "\"mmbrdf ")) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_bird(std::string_view head, std::uint64_t) {
-  const std::size_t first = head.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  head.remove_prefix(head.starts_with("\xef\xbb\xbf") ? 3 : 0);
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  return first != std::string_view::npos && head[first] == '{' && !has("\"mmbrdf ") &&  // our own may name such a file
-         (has("brdf_json_schema") || (has("\"theta_i\"") && has("\"values\"")));
+  if (!takes(head, "{") || is_own(head)) return false;
+  const std::string_view first = head.substr(std::min(head.find_first_not_of(blanks), head.size()));
+  const bool begins = first.starts_with("\"data\"") || first.starts_with("\"metadata\"");
+  return has("brdf_json_schema") || (has("\"theta_i\"") && has("\"values\"")) ||
+         (begins && std::ranges::any_of(variables, has));
 }
 
 std::unique_ptr<ForeignFile::Reader> open_bird(const Source& source) { return std::make_unique<BirdReader>(source); }

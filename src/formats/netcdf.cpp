@@ -50,9 +50,6 @@ struct Block {
 class NetcdfReader : public ForeignFile::Reader {
  public:
   explicit NetcdfReader(const Source& source) : path_(source.path), file_(source.path) {
-    if (const std::uint64_t needed = file_.needed_size(); needed > source.size)
-      throw source.error("has " + std::to_string(source.size) + " bytes, but its variables take " +
-                         std::to_string(needed) + ": cut off?");
     const std::optional<NetcdfVariable> brdf = file_.variable("brdf");
     if (!brdf) throw source.error("no variable brdf: not the NetCDF that mmbrdf reads (docs/formats.md)");
     brdf_ = *brdf;

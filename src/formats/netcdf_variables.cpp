@@ -5,23 +5,32 @@
 
 #include <netcdf.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
-#include "formats/byte_file.hpp"
+#include "formats/netcdf_header.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-/// Of a text with its length in front, in words of four bytes.
-std::uint64_t name_size(const char* name) { return 4 + (std::string_view(name).size() + 3) / 4 * 4; }
+const std::map<int, double> default_fills{{NC_SHORT, NC_FILL_SHORT},
+                                          {NC_USHORT, NC_FILL_USHORT},
+                                          {NC_INT, NC_FILL_INT},
+                                          {NC_UINT, NC_FILL_UINT},
+                                          {NC_INT64, static_cast<double>(NC_FILL_INT64)},
+                                          {NC_UINT64, static_cast<double>(NC_FILL_UINT64)},
+                                          {NC_FLOAT, static_cast<double>(NC_FILL_FLOAT)},
+                                          {NC_DOUBLE, NC_FILL_DOUBLE}};
 
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
+  require_classic_header(path);
   // Absolute, so that no name of a file is taken for an address.
   if (const int status = nc_open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
     throw std::runtime_error(path + ": not to be opened as NetCDF: " + nc_strerror(status) + "; cut off?");
@@ -34,7 +43,7 @@ void NetcdfFile::require(int status, const std::string& what) const {
 }
 
 std::optional<NetcdfVariable> NetcdfFile::variable(const std::string& name) const {
-  NetcdfVariable result{name, 0, {}, NC_FILL_DOUBLE};
+  NetcdfVariable result{name, 0, {}, {}};
   const int status = nc_inq_varid(id_, name.c_str(), &result.id);
   if (status == NC_ENOTVAR) return {};
   require(status, name);
@@ -47,54 +56,30 @@ std::optional<NetcdfVariable> NetcdfFile::variable(const std::string& name) cons
   for (const char* packed : {"scale_factor", "add_offset"})
     if (nc_inq_att(id_, result.id, packed, nullptr, nullptr) == NC_NOERR)
       throw error(name, std::string(packed) + ": packed numbers cannot be read; write them unpacked");
-  std::size_t length = 0;
-  if (nc_inq_attlen(id_, result.id, "_FillValue", &length) == NC_NOERR && length == 1)
-    require(nc_get_att_double(id_, result.id, "_FillValue", &result.fill), name);
-  else if (type == NC_FLOAT)
-    result.fill = static_cast<double>(NC_FILL_FLOAT);
+  result.missing = missing_values(name, result.id, type);
   return result;
 }
 
-std::uint64_t NetcdfFile::attribute_size(int variable, int count) const {
-  std::uint64_t result = 8;
-  for (int a = 0; a < count; ++a) {
-    std::array<char, NC_MAX_NAME + 1> name{};
-    nc_type type = NC_NAT;
-    std::size_t length = 0, size = 0;
-    require(nc_inq_attname(id_, variable, a, name.data()), "an attribute");
-    require(nc_inq_att(id_, variable, name.data(), &type, &length), name.data());
-    require(nc_inq_type(id_, type, nullptr, &size), name.data());
-    result += name_size(name.data()) + 8 + (length * size + 3) / 4 * 4;
+// As xarray and netCDF4 of Python mask them: a default fill value only where there is no other, of bytes none.
+std::vector<double> NetcdfFile::missing_values(const std::string& name, int id, int type) const {
+  constexpr std::size_t most = 1000;
+  std::vector<double> result;
+  bool filled = false;
+  for (const char* attribute : {"_FillValue", "missing_value"}) {
+    std::size_t length = 0;
+    if (nc_inq_attlen(id_, id, attribute, &length) != NC_NOERR || length == 0) continue;
+    if (length > most) throw error(name, std::string(attribute) + " has " + std::to_string(length) + " values");
+    std::vector<double> values(length);
+    require(nc_get_att_double(id_, id, attribute, values.data()), name + ": " + attribute);
+    filled = filled || attribute[0] == '_';
+    result.insert(result.end(), values.begin(), values.end());
   }
+  if (!filled && default_fills.contains(type)) result.push_back(default_fills.at(type));
+  if (type == NC_FLOAT)  // as numbers of the variable are
+    for (double& value : result)
+      if (std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))
+        value = static_cast<double>(static_cast<float>(value));
   return result;
-}
-
-// The classic format (Unidata, "File Format Specifications"): header, then the variables.
-std::uint64_t NetcdfFile::needed_size() const {
-  int format = 0, dimensions = 0, variables = 0, attributes = 0;
-  require(nc_inq_format(id_, &format), "format");
-  if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return 0;
-  require(nc_inq(id_, &dimensions, &variables, &attributes, nullptr), "header");
-  std::array<char, NC_MAX_NAME + 1> name{};
-  std::uint64_t header = 8 + 8 + attribute_size(NC_GLOBAL, attributes) + 8, numbers = 0;
-  for (int d = 0; d < dimensions; ++d) header += name_size(dimension_name(d).c_str()) + 4;
-  for (int v = 0; v < variables; ++v) {
-    nc_type type = NC_NAT;
-    int count = 0, own = 0;
-    std::size_t size = 0;
-    require(nc_inq_var(id_, v, name.data(), &type, &count, nullptr, &own), "a variable");
-    std::vector<int> axes(static_cast<std::size_t>(count));
-    require(nc_inq_vardimid(id_, v, axes.data()), name.data());
-    require(nc_inq_type(id_, type, nullptr, &size), name.data());
-    header +=
-        name_size(name.data()) + 4 + 4 * axes.size() + attribute_size(v, own) + (format == NC_FORMAT_CLASSIC ? 12 : 16);
-    std::uint64_t bytes = size;
-    for (const int axis : axes) bytes = product(bytes, length(axis));
-    if (bytes > std::numeric_limits<std::uint64_t>::max() / 2 - numbers)
-      return std::numeric_limits<std::uint64_t>::max();
-    numbers += bytes;
-  }
-  return header + numbers;
 }
 
 std::size_t NetcdfFile::length(int dimension) const {
@@ -138,7 +123,8 @@ void NetcdfFile::read(const NetcdfVariable& variable, const std::vector<std::siz
   if (status != NC_NOERR && status != NC_ERANGE)
     throw error(variable.name, std::string(nc_strerror(status)) + ": cut off?");
   for (double& value : values)
-    if (value == variable.fill) value = std::numeric_limits<double>::quiet_NaN();
+    if (std::ranges::find(variable.missing, value) != variable.missing.end())
+      value = std::numeric_limits<double>::quiet_NaN();
 }
 
 std::runtime_error NetcdfFile::error(const std::string& variable, const std::string& what) const {

@@ -16,7 +16,7 @@ struct NetcdfVariable {
   std::string name;
   int id = 0;
   std::vector<int> dimensions;
-  double fill = 0;  ///< stands for no value
+  std::vector<double> missing;  ///< each stands for no value
 };
 
 class NetcdfFile {
@@ -29,10 +29,6 @@ class NetcdfFile {
 
   /// Nothing if there is none of this name. Throws for one that holds no numbers, or packed ones.
   std::optional<NetcdfVariable> variable(const std::string& name) const;
-
-  /// Bytes that a file of the classic format needs: what lies beyond its end is read as 0 without a word. 0 for NetCDF 4,
-  /// which tells by itself.
-  std::uint64_t needed_size() const;
 
   std::size_t length(int dimension) const;
   std::string dimension_name(int dimension) const;
@@ -49,7 +45,7 @@ class NetcdfFile {
 
  private:
   void require(int status, const std::string& what) const;
-  std::uint64_t attribute_size(int variable, int count) const;
+  std::vector<double> missing_values(const std::string& name, int id, int type) const;
 
   std::string path_;
   int id_ = -1;

@@ -2,6 +2,7 @@
 #include "formats/polarized_rows.hpp"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,7 +10,8 @@ namespace mmbrdf {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double determined_by = 1e-9;  // how far an element may be from what states tell: rounding
+constexpr double smallest = 1e-2;      // of the largest singular value: below it errors grow more than a hundredfold
+constexpr double undetermined = 1e-2;  // the part of an element of which states tell nothing
 
 }  // namespace
 
@@ -28,13 +30,13 @@ const PolarizedRows::Solution& PolarizedRows::solution(std::span<const Polarized
   const auto known = solutions_.find(key);
   if (known != solutions_.end()) return known->second;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Index rank = (svd.singularValues().array() > determined_by * svd.singularValues()(0)).count();
+  const Eigen::Index rank = (svd.singularValues().array() >= smallest * svd.singularValues()(0)).count();
   const Eigen::MatrixXd v = svd.matrixV().leftCols(rank);
   const Eigen::MatrixXd inverse =
       v * svd.singularValues().head(rank).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(rank).transpose();
   Solution result;
   for (Eigen::Index e = 0; e < 16; ++e) {
-    result.determined[static_cast<std::size_t>(e)] = v.row(e).squaredNorm() > 1 - determined_by;
+    result.determined[static_cast<std::size_t>(e)] = v.row(e).squaredNorm() > 1 - undetermined * undetermined;
     for (Eigen::Index n = 0; n < inverse.cols(); ++n) result.inverse.push_back(inverse(e, n));
   }
   return solutions_.emplace(std::move(key), std::move(result)).first->second;
@@ -55,6 +57,7 @@ void PolarizedRows::solve(std::span<const PolarizedValue> values, Sample& sample
   sample.normalized(0, 0) = 1;
   sample.uncertainty = {};
   if (!determined[0]) return;
+  const bool uncertain = std::ranges::all_of(values, [](const PolarizedValue& one) { return one.uncertainty > 0; });
   for (std::size_t e = 0; e < 16; ++e) {
     if (!determined[e]) continue;
     const double m = e == 0 ? 0 : element(e) / sample.f11;
@@ -63,7 +66,7 @@ void PolarizedRows::solve(std::span<const PolarizedValue> values, Sample& sample
       const double slope = e == 0 ? inverse[n] : (inverse[e * count + n] - m * inverse[n]) / sample.f11;
       variance += slope * slope * values[n].uncertainty * values[n].uncertainty;
     }
-    sample.uncertainty.elements[e] = std::sqrt(variance);
+    if (uncertain) sample.uncertainty.elements[e] = std::sqrt(variance);
     if (e > 0) sample.normalized.elements[e] = m;
   }
 }

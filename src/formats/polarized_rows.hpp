@@ -21,11 +21,15 @@ struct PolarizedValue {
   double uncertainty = 0;  ///< of it; 0: not known
 };
 
-/// What states tell of a matrix, by least squares; the same states are solved once.
+/// What states tell of a matrix, by least squares; the same states are solved once. Combinations of elements whose
+/// singular value is below 1/100 of the largest count as not told: nearly equal states would tell them by their errors. An
+/// element is determined if less than 1/100 of it (the length of its part) is in such combinations, so that states as
+/// measured, which are not quite s and p, determine what s and p do.
 class PolarizedRows {
  public:
   /// f11 and elements of a sample whose geometry is given, from values at it, with their uncertainties: those which the
-  /// states determine, all others unknown. f11 is NaN if they do not determine it.
+  /// states determine, all others unknown. f11 is NaN if they do not determine it. Uncertainties are 0, not known, if that
+  /// of any value is.
   void solve(std::span<const PolarizedValue> values, Sample& sample);
 
  private:

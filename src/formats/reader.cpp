@@ -20,18 +20,18 @@ std::runtime_error Source::error(const std::string& what) const { return std::ru
 
 std::vector<double> Source::told_wavelengths(std::size_t count, const std::string& values) const {
   const std::vector<double>& told = options.wavelengths;
-  const std::string how = count == 1 ? "--wavelength NM" : "--wavelength NM,NM ..., one for each";
+  const std::string how = options.told_by + (count == 1 ? "NM" : "NM,NM ..., one for each");
   if (told.empty()) throw error("does not say the wavelength of its " + values + ": tell it, " + how);
   if (told.size() != count)
     throw error("has " + values + ", not " + std::to_string(told.size()) + ": " + how + ", not " +
                 nanometre_text(told));
-  for (const double wavelength : told) require_wavelength(wavelength, path + ": --wavelength");
+  for (const double wavelength : told) require_wavelength(wavelength, path + ": the wavelength told");
   return told;
 }
 
 void Source::require_none_told() const {
   if (!options.wavelengths.empty())
-    throw error("says its wavelengths itself: leave out --wavelength " + nanometre_text(options.wavelengths));
+    throw error("says its wavelengths itself: leave out " + options.told_by + nanometre_text(options.wavelengths));
 }
 
 void SampleSink::add(const Sample& sample) {

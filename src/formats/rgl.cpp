@@ -36,8 +36,9 @@ class RglReader : public ForeignFile::Reader {
     vndf_ = file_.field("vndf");
     require_grid(vndf_, 2);
     find_spectra(source);
-    const std::vector<double> jacobian = numbers("jacobian");
-    with_density_ = jacobian.size() != 1 || jacobian[0] != 0;
+    if (const TensorField& field = file_.field("jacobian"); field.shape != std::vector<std::uint64_t>{1})
+      throw file_.error(field, "must have the shape [1]");
+    with_density_ = numbers("jacobian")[0] != 0;
     understood = std::to_string(theta_i_.size()) + " theta_i, " + std::to_string(phi_i_.size()) + " phi_i, " +
                  std::to_string(nx_) + " x " + std::to_string(ny_) + " samples of normals made into directions, " +
                  spectra_.name + (with_density_ ? " * ndf / (4 sigma cos(theta_r))" : " / cos(theta_r)") +

@@ -13,6 +13,7 @@ namespace mmbrdf {
 namespace {
 
 constexpr std::string_view magic("tensor_file\0", 12);
+constexpr std::uint64_t longest_axis = 10000;
 constexpr int float32 = 10, float64 = 11;
 constexpr std::array<std::size_t, 12> type_sizes{0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};  // u8, i8 … i64, f16, f32, f64
 
@@ -148,6 +149,8 @@ std::vector<double> TensorFile::axis(const std::string& name) {
   std::uint64_t count = 1, longest = 1;
   for (const std::uint64_t size : field.shape) count = product(count, size), longest = std::max(longest, size);
   if (count != longest) throw error(field, "shape " + shape_text(field.shape) + " is not that of one axis");
+  if (count > longest_axis)
+    throw error(field, std::to_string(count) + " nodes of an axis, must be at most " + std::to_string(longest_axis));
   std::vector<double> values(count);
   read(field, 0, values);
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -37,7 +37,8 @@ class TensorFile {
   /// Numbers of a field from the `first` one on. What is not finite is as it is.
   void read(const TensorField& field, std::uint64_t first, std::span<double> values);
 
-  /// All numbers of a field of one axis: others of length 1 may be around it. Finite and rising, or this throws.
+  /// All numbers of a field of one axis: others of length 1 may be around it. At most 10000, finite and rising, or this
+  /// throws.
   std::vector<double> axis(const std::string& name);
 
   /// Throws unless the field is of floating-point numbers in this shape.

@@ -27,7 +27,9 @@ bool TextFile::next() {
     ++number_;
     line_ = without_blanks(text_);
     if (number_ == 1 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
-    if (!line_.empty()) return true;
+    if (line_.empty()) continue;
+    ended_ = !in_.eof();
+    return true;
   }
   line_ = {};
   return false;

@@ -18,6 +18,9 @@ class TextFile {
   bool next();
   std::string_view line() const { return line_; }
 
+  /// "; its last line has no end: is it complete?" behind the last line if that is so; else nothing.
+  std::string end_note() const { return ended_ ? "" : "; its last line has no end: is it complete?"; }
+
   /// The next word of this line or the next ones; empty at the end. Words of a comment, from `comment` to the end of the
   /// line, are none. Valid until the next call.
   std::string_view word(char comment);
@@ -36,6 +39,7 @@ class TextFile {
   std::ifstream in_;
   std::string_view line_, rest_;
   long number_ = 0;
+  bool ended_ = true;
 };
 
 /// Parts between commas, or else between blanks, without blanks around them. A comma at the end ends the last part.

@@ -139,11 +139,29 @@ TEST(Alta, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal(head("COS_TH", 1)), {"x:5: #PARAM_IN COS_TH", "let ALTA write one of SPHERICAL"}));
   EXPECT_TRUE(says(refusal(head("CARTESIAN", 4)), {"#DIM says 4 coordinates, but CARTESIAN has 6"}));
   EXPECT_TRUE(says(refusal(head("CARTESIAN", 6, "ENERGY")), {"x:6: #PARAM_OUT ENERGY: is no BRDF"}));
-  EXPECT_TRUE(says(refusal("#DIM 4 1e300\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n"), {"#DIM says 1e+300 values a row"}));
-  EXPECT_TRUE(says(refusal("#DIM 4 1\n#FORMAT binary\n"), {"x:2: #FORMAT binary"}));
-  EXPECT_TRUE(says(refusal("#DIM 4 1\n0.1"), {"no line #PARAM_IN"}));
+  EXPECT_TRUE(says(refusal("#DIM 4 9999\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n"), {"#DIM says 9999 values a row"}));
+  EXPECT_TRUE(says(refusal("#DIM 4 1\n#FORMAT binary\n#PARAM_IN CARTESIAN\n"), {"x:2: #FORMAT binary"}));
+  EXPECT_TRUE(says(refusal("#DIM 4 1\n0.1\n#PARAM_IN CARTESIAN\n"), {"in no format of measurements"}));
   put(path, good + "0.1 0 0.2 0 0.3\n");
   EXPECT_TRUE(says(foreign_refusal(path), {"x: does not say the wavelength of its 1 value a row"}));
+}
+
+TEST(Alta, AsksWhetherItIsCompleteIfItsLastLineHasNoEnd) {
+  const Folder folder;
+  const std::string text = head("SPHERICAL_TL_PL_TV_PV", 4) + "0.1 0 0.2 0 0.3\n0.1 0 0.3 0 0.35";
+  put(folder / "x", text);
+  EXPECT_TRUE(says(read_foreign_file(folder / "x", {0.5}).understood, {"; its last line has no end: is it complete?"}));
+  put(folder / "x", text + "\n");
+  EXPECT_EQ(read_foreign_file(folder / "x", {0.5}).understood.find("no end"), std::string::npos);
+}
+
+TEST(Alta, IsNoTableOfSamplesWithACommentThatReadsLikeIts) {
+  for (const std::string comment : {"#ALTA of last year", "#DIM of the lamp: 3", "#DIM 3 1", "#PARAM_IN words"}) {
+    const std::string table = comment + "\nwavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,f11\n";
+    EXPECT_EQ(foreign_format(table, table.size()), "") << comment;
+  }
+  const std::string late = "#DIM 4 1\nwavelength_nm,f11\n#PARAM_IN CARTESIAN\n";
+  EXPECT_EQ(foreign_format(late, late.size()), "");
 }
 
 }  // namespace

@@ -62,6 +62,23 @@ TEST(Astm, KeepsTheSignOfNoise) {
   EXPECT_NEAR(std::cos(read.samples.at(1).geometry.reflected.phi), -1, 1e-15);  // −theta is the other side
 }
 
+TEST(Astm, CountsNoCommentAsARow) {
+  const Folder folder;
+  put(folder / "x", "NUM_POINTS 2\nVARS theta_i,theta_s,phi_s,BRDF\n# one\n0,0.5,0,0.1\n# two\n0,0.6,0,0.2\n");
+  EXPECT_EQ(read_foreign_file(folder / "x", {0.5}).samples.size(), 2U);
+  put(folder / "x", "NUM_POINTS 3\nVARS theta_i,theta_s,phi_s,BRDF\n# one\n0,0.5,0,0.1\n0,0.6,0,0.2\n");
+  EXPECT_TRUE(says(foreign_refusal(folder / "x", {0.5}), {"NUM_POINTS is 3, but there are 2 rows"}));
+}
+
+TEST(Astm, AsksWhetherItIsCompleteIfItsLastLineHasNoEnd) {
+  const Folder folder;
+  const std::string text = "VARS theta_i,theta_s,phi_s,BRDF\n0,0.5,0,0.1\n0,0.6,0,0.25";
+  put(folder / "x", text);
+  EXPECT_TRUE(says(read_foreign_file(folder / "x", {0.5}).understood, {"; its last line has no end: is it complete?"}));
+  put(folder / "x", text + "\n");
+  EXPECT_EQ(read_foreign_file(folder / "x", {0.5}).understood.find("no end"), std::string::npos);
+}
+
 TEST(Astm, HasWavelengthsInTheNamesOfColumnsOrIsTold) {
   const Folder folder;
   const std::string two = "VARS theta_i,phi_i,theta_s,phi_s,450nm,550 nm\n0.1,0,0.2,0,0.3,0.4\n";

@@ -141,6 +141,51 @@ TEST(Bird, LeavesUnknownWhatStatesDoNotDetermine) {
   EXPECT_TRUE(says(foreign_refusal(folder / "one"), {"one: data.polarization_i: the states determine f11 nowhere"}));
 }
 
+std::vector<std::string> repeated(const std::string& one, std::size_t times) {
+  return std::vector<std::string>(times, one);
+}
+
+/// One geometry in the plane of incidence, where the frames sp and xy differ by signs alone.
+std::vector<Sample> from_states(const Folder& folder, const std::vector<std::string>& incident,
+                                const std::vector<std::string>& brdf, const std::vector<std::string>& percent = {}) {
+  Columns c;
+  for (std::size_t n = 0; n < brdf.size(); ++n) c.directions(30, 0, 40, 180);
+  c.brdf = brdf;
+  c.u = percent;
+  c.nm = repeated("550", brdf.size());
+  c.pol_i = incident;
+  put(folder / "x", file(c, "inStokes"));
+  return read_foreign_file(folder / "x").samples;
+}
+
+TEST(Bird, LeavesUnknownWhatNearlyDependentStatesWouldTellByTheirErrors) {
+  const Folder folder;
+  const std::vector<Sample> samples =
+      from_states(folder, {"[1, 0, 1, 0]", "[1, 1e-4, 1, 0]", "[1, 0, -1, 0]"}, {"0.31", "0.313", "0.29"});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_NEAR(samples[0].f11, 0.3, 0.002);
+  EXPECT_TRUE(std::isnan(samples[0].normalized(0, 1)));
+  EXPECT_FALSE(std::isnan(samples[0].normalized(0, 2)));
+}
+
+TEST(Bird, TakesStatesThatAreNotQuiteSAndP) {
+  const Folder folder;
+  const std::vector<Sample> samples =
+      from_states(folder, {"[1, 0.9998, 0.003, 0.001]", "[1, -0.9995, 0.004, -0.002]"}, {"0.36", "0.24"});
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_NEAR(samples[0].f11, 0.3, 0.001);
+  EXPECT_NEAR(std::abs(samples[0].normalized(0, 1)), 0.2, 0.001);
+  EXPECT_EQ(not_measured(samples[0]).count(), 14U);
+}
+
+TEST(Bird, KnowsNoUncertaintyWhereThatOfOneStateIsNotKnown) {
+  const Folder folder;
+  const std::vector<std::string> states{"[1, 1, 0, 0]", "[1, -1, 0, 0]"};
+  EXPECT_GT(from_states(folder, states, {"0.36", "0.24"}, {"1", "1"}).at(0).uncertainty(0, 1), 0);
+  const Sample unknown = from_states(folder, states, {"0.36", "0.24"}, {"1", "0"}).at(0);
+  for (const double one : unknown.uncertainty.elements) EXPECT_EQ(one, 0);
+}
+
 TEST(Bird, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   const Folder folder;
   const std::string path = folder / "x";
@@ -165,6 +210,20 @@ TEST(Bird, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(foreign_refusal(path), {"data.theta_i: value 1: [] is no finite number"}));
   put(path, R"({"metadata": {"schema": "brdf_json_schema"}})");
   EXPECT_TRUE(says(foreign_refusal(path), {"no object data"}));
+}
+
+TEST(Bird, IsToldByItsFirstKeyAndAVariableHoweverLongItsListsAre) {
+  const std::string list = R"(": {"unit": "deg", "values": [)" + std::string(2 * foreign_head, '1') + "]}";
+  for (const std::string first : {"theta_r", "BRDF", "wavelength_i"}) {
+    const std::string text = "{ \"data\" : {\"" + first + list + "}, \"metadata\": {}}";
+    EXPECT_EQ(foreign_format(text, text.size()), "a BiRD JSON file") << first;
+  }
+  for (const std::string said : {R"("description": "simulated by \"mmbrdf simulate\"")", R"("tool": "mmbrdf 1")"}) {
+    const std::string text = "{\"metadata\": {" + said + "}, \"data\": {\"theta_i" + list + "}}";
+    EXPECT_EQ(foreign_format(text, text.size()), "a BiRD JSON file") << said;
+  }
+  const std::string other = R"({"data": {"x": [1, 2]}})";
+  EXPECT_EQ(foreign_format(other, other.size()), "");
 }
 
 TEST(Bird, IsNoModelThatNamesOne) {

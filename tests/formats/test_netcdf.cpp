@@ -2,6 +2,7 @@
 // NetCDF, written here with the library's own calls: over a grid with scalar and one-dimensional coordinates, as xarray
 // writes it, and over a list of samples.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cstdio>
 #include <map>
@@ -54,7 +55,12 @@ void write(const std::string& path, const std::map<std::string, std::size_t>& ax
   nc_enddef(file);
   for (std::size_t v = 0; v < variables.size(); ++v) {
     if (variables[v].values.empty()) continue;
-    ASSERT_EQ(nc_put_var_double(file, numbers[v], variables[v].values.data()), NC_NOERR);
+    std::vector<std::size_t> start(variables[v].axes.size()), count;
+    std::size_t rest = variables[v].values.size();
+    for (const std::string& axis : variables[v].axes)
+      count.push_back(axes.at(axis)), rest /= std::max<std::size_t>(1, count.back());
+    if (!count.empty() && count[0] == NC_UNLIMITED) count[0] = rest;
+    ASSERT_EQ(nc_put_vara_double(file, numbers[v], start.data(), count.data(), variables[v].values.data()), NC_NOERR);
   }
   ASSERT_EQ(nc_close(file), NC_NOERR);
 }
@@ -173,6 +179,68 @@ TEST(Netcdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
                    {"the last two axes must be row, column"}));
   write(path, {{"sample", std::size_t(1) << 40}}, {{"brdf", {"sample"}, {}, {{"units", "1/sr"}}}}, NC_NETCDF4);
   EXPECT_TRUE(says(foreign_refusal(path, {0.5}), {"numbers are more than a file of"}));
+}
+
+/// f11 of four samples in another type, of which the last ones stand for no value.
+std::vector<Sample> typed(const Folder& folder, nc_type type, const std::vector<double>& values,
+                          const std::vector<double>& missing) {
+  int file = 0, axis = 0;
+  EXPECT_EQ(nc_create((folder / "x").c_str(), NC_CLOBBER | NC_NETCDF4, &file), NC_NOERR);
+  nc_def_dim(file, "sample", values.size(), &axis);
+  std::map<std::string, int> ids;
+  for (const std::string name : {"theta_i_deg", "theta_r_deg", "phi_r_deg"})
+    nc_def_var(file, name.c_str(), NC_DOUBLE, 0, nullptr, &ids[name]);
+  nc_def_var(file, "brdf", type, 1, &axis, &ids["brdf"]);
+  nc_put_att_text(file, ids["brdf"], "units", 4, "sr-1");
+  if (!missing.empty())
+    nc_put_att_double(file, ids["brdf"], "missing_value", NC_DOUBLE, missing.size(), missing.data());
+  nc_enddef(file);
+  const double angle = 30;
+  for (const char* name : {"theta_i_deg", "theta_r_deg", "phi_r_deg"}) nc_put_var_double(file, ids[name], &angle);
+  EXPECT_EQ(nc_put_var_double(file, ids["brdf"], values.data()), NC_NOERR);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  return read_foreign_file(folder / "x", {0.5}).samples;
+}
+
+TEST(Netcdf, TakesMissingValuesAndDefaultFillsOfItsTypeForNoValues) {
+  const Folder folder;
+  EXPECT_EQ(typed(folder, NC_DOUBLE, {1, 2, -9999, -8888}, {-9999, -8888}).size(), 2U);
+  EXPECT_EQ(typed(folder, NC_FLOAT, {1, 2, 1e20, 3}, {1e20}).size(), 3U);
+  EXPECT_EQ(typed(folder, NC_SHORT, {1, 2, 3, NC_FILL_SHORT}, {}).size(), 3U);
+  EXPECT_EQ(typed(folder, NC_INT, {1, 2, -1, NC_FILL_INT}, {-1}).size(), 2U);
+  EXPECT_EQ(typed(folder, NC_UINT, {1, 2, 3, NC_FILL_UINT}, {}).size(), 3U);
+  EXPECT_EQ(typed(folder, NC_UBYTE, {1, 2, 3, NC_FILL_UBYTE}, {}).size(), 4U);
+}
+
+/// Of a record dimension too: where the library's own reader took gigabytes, or crashed.
+TEST(Netcdf, IsReadOrRefusedInOneLineWhateverByteOfAClassicHeaderIsWrong) {
+  const Folder folder;
+  const std::string path = folder / "x";
+  const PreparedModel model = prepare(random_model(Family::isotropic, {2, 2}, 0, 4), 0.532);
+  for (const auto& [format, records] :
+       {std::pair{0, std::size_t(3)}, {NC_64BIT_OFFSET, std::size_t(3)}, {NC_64BIT_DATA, std::size_t(NC_UNLIMITED)}}) {
+    std::map<std::string, std::size_t> axes = grid_axes;
+    axes["theta_i_deg"] = records;
+    std::vector<Variable> variables = grid(model, Frame::xy, "germer2017");
+    write(path, axes, variables, format);
+    const std::string whole = contents(path);
+    const std::size_t header = whole.size() - 3 * 4 * 4 * 16 * 8;
+    for (std::size_t at = 0; at < header; ++at) {
+      std::string wrong = whole;
+      wrong[at] = '\x7f';
+      put(path, wrong);
+      try {
+        read_foreign_file(path);
+      } catch (const std::runtime_error& refusal) {
+        const std::string message = refusal.what();
+        EXPECT_TRUE(message.starts_with(path)) << at << ' ' << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << at;
+      }
+    }
+  }
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  EXPECT_LT(used.ru_maxrss, 1000000L);  // kB; with sanitizers, too
 }
 #endif
 

@@ -177,6 +177,12 @@ TEST(Rgl, IsRefusedInOneLineIfItIsCutOffOrWrong) {
                            }),
                    {"field wavelengths: 0.4", "is no wavelength"}));
   EXPECT_TRUE(says(refusal(4, [](TensorArray& f) { f.name = "other"; }), {"x: no field sigma"}));
+  const auto longer = [](TensorArray& f) {
+    f.shape = {20000};
+    f.data = std::string(4 * 20000, '\0');
+  };
+  EXPECT_TRUE(says(refusal(1, longer), {"field theta_i: 20000 nodes of an axis, must be at most 10000"}));
+  EXPECT_TRUE(says(refusal(7, longer), {"field jacobian: must have the shape [1]"}));
 }
 
 }  // namespace

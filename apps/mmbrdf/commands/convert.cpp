@@ -141,6 +141,8 @@ void convert_samples(const Options& o) {
 
 void convert(const Options& options, const CommandLine& line) {
   if (is_foreign(options.input)) return convert_samples(options);
+  if (options.output == "-")
+    throw WrongUsage("OUT", "\"-\": expected the name of a file; models do not go to standard output");
   if (options.orders && options.family == Family::germer2017)
     throw WrongUsage("--orders", "goes with the isotropic basis only");
   require_model_kept(options.input, options.output);
@@ -187,7 +189,7 @@ Run convert_command(CLI::App& app, const CommandLine& line) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->input, "IN")
       .description("Built-in name, JSON model, coefficient CSV, or a\nmeasurement to be made samples");
-  add_output_file(app, "OUT", o->output, " ", "File to write").required();
+  add_file(app, "OUT", o->output, " ", "File to write").required();
   add_option(app, "--basis", o->family, family_to_convert_to, "NAME", "isotropic or germer2017 [that of IN]");
   add_option(app, "--orders", o->orders, orders_from, "N,M",
              "Highest radial orders of the isotropic basis, of f11\nand of the other elements [those of IN]");

@@ -22,7 +22,10 @@ bool is_foreign(const std::string& name) {
 
 void write_as_samples(const std::string& input, const std::string& output,
                       const std::optional<std::vector<double>>& wavelengths_nm) {
-  if (has_ending(output, ".json")) throw WrongUsage("OUT", "samples are written as CSV, not as " + shown_name(output));
+  if (output == "-")
+    throw WrongUsage("OUT", "\"-\": expected the name of a file; samples do not go to standard output");
+  if (!has_ending(output, ".csv"))
+    throw WrongUsage("OUT", "samples are written as CSV: expected a name that ends in .csv, not " + shown_name(output));
   require_kept(input, output, "measurement");
   ForeignFile file(input, {micrometres(wavelengths_nm.value_or(std::vector<double>{}))});
   write_file(output, [&](std::ostream& out) {

@@ -23,6 +23,7 @@ namespace mmbrdf {
 struct ForeignOptions {
   /// Micrometres: of the file, or one for each of the values that it has at a geometry, in its order. Empty: not told.
   std::vector<double> wavelengths = {};
+  std::string told_by = "--wavelength ";  ///< how messages say it is told: this, then a number in nanometres
 
   bool operator==(const ForeignOptions&) const = default;
 };
