@@ -118,10 +118,10 @@ def main():
         (seeds("readings") / name).write_bytes(bytes([kind]) + (raw / name).read_bytes())
     run("calibrate", raw / "references.csv", "--film", "1.4607,1.0,4.15,0.044", "-o", seeds("instrument") / "one.json")
     frames = folder / "frames"
-    run("simulate", "ptfe-532", "--grid", "random:3", "--retarders", "1:5,12,127", "--frames", "31", "--raw", frames)
+    run("simulate", "ptfe-532", "--grid", "random:3", "--retarders", "1:5,6,127", "--frames", "31", "--raw", frames)
     for kind, name in enumerate(["references.csv", "raw.csv"]):
         (seeds("readings") / f"frames_{name}").write_bytes(bytes([kind]) + (frames / name).read_bytes())
-    run("calibrate", frames / "references.csv", "--film", "1.4607,1.0,4.15,0.044", "--retarders", "1:5,12,127",
+    run("calibrate", frames / "references.csv", "--film", "1.4607,1.0,4.15,0.044", "--retarders", "1:5,6,127",
         "-o", seeds("instrument") / "retarders.json")
     lines = data.read_text().splitlines()
     header, rows = lines[0].split(",")[:5], [line.split(",")[:5] for line in lines[1:6]]
