@@ -216,7 +216,7 @@ bool is_alta(std::string_view head, std::uint64_t) {
   for (; !head.empty() && !(dimensions && input); head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1)) {
     const std::vector<std::string_view> words = fields(head.substr(0, head.find('\n')));
     if (words.empty()) continue;
-    if (words[0][0] != '#') return false;
+    if (!words[0].starts_with('#')) return false;
     if (words.size() > 2 && words[0] == "#DIM") dimensions = is_count(words[1]) && is_count(words[2]);
     if (words.size() > 1 && words[0] == "#PARAM_IN") input = true;
   }

@@ -162,6 +162,7 @@ TEST(Alta, IsNoTableOfSamplesWithACommentThatReadsLikeIts) {
   }
   const std::string late = "#DIM 4 1\nwavelength_nm,f11\n#PARAM_IN CARTESIAN\n";
   EXPECT_EQ(foreign_format(late, late.size()), "");
+  EXPECT_EQ(foreign_format(",#DIM", 5), "");  // a line whose first word is empty
 }
 
 }  // namespace
