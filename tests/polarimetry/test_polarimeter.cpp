@@ -327,6 +327,14 @@ TEST(Reduction, OfSixStatesOfEachArmIsTheMatrix) {
   EXPECT_LE(largest(Reduction(p).mueller(readings(p, example)) - example), 1e-15);
 }
 
+TEST(Reduction, LosesNothingToAStateThatIsMuchBrighter) {
+  const std::vector<std::string> six{"s", "p", "+45", "-45", "L", "R"};
+  Polarimeter p = ideal_polarimeter(six, six);
+  for (double& component : p.generator[2]) component *= 1e5;
+  EXPECT_TRUE(Reduction(p).undetermined().none());
+  EXPECT_EQ(Reduction(p).rank(), 16);
+}
+
 // The same solution whether a grid is taken apart into its arms or not, with pairs in any order.
 RC_GTEST_PROP(Reduction, OfAGridIsThatOfItsPairs, ()) {
   const Polarimeter grid = best();
