@@ -121,10 +121,7 @@ class PbsdfReader : public ForeignFile::Reader {
 }  // namespace
 
 bool is_pbsdf(std::string_view head, std::uint64_t) {
-  const std::vector<std::string> names = tensor_names(head);
-  return std::ranges::any_of(names, [](const std::string& name) {
-    return name == "M" || name == "theta_d" || name == "theta_h" || name == "phi_d" || name == "wvls";
-  });
+  return has_tensor(head, {"M", "theta_d", "theta_h", "phi_d", "wvls"});
 }
 
 std::unique_ptr<ForeignFile::Reader> open_pbsdf(const Source& source) { return std::make_unique<PbsdfReader>(source); }

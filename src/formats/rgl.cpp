@@ -175,10 +175,7 @@ class RglReader : public ForeignFile::Reader {
 }  // namespace
 
 bool is_rgl(std::string_view head, std::uint64_t) {
-  const std::vector<std::string> names = tensor_names(head);
-  return std::ranges::any_of(names, [](const std::string& name) {
-    return name == "vndf" || name == "ndf" || name == "sigma" || name == "spectra" || name == "rgb";
-  });
+  return has_tensor(head, {"vndf", "ndf", "sigma", "spectra", "rgb"});
 }
 
 std::unique_ptr<ForeignFile::Reader> open_rgl(const Source& source) { return std::make_unique<RglReader>(source); }

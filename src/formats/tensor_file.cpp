@@ -111,6 +111,11 @@ std::vector<std::string> tensor_names(std::string_view head) {
   return names;
 }
 
+bool has_tensor(std::string_view head, std::initializer_list<std::string_view> names) {
+  const std::vector<std::string> there = tensor_names(head);
+  return std::ranges::any_of(names, [&](std::string_view name) { return std::ranges::count(there, name) > 0; });
+}
+
 TensorFile::TensorFile(const Source& source) : path_(source.path), file_(source.path) {
   std::uint32_t count = 0;
   fields_ = fields_of(source.head, count);

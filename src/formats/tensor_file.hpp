@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@ bool is_tensor_file(std::string_view head, std::uint64_t size);
 
 /// Names of the fields, as far as the head has them.
 std::vector<std::string> tensor_names(std::string_view head);
+
+/// Whether any of these is among them.
+bool has_tensor(std::string_view head, std::initializer_list<std::string_view> names);
 
 class TensorFile {
  public:

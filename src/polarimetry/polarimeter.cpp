@@ -132,7 +132,8 @@ double condition_number(std::span<const Stokes> states) {
   const MatrixXd matrix = columns(states);
   if (states.size() < 4 || !matrix.allFinite()) return std::numeric_limits<double>::infinity();
   const VectorXd s = dense::singular_values(matrix);
-  return has_rank_four(s) ? s(0) / s(3) : std::numeric_limits<double>::infinity();
+  constexpr double least_singular = 1e-12;  // relative to the largest: below, rounding alone could have made it
+  return s(3) > least_singular * s(0) ? s(0) / s(3) : std::numeric_limits<double>::infinity();
 }
 
 std::vector<double> optimal_angles(double retardance, int states) {

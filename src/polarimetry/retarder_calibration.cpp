@@ -290,11 +290,11 @@ Calibration with_signs_of(const RetarderState& air, const RetarderProblem& probl
       if (turned && !wafer) continue;  // a retarder does not tell
       RetarderState x = air;
       x.instrument = other(x.instrument, exchanged, turned);
-      x = with_references(x, problem);
-      minimise(x, problem);
-      tidy(x.instrument, problem.options.retarders->nominal);
-      Calibration result = calibration_of(x, problem);
       try {
+        x = with_references(x, problem);
+        minimise(x, problem);
+        tidy(x.instrument, problem.options.retarders->nominal);
+        Calibration result = calibration_of(x, problem);
         require_signs(result, problem.references, problem.options);
         return result;
       } catch (const std::invalid_argument& refusal) {
