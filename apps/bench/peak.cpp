@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled once for each instruction set, as src/model/kernel/kernel.cpp is.
-#include "model/kernel/pack.hpp"
+#include "numerics/pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {

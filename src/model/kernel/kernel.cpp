@@ -8,7 +8,7 @@
 #include "model/kernel/kernel_isotropic.hpp"
 #include "model/kernel/kernel_pairs.hpp"
 #include "model/kernel/layouts.hpp"
-#include "model/kernel/pack.hpp"
+#include "numerics/pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {
@@ -316,16 +316,6 @@ size_t first_invalid(const T* const vectors[3], size_t count) {
     if (!(e < limit && e > -limit && z >= 0)) break;
   }
   return q;
-}
-
-bool runs_here() {
-#if defined(__AVX512F__)
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-#elif defined(__AVX2__)
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#else
-  return true;
-#endif
 }
 
 #define MMBRDF_TEXT(name) #name

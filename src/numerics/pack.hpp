@@ -22,6 +22,17 @@ constexpr int vector_bytes = 32;
 constexpr int vector_bytes = 16;
 #endif
 
+/// Whether this processor has what this source was compiled for.
+inline bool runs_here() {
+#if defined(__AVX512F__)
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+#elif defined(__AVX2__)
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+  return true;
+#endif
+}
+
 /// The vector extension of gcc and clang has all operators, but neither fma nor sqrt: there a loop over the lanes,
 /// which both compilers turn into one instruction as long as the vector is as wide as the register.
 template <class T>
