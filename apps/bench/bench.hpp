@@ -34,11 +34,12 @@ double slot_seconds();
 /// Of one thread it is its own time that counts, which other programs do not change; of several the time on the wall.
 enum class Clock { thread, wall };
 
-/// Times the loop of a benchmark and reports `ns_per_evaluation` and, with the slot measured before and after, `slots`.
+/// Times the loop of a benchmark and reports `ns_per_evaluation`, or of another unit of work, and, with the slot measured before and after, `slots`.
 class Report {
  public:
   explicit Report(benchmark::State& state, Clock clock = Clock::thread);  ///< just before the loop
-  double finish(double evaluations_each_iteration);                       ///< just after it; seconds per evaluation
+  /// Just after it; seconds per evaluation, or whatever it is.
+  double finish(double evaluations_each_iteration, const std::string& unit = "evaluation");
 
  private:
   double now() const;
@@ -56,5 +57,6 @@ void register_limits();
 void register_textbook();
 void register_evaluation();
 void register_batches();
+void register_analysis();
 
 }  // namespace mmbrdf::bench

@@ -75,9 +75,9 @@ Report::Report(benchmark::State& state, Clock clock)
 
 double Report::now() const { return clock_ == Clock::thread ? thread_seconds() : wall_seconds(); }
 
-double Report::finish(double evaluations) {
+double Report::finish(double evaluations, const std::string& unit) {
   const double seconds = (now() - begin_) / (evaluations * static_cast<double>(state_.iterations()));
-  state_.counters["ns_per_evaluation"] = 1e9 * seconds;
+  state_.counters["ns_per_" + unit] = 1e9 * seconds;
   state_.counters["slots"] = seconds / (0.5 * (slot_ + slot_seconds()));
   return seconds;
 }

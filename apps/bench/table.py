@@ -17,7 +17,7 @@ def main():
     for r in results:
         name = r["run_name"].removesuffix("/real_time")
         if name.startswith(prefixes):
-            ns, slots = r["ns_per_evaluation"], r["slots"]
+            ns, slots = next(value for key, value in r.items() if key.startswith("ns_per_")), r["slots"]
             print(f"| `{name}` | {ns:.{2 if ns < 100 else 0}f} | {slots:.{1 if slots < 1000 else 0}f} |")
 
 

@@ -143,6 +143,23 @@ MMBRDF_INLINE Pack<double> with_sign(Pack<double> a, Bits highest) {
   return reinterpret_cast<Pack<double>::Values>(bits_of(a) ^ (highest & (-0x7fffffffffffffffLL - 1)));
 }
 
+MMBRDF_INLINE Pack<double> from_bits(Bits bits) { return reinterpret_cast<Pack<double>::Values>(bits); }
+MMBRDF_INLINE Pack<double> absolute(Pack<double> a) { return from_bits(bits_of(a) & 0x7fffffffffffffffLL); }
+/// |a| with the sign of b.
+MMBRDF_INLINE Pack<double> copy_sign(Pack<double> a, Pack<double> b) { return with_sign(absolute(a), bits_of(b)); }
+
+using Mask = decltype(Pack<double>::Values{} < 0.0);  // of a comparison
+/// Whether a mask is set in some lane.
+MMBRDF_INLINE bool any(Mask mask) {
+#if defined(__AVX512F__)
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask)) != 0;
+#elif defined(__AVX__)
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+#else
+  return (mask[0] | mask[1]) != 0;
+#endif
+}
+
 /// Nothing, but the compiler must have the value in a register here.
 template <class T>
 MMBRDF_INLINE void keep_in_register([[maybe_unused]] Pack<T>& a) {

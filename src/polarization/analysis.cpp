@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mmbrdf/polarization/analysis.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "polarization/kernel/analysis_kernels.hpp"
 #include "text/numbers.hpp"
 
 //   σ_i     Pauli matrices, σ_0 = 1, in the order of Stokes components
@@ -43,12 +44,11 @@ Scaled scaled(const Mueller& m) {
   return result;
 }
 
-/// The matrix of the same, with M11 > 0. Not below the smallest normal number: a quotient of any element by it is
-/// finite.
+/// The matrix of the same, with M11 > 0 and not so small that the kernel would not divide by it.
 Mueller scaled_with_intensity(const Mueller& m) {
   Mueller result = scaled(m).m;
   if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
-  result(0, 0) = std::max(result(0, 0), std::numeric_limits<double>::min());
+  result(0, 0) = std::max(result(0, 0), 0x1p-999);
   return result;
 }
 
@@ -88,48 +88,11 @@ Mueller mueller_matrix(const Matrix4c& t) {
   return m;
 }
 
-std::array<double, 4> eigenvalues(const Mueller& m) {
-  const Eigen::SelfAdjointEigenSolver<Matrix4c> solver(coherency_matrix(m), Eigen::EigenvaluesOnly);
-  return {solver.eigenvalues()[0], solver.eigenvalues()[1], solver.eigenvalues()[2], solver.eigenvalues()[3]};
-}
-
-bool realizable_to_rounding(double smallest_eigenvalue, double m11) {
-  return smallest_eigenvalue >= -realizability_tolerance * m11;
-}
-
-/// The nearest numbers ≥ 0 with the given sum ≥ 0 to falling numbers: max(λ − τ, 0) with one τ for all.
-std::array<double, 4> on_simplex(const std::array<double, 4>& falling, double sum) {
-  double largest = sum, differences = 0;  // λ_0 − τ with one positive number; Σ (λ − λ_0). λ − τ itself would cancel
-  for (std::size_t q = 1; q < 4; ++q) {
-    differences += falling[q] - falling[0];
-    const double candidate = (sum - differences) / static_cast<double>(q + 1);
-    if (candidate + (falling[q] - falling[0]) <= 0) break;
-    largest = candidate;
-  }
-  std::array<double, 4> result;
-  for (std::size_t q = 0; q < 4; ++q) result[q] = std::max(largest + (falling[q] - falling[0]), 0.0);
-  return result;
-}
-
-/// Eigenvalues of T / M11, falling, of the nearest realizable matrix.
-std::array<double, 4> probabilities(const Mueller& m) {
-  std::array<double, 4> falling = eigenvalues(m);
-  std::reverse(falling.begin(), falling.end());
-  std::array<double, 4> p = on_simplex(falling, m(0, 0));
-  for (double& value : p) value /= m(0, 0);
-  return p;
-}
-
-CloudeDecomposition cloude(const Mueller& m) {
-  const Eigen::SelfAdjointEigenSolver<Matrix4c> solver(coherency_matrix(m));
-  CloudeDecomposition result;
-  for (int q = 0; q < 4; ++q) {
-    const auto place = static_cast<std::size_t>(q);
-    const Eigen::Vector4cd v = solver.eigenvectors().col(3 - q);
-    result.weights[place] = solver.eigenvalues()[3 - q];
-    result.components[place] = normalized(mueller_matrix(v * v.adjoint()));
-  }
-  return result;
+/// A number that has no meaning unless M11 > 0.
+template <Analysis analysis>
+double relative(const Mueller& m) {
+  if (const auto number = answer_of<analysis>(m)) return (*number)[0];
+  return answer_of<analysis>(scaled_with_intensity(m)).value()[0];
 }
 
 void require_light(const Stokes& light) {
@@ -144,26 +107,21 @@ void require_light(const Stokes& light) {
 
 }  // namespace
 
-double depolarization(const Mueller& m) {
-  const Mueller x = scaled_with_intensity(m);
-  double sum = 0;
-  for (std::size_t i = 1; i < 16; ++i) sum += x.elements[i] * x.elements[i];
-  return std::sqrt(sum / 3) / x(0, 0);
-}
+double depolarization(const Mueller& m) { return relative<Analysis::depolarization>(m); }
 
 std::array<double, 3> diattenuation_vector(const Mueller& m) {
   scaled_with_intensity(m);
   return {ratio(m(0, 1), m(0, 0)), ratio(m(0, 2), m(0, 0)), ratio(m(0, 3), m(0, 0))};
 }
 
-double diattenuation(const Mueller& m) { return length(diattenuation_vector(m)); }
+double diattenuation(const Mueller& m) { return relative<Analysis::diattenuation>(m); }
 
 std::array<double, 3> polarizance_vector(const Mueller& m) {
   scaled_with_intensity(m);
   return {ratio(m(1, 0), m(0, 0)), ratio(m(2, 0), m(0, 0)), ratio(m(3, 0), m(0, 0))};
 }
 
-double polarizance(const Mueller& m) { return length(polarizance_vector(m)); }
+double polarizance(const Mueller& m) { return relative<Analysis::polarizance>(m); }
 
 double degree_of_polarization(const Stokes& light) {
   require_light(light);
@@ -226,56 +184,54 @@ Mueller from_coherency(const Coherency& t) {
 }
 
 std::array<double, 4> coherency_eigenvalues(const Mueller& m) {
+  if (const auto values = answer_of<Analysis::coherency_eigenvalues>(m)) return *values;
   const auto [x, exponent] = scaled(m);
-  std::array<double, 4> result = eigenvalues(x);
+  if (x == Mueller{}) return {};
+  std::array<double, 4> result = answer_of<Analysis::coherency_eigenvalues>(x).value();
   for (double& value : result) value = bounded(std::ldexp(value, exponent));
   return result;
 }
 
-double realizability_margin(const Mueller& m) {
-  const Mueller x = scaled_with_intensity(m);
-  return eigenvalues(x)[0] / x(0, 0);
-}
+double realizability_margin(const Mueller& m) { return relative<Analysis::realizability_margin>(m); }
 
 bool realizable(const Mueller& m) {
+  if (const auto is = answer_of<Analysis::realizable>(m)) return (*is)[0] != 0;
   const Mueller x = scaled(m).m;
-  if (x == Mueller{}) return true;
-  return x(0, 0) > 0 && realizable_to_rounding(eigenvalues(x)[0], x(0, 0));
+  return x == Mueller{} || answer_of<Analysis::realizable>(x).value()[0] != 0;
 }
 
-double purity(const Mueller& m) {
-  const double d = depolarization(m);
-  return bounded((1 + 3 * d * d) / 4);
-}
+double purity(const Mueller& m) { return relative<Analysis::purity>(m); }
 
-double entropy(const Mueller& m) {
-  double sum = 0;
-  for (const double p : probabilities(scaled_with_intensity(m)))
-    if (p > 0) sum -= p * std::log2(p) / 2;
-  return std::clamp(sum, 0.0, 1.0);
-}
+double entropy(const Mueller& m) { return relative<Analysis::entropy>(m); }
 
 CloudeDecomposition cloude_decomposition(const Mueller& m) {
+  const auto parts = [](const std::array<double, 68>& numbers) {
+    CloudeDecomposition result;
+    std::copy_n(numbers.begin(), 4, result.weights.begin());
+    for (std::size_t q = 0; q < 4; ++q)
+      std::copy_n(numbers.begin() + 4 + 16 * q, 16, result.components[q].elements.begin());
+    return result;
+  };
+  if (const auto numbers = answer_of<Analysis::cloude_decomposition>(m)) return parts(*numbers);
   const auto [x, exponent] = scaled(m);
-  CloudeDecomposition result = cloude(x);
-  for (double& weight : result.weights) weight = bounded(std::ldexp(weight, exponent));
+  const bool is_zero = x == Mueller{};  // any components: those of a perfect depolarizer
+  CloudeDecomposition result =
+      parts(answer_of<Analysis::cloude_decomposition>(is_zero ? diagonal(1, 0, 0, 0) : x).value());
+  for (double& weight : result.weights) weight = is_zero ? 0 : bounded(std::ldexp(weight, exponent));
   return result;
 }
 
 Projection nearest_realizable(const Mueller& m) {
+  const auto projection = [&](const std::array<double, 17>& numbers, int exponent) {
+    Projection result{m, bounded(std::ldexp(numbers[16], exponent))};
+    for (std::size_t e = 1; e < 16; ++e) result.matrix.elements[e] = std::ldexp(numbers[e], exponent);
+    return result;
+  };
+  if (const auto numbers = answer_of<Analysis::nearest_realizable>(m)) return projection(*numbers, 0);
   const auto [x, exponent] = scaled(m);
-  const double m11 = x(0, 0);
-  if (m11 < 0) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must not be negative");
-  const CloudeDecomposition parts = cloude(x);
-  if (m11 > 0 && realizable_to_rounding(parts.weights[3], m11)) return {m, 0};
-  const std::array<double, 4> weights = on_simplex(parts.weights, m11);
-  Mueller nearest;
-  for (std::size_t q = 0; q < 4; ++q) nearest = nearest + weights[q] * parts.components[q];
-  double squares = 0;
-  for (std::size_t i = 0; i < 16; ++i) squares += std::pow(nearest.elements[i] - x.elements[i], 2);
-  for (double& element : nearest.elements) element = std::ldexp(element, exponent);
-  nearest(0, 0) = m(0, 0);
-  return {nearest, bounded(std::ldexp(std::sqrt(squares), exponent))};
+  if (m(0, 0) < 0) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must not be negative");
+  if (realizable(m)) return {m, 0};
+  return projection(answer_of<Analysis::nearest_realizable>(x).value(), exponent);
 }
 
 }  // namespace mmbrdf

