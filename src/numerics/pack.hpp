@@ -143,6 +143,19 @@ MMBRDF_INLINE Pack<double> with_sign(Pack<double> a, Bits highest) {
   return reinterpret_cast<Pack<double>::Values>(bits_of(a) ^ (highest & (-0x7fffffffffffffffLL - 1)));
 }
 
+/// Whether the mask is set in any lane.
+template <class Mask>
+MMBRDF_INLINE bool any(Mask mask) {
+#if defined(__AVX512F__)
+  return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask)) != 0;
+#elif defined(__AVX__)
+  return _mm256_testz_si256(reinterpret_cast<__m256i>(mask), reinterpret_cast<__m256i>(mask)) == 0;
+#else
+  const Bits bits = reinterpret_cast<Bits>(mask);
+  return (bits[0] | bits[1]) != 0;
+#endif
+}
+
 /// Nothing, but the compiler must have the value in a register here.
 template <class T>
 MMBRDF_INLINE void keep_in_register([[maybe_unused]] Pack<T>& a) {
