@@ -79,12 +79,12 @@ struct Columns {
 };
 
 template <class T>
-void evaluate_vectors(benchmark::State& state, std::size_t count, int threads) {
+void evaluate_vectors(benchmark::State& state, std::size_t count, int threads, Frame frame = Frame::xy) {
   const PreparedModel prepared = prepare(material("ptfe"), wavelength);
   Columns<T> data(count);
   Report report(state, threads == 1 ? Clock::thread : Clock::wall);
   for (auto _ : state) {
-    evaluate(prepared, {data.incident(), data.reflected()}, data.columns(), {.threads = threads});
+    evaluate(prepared, {data.incident(), data.reflected()}, data.columns(), {.frame = frame, .threads = threads});
     benchmark::ClobberMemory();
   }
   report.finish(static_cast<double>(count));
@@ -129,7 +129,12 @@ void register_batches() {
   add("evaluate_one/prepared_incidence", evaluate_one_at_prepared_incidence);
   add("evaluate_isotropic/batch/double/cache", [](benchmark::State& s) { evaluate_vectors<double>(s, in_cache, 1); });
   add("evaluate_isotropic/batch/angles/cache", [](benchmark::State& s) { evaluate_angles(s, in_cache, 1, Frame::xy); });
-  add("evaluate_isotropic/batch/angles/sp", [](benchmark::State& s) { evaluate_angles(s, in_cache, 1, Frame::sp); });
+  for (const Frame frame : {Frame::sp, Frame::scattering_plane}) {
+    const std::string name = "evaluate_isotropic/batch/frame/" + to_string(frame);
+    add(name + "/angles", [=](benchmark::State& s) { evaluate_angles(s, in_cache, 1, frame); });
+    add(name + "/double", [=](benchmark::State& s) { evaluate_vectors<double>(s, in_cache, 1, frame); });
+    add(name + "/float", [=](benchmark::State& s) { evaluate_vectors<float>(s, in_cache, 1, frame); });
+  }
   for (const int threads : {1, 2}) {
     const std::string memory = "/memory/" + std::to_string(threads);
     add("evaluate_isotropic/batch/double" + memory,

@@ -29,22 +29,19 @@ bool is_valid(const Direction& d) {
   return d.theta >= 0 && d.theta <= radians(90) && std::abs(d.phi) <= std::numeric_limits<double>::max();
 }
 
-void require_valid(std::span<const Geometry> geometries, int threads) {
-  const std::size_t bad = first_found(geometries.size(), threads, [&](std::size_t first, std::size_t count) {
-    std::size_t q = first;
-    while (q < first + count && is_valid(geometries[q].incident) && is_valid(geometries[q].reflected)) ++q;
-    return q;
-  });
-  if (bad < geometries.size()) require_valid(geometries[bad]);  // throws
-}
+bool is_valid(const Geometry& g) { return is_valid(g.incident) && is_valid(g.reflected); }
 
-void require_valid(std::span<const Direction> directions, int threads) {
-  const std::size_t bad = first_found(directions.size(), threads, [&](std::size_t first, std::size_t count) {
+void require_valid(const Direction& d) { require_valid(Geometry{{}, d}); }
+
+/// Angles are Direction or Geometry.
+template <class Angles>
+void require_valid(std::span<const Angles> angles, int threads) {
+  const std::size_t bad = first_found(angles.size(), threads, [&](std::size_t first, std::size_t count) {
     std::size_t q = first;
-    while (q < first + count && is_valid(directions[q])) ++q;
+    while (q < first + count && is_valid(angles[q])) ++q;
     return q;
   });
-  if (bad < directions.size()) require_valid(Geometry{{}, directions[bad]});
+  if (bad < angles.size()) require_valid(angles[bad]);  // throws
 }
 
 template <class T>
@@ -66,11 +63,6 @@ void require_valid(const UnitVectors<T>& vectors, const char* side, int threads)
                                 shortest(vectors.z[bad]) + ") is not a unit vector with z >= 0");
 }
 
-void require_known(Frame frame) {
-  if (frame != Frame::xy && frame != Frame::sp && frame != Frame::scattering_plane)
-    throw std::invalid_argument("frame " + std::to_string(static_cast<int>(frame)) + " is none");
-}
-
 template <class T>
 Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {
   return {vectors.x[q], vectors.y[q], vectors.z[q]};
@@ -78,17 +70,18 @@ Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {
 
 // ---- coefficients ---------------------------------------------------------------------------------------------------
 
-/// A model with its coefficients in the precision asked for.
+/// A model with its coefficients in the precision asked for, in the frame of the options.
 template <class T>
 class Question {
  public:
-  explicit Question(const PreparedIncidence& prepared) : unknown(Evaluation::pattern(prepared).unknown) {
+  Question(const PreparedIncidence& prepared, Frame asked)
+      : frame(asked), unknown(Evaluation::pattern(prepared).unknown) {
     convert(Evaluation::model(prepared), {});
   }
 
   /// At the wavelengths of the options, if there are any.
   Question(const PreparedModel& prepared, std::size_t count, const BatchOptions& options)
-      : unknown(Evaluation::pattern(prepared).unknown), wavelengths(options.wavelengths) {
+      : frame(options.frame), unknown(Evaluation::pattern(prepared).unknown), wavelengths(options.wavelengths) {
     KernelModel<double> asked = Evaluation::model(prepared);
     if (wavelengths.empty()) {
       convert(asked, {});
@@ -113,6 +106,7 @@ class Question {
   /// The same at the wavelength of point q alone.
   Question(const Question& all, std::size_t q)
       : model(all.model),
+        frame(all.frame),
         unknown(all.unknown),
         wavelengths(all.reflectance ? all.wavelengths.subspan(q, 1) : all.wavelengths),
         reflectance(all.reflectance) {}
@@ -120,7 +114,8 @@ class Question {
   Question& operator=(const Question&) = delete;
 
   KernelModel<T> model{};
-  Elements unknown;
+  Frame frame;
+  Elements unknown;  // in the frame xy
   std::span<const double> wavelengths;
   const ReflectanceTable* reflectance = nullptr;
 
@@ -145,12 +140,15 @@ class Question {
     model = {from.form,
              from.projected,
              from.turned,
+             kernel_frame(frame),
              {static_cast<T>(from.turned_by[0]), static_cast<T>(from.turned_by[1])},
+             {},
              from.list,
              nullptr,
              from.powers,
              from.count,
              static_cast<T>(from.scale)};
+    for (std::size_t j = 0; j < 5; ++j) model.incident[j] = static_cast<T>(from.incident[j]);
     if constexpr (std::is_same_v<T, double>) {
       own_ = std::move(own);
       model.coefficients = own_.empty() ? from.coefficients : own_.data();
@@ -174,10 +172,24 @@ void run_kernel(const Question<T>& question, const KernelPoints<T>& points, cons
     best_kernel().evaluate(question.model, points, out, count);
   else
     best_kernel().evaluate_single(question.model, points, out, count);
+}
+
+/// What was not measured, and what the frame mixes it with. Axes that are turned by a multiple of a right angle mix nothing,
+/// so where not all of a group is unknown it takes the geometry to tell.
+template <class T, class GeometryOf>
+void set_unknown(const Question<T>& question, const KernelMatrices<T>& out, std::size_t first, std::size_t count,
+                 GeometryOf geometry) {
   if (question.unknown.none()) return;
-  for (std::size_t e = 0; e < 16; ++e)
-    for (std::size_t q = 0; question.unknown[e] && q < count; ++q)
-      out.element[e][static_cast<std::ptrdiff_t>(q) * out.stride] = std::numeric_limits<T>::quiet_NaN();
+  const bool same_for_all = question.frame == Frame::xy || turned_into(question.unknown) == question.unknown;
+  for (std::size_t q = first; q < first + count; ++q) {
+    Elements unknown = question.unknown;
+    if (!same_for_all) {
+      const FrameAngles angles = angles_to_xy(geometry(q), question.frame);
+      unknown = turned_into(unknown, -angles.scattered, -angles.incident);
+    }
+    for (std::size_t e = 0; e < 16; ++e)
+      if (unknown[e]) out.element[e][static_cast<std::ptrdiff_t>(q) * out.stride] = std::numeric_limits<T>::quiet_NaN();
+  }
 }
 
 template <class T>
@@ -199,49 +211,42 @@ KernelMatrices<T> rows(T* values) {
   return out;
 }
 
-/// With wavelengths of their own, or in another frame than xy: some points at a time. geometry(q) is asked for other
-/// frames only.
-template <class T, class GeometryOf>
+/// With wavelengths of their own: some points at a time.
+template <class T>
 void run_in_blocks(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
-                   std::size_t first, std::size_t count, Frame frame, GeometryOf geometry) {
+                   std::size_t first, std::size_t count) {
   constexpr std::size_t size = 64;
-  T wavelengths[size], scales[size], values[16 * size];
+  T wavelengths[size], scales[size];
   for (std::size_t begin = first; begin < first + count; begin += size) {
     const std::size_t here = std::min(size, first + count - begin);
-    KernelPoints<T> block = from(points, begin);
-    if (question.reflectance) {
-      for (std::size_t q = 0; q < here; ++q) {
-        wavelengths[q] = static_cast<T>(question.wavelengths[begin + q]);
-        scales[q] = static_cast<T>(question.reflectance->at(question.wavelengths[begin + q]));
-      }
-      block.wavelength = wavelengths;
-      block.scale = scales;
-    }
-    if (frame == Frame::xy) {
-      run_kernel(question, block, from(out, begin), here);
-      continue;
-    }
-    run_kernel(question, block, rows(values), here);
     for (std::size_t q = 0; q < here; ++q) {
-      Mueller m;
-      std::copy_n(values + 16 * q, 16, m.elements.begin());
-      m = change_frame(m, geometry(begin + q), Frame::xy, frame);
-      for (std::size_t e = 0; e < 16; ++e)
-        out.element[e][static_cast<std::ptrdiff_t>(begin + q) * out.stride] = static_cast<T>(m.elements[e]);
+      wavelengths[q] = static_cast<T>(question.wavelengths[begin + q]);
+      scales[q] = static_cast<T>(question.reflectance->at(question.wavelengths[begin + q]));
     }
+    KernelPoints<T> block = from(points, begin);
+    block.wavelength = wavelengths;
+    block.scale = scales;
+    run_kernel(question, block, from(out, begin), here);
   }
 }
 
-template <class T, class GeometryOf, class Finish>
+template <class T>
+void run(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out, std::size_t first,
+         std::size_t count) {
+  if (question.reflectance)
+    run_in_blocks(question, points, out, first, count);
+  else
+    run_kernel(question, from(points, first), from(out, first), count);
+}
+
+/// again(first, count) does some of the points again; geometry(q) is asked for where elements are unknown only.
+template <class T, class Again, class GeometryOf>
 void run(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out, std::size_t count,
-         const BatchOptions& options, GeometryOf geometry, Finish finish) {
-  require_known(options.frame);
-  in_parts(count, options.threads, [&](std::size_t first, std::size_t part) {
-    if (options.frame == Frame::xy && !question.reflectance)
-      run_kernel(question, from(points, first), from(out, first), part);
-    else
-      run_in_blocks(question, points, out, first, part, options.frame, geometry);
-    finish(first, part);
+         int threads, Again again, GeometryOf geometry) {
+  in_parts(count, threads, [&](std::size_t first, std::size_t part) {
+    run(question, points, out, first, part);
+    again(first, part);
+    set_unknown(question, out, first, part, geometry);
   });
 }
 
@@ -263,21 +268,20 @@ KernelPoints<double> points_of(const Geometry& first) {
           nullptr};
 }
 
-/// Angles are Direction or Geometry. Those with large azimuths are done again, one by one.
+/// Those with large azimuths are done again, one by one.
 template <class Angles, class GeometryOf>
-void run_angles(const Question<double>& question, std::span<const Angles> angles, std::span<Mueller> out,
-                const BatchOptions& options, GeometryOf geometry) {
+void run_angles(const Question<double>& question, std::span<const Angles> angles, std::span<Mueller> out, int threads,
+                GeometryOf geometry) {
   if (angles.empty()) return;
   const KernelMatrices<double> matrices = rows(out[0].elements.data());
-  run(question, points_of(angles[0]), matrices, out.size(), options, geometry,
-      [&](std::size_t first, std::size_t count) {
-        for (std::size_t q = first; q < first + count; ++q) {
-          const Angles near = reduced(angles[q]);
-          if (near == angles[q]) continue;
-          run_in_blocks(Question<double>(question, q), points_of(near), from(matrices, q), 0, 1, options.frame,
-                        [&](std::size_t) { return geometry(q); });
-        }
-      });
+  const auto again = [&](std::size_t first, std::size_t count) {
+    for (std::size_t q = first; q < first + count; ++q) {
+      const Angles near = reduced(angles[q]);
+      if (near == angles[q]) continue;
+      run(Question<double>(question, q), points_of(near), from(matrices, q), 0, 1);
+    }
+  };
+  run(question, points_of(angles[0]), matrices, out.size(), threads, again, geometry);
 }
 
 // ---- vectors --------------------------------------------------------------------------------------------------------
@@ -306,11 +310,10 @@ void run_vectors(const PreparedModel& model, const VectorGeometries<T>& geometri
   const KernelPoints<T> points{
       false, {i.x.data(), i.y.data(), i.z.data(), r.x.data(), r.y.data(), r.z.data()}, 1, nullptr, nullptr};
   run(
-      question, points, out, count, options,
+      question, points, out, count, options.threads, [](std::size_t, std::size_t) {},
       [&](std::size_t q) {
         return Geometry{direction(vector(i, q)), direction(vector(r, q))};
-      },
-      [](std::size_t, std::size_t) {});
+      });
 }
 
 template <class T>
@@ -318,15 +321,14 @@ void run_vectors(const PreparedIncidence& model, const UnitVectors<T>& reflected
                  const BatchOptions& options) {
   if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, "reflected", options.threads);
-  const Question<T> question(model);
+  const Question<T> question(model, options.frame);
   const KernelPoints<T> points{
       false, {reflected.x.data(), reflected.y.data(), reflected.z.data()}, 1, nullptr, nullptr};
   run(
-      question, points, out, reflected.x.size(), options,
+      question, points, out, reflected.x.size(), options.threads, [](std::size_t, std::size_t) {},
       [&](std::size_t q) {
         return Geometry{model.incident(), direction(vector(reflected, q))};
-      },
-      [](std::size_t, std::size_t) {});
+      });
 }
 
 double* first_number(std::span<Mueller> out) { return out.empty() ? nullptr : out[0].elements.data(); }
@@ -337,7 +339,7 @@ void evaluate(const PreparedModel& model, std::span<const Geometry> geometries, 
               const BatchOptions& options) {
   require_size(geometries.size(), "geometries", out.size());
   require_valid(geometries, options.threads);
-  run_angles(Question<double>(model, out.size(), options), geometries, out, options,
+  run_angles(Question<double>(model, out.size(), options), geometries, out, options.threads,
              [&](std::size_t q) { return geometries[q]; });
 }
 
@@ -374,7 +376,7 @@ void evaluate(const PreparedIncidence& model, std::span<const Direction> reflect
   require_size(reflected.size(), "directions", out.size());
   if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, options.threads);
-  run_angles(Question<double>(model), reflected, out, options, [&](std::size_t q) {
+  run_angles(Question<double>(model, options.frame), reflected, out, options.threads, [&](std::size_t q) {
     return Geometry{model.incident(), reflected[q]};
   });
 }

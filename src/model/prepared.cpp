@@ -105,11 +105,10 @@ Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
 
 Mueller PreparedModel::evaluate(const Vector3& incident, const Vector3& reflected, Frame frame) const {
   const Vector3 to_source = normalized(incident), to_detector = normalized(reflected);  // exact, and the messages
-  if (frame != Frame::xy) return evaluate({direction(to_source), direction(to_detector)}, frame);
   const auto one = [](const double& value) { return std::span(&value, 1); };
   const auto vector = [&](const Vector3& v) { return UnitVectors<double>{one(v[0]), one(v[1]), one(v[2])}; };
   Mueller m;
-  mmbrdf::evaluate(*this, {vector(to_source), vector(to_detector)}, std::span(&m, 1));
+  mmbrdf::evaluate(*this, {vector(to_source), vector(to_detector)}, std::span(&m, 1), {.frame = frame});
   return m;
 }
 
@@ -133,8 +132,13 @@ KernelModel<double> Evaluation::model(const PreparedIncidence& prepared) {
       kernel_model<double>(prepared.pattern_->plan, prepared.of_form_, 0, prepared.reflectance_);
   result.form = incidence_form(prepared.pattern_->plan);
   result.count = static_cast<int>(prepared.of_form_.size());
-  result.turned_by[0] = std::cos(prepared.incident_.phi);
-  result.turned_by[1] = std::sin(prepared.incident_.phi);
+  const auto [theta, phi] = prepared.incident_;
+  const double c = std::cos(phi), s = std::sin(phi);
+  result.turned_by[0] = c;
+  result.turned_by[1] = s;
+  const Vector3 v = unit_vector(prepared.incident_);
+  const double incident[] = {theta, std::abs(phi) <= max_azimuth ? phi : std::atan2(s, c), v[0], v[1], v[2]};
+  std::copy_n(incident, 5, result.incident);
   return result;
 }
 

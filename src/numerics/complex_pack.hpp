@@ -28,6 +28,11 @@ template <class R>
 MMBRDF_INLINE Complex<R> square(Complex<R> a) {
   return {fms(a.re, a.re, a.im * a.im), (a.re + a.re) * a.im};
 }
+/// |a|²
+template <class R>
+MMBRDF_INLINE R norm(Complex<R> a) {
+  return fma(a.re, a.re, a.im * a.im);
+}
 /// q a + b
 template <class R>
 MMBRDF_INLINE Complex<R> fma(R q, Complex<R> a, Complex<R> b) {

@@ -150,13 +150,15 @@ MMBRDF_INLINE Pack<double> copy_sign(Pack<double> a, Pack<double> b) { return wi
 
 using Mask = decltype(Pack<double>::Values{} < 0.0);  // of a comparison
 /// Whether a mask is set in some lane.
-MMBRDF_INLINE bool any(Mask mask) {
+template <class Lanes>
+MMBRDF_INLINE bool any(Lanes mask) {
 #if defined(__AVX512F__)
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask)) != 0;
 #elif defined(__AVX__)
-  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask)) != 0;
+  return _mm256_testz_si256(reinterpret_cast<__m256i>(mask), reinterpret_cast<__m256i>(mask)) == 0;
 #else
-  return (mask[0] | mask[1]) != 0;
+  const Bits bits = reinterpret_cast<Bits>(mask);
+  return (bits[0] | bits[1]) != 0;
 #endif
 }
 

@@ -90,26 +90,67 @@ TEST(Batch, DoesNotDependOnTheNumberOfThreads) {
   }
 }
 
-// Whatever is evaluated beside it, and in whatever layout.
+// Whatever is evaluated beside it, and in whatever layout: parallel beams, too, which are rare in the scattering plane.
 RC_GTEST_PROP(Batch, HasTheBitsOfOneAtATime, ()) {
   const PreparedModel model = prepare(any_model(), 0.5);
+  const Frame frame = *rc::gen::elementOf(every_frame);
+  const BatchOptions options{.frame = frame};
   const int count = *rc::gen::inRange(1, 40);
-  const std::vector<Geometry> geometries = random_geometries(count, *rc::gen::arbitrary<unsigned long>());
+  std::vector<Geometry> geometries = random_geometries(count, *rc::gen::arbitrary<unsigned long>());
+  for (std::size_t q = 0; q < geometries.size(); q += 7) geometries[q].reflected = geometries[q].incident;
   const Columns<double> vectors(geometries);
   std::vector<Mueller> from_angles(geometries.size()), rows(geometries.size());
   std::vector<double> numbers(16 * geometries.size());
   ElementColumns<double> columns(geometries.size());
-  evaluate(model, geometries, from_angles);
-  evaluate(model, vectors.geometries(), rows);
-  evaluate(model, vectors.geometries(), numbers);
-  evaluate(model, vectors.geometries(), columns.columns);
+  evaluate(model, geometries, from_angles, options);
+  evaluate(model, vectors.geometries(), rows, options);
+  evaluate(model, vectors.geometries(), numbers, options);
+  evaluate(model, vectors.geometries(), columns.columns, options);
   for (std::size_t q = 0; q < geometries.size(); ++q) {
-    RC_ASSERT(from_angles[q] == model.evaluate(geometries[q]));
+    const Columns<double> alone({geometries[q]});
+    Mueller one;
+    evaluate(model, alone.geometries(), std::span(&one, 1), options);
+    RC_ASSERT(rows[q] == one);
+    RC_ASSERT(from_angles[q] == model.evaluate(geometries[q], frame));
     RC_ASSERT(deviation_of_m11(rows[q], from_angles[q]) <= evaluation_error);
     for (std::size_t e = 0; e < 16; ++e) {
       RC_ASSERT(rows[q].elements[e] == numbers[16 * q + e]);
       RC_ASSERT(rows[q].elements[e] == columns.values[e][q]);
     }
+  }
+}
+
+RC_GTEST_PROP(Batch, InAnyFrameIsChangedFromXy, ()) {
+  const PreparedModel model = prepare(either_way(any_model()), 0.5);
+  const BatchOptions options{.frame = *rc::gen::elementOf(every_frame)};
+  std::vector<Geometry> geometries = random_geometries(20, *rc::gen::arbitrary<unsigned long>());
+  geometries[3].incident.phi += 2e7;  // more than the kernel takes
+  geometries[3].reflected.phi += 2e7;
+  geometries[9].reflected = geometries[9].incident;
+  // To and from the plane change_frame() adds angles, and rounds them there.
+  const double rounding = options.frame == Frame::scattering_plane ? 1e-7 : 0;
+  const std::vector<double> wavelengths(geometries.size(), 0.6);
+  BatchOptions with_wavelengths = options;
+  with_wavelengths.wavelengths = wavelengths;
+  std::vector<Mueller> found(20), at_wavelengths(20), reflected(20), xy(20), reflected_xy(20);
+  std::vector<Direction> directions;
+  for (const Geometry& g : geometries) directions.push_back(g.reflected);
+  const PreparedIncidence at = model.at(geometries[3].incident);
+  evaluate(model, geometries, found, options);
+  evaluate(model, geometries, at_wavelengths, with_wavelengths);
+  evaluate(model, geometries, xy);
+  evaluate(at, directions, reflected, options);
+  evaluate(at, directions, reflected_xy);
+  for (std::size_t q = 0; q < geometries.size(); ++q) {
+    const auto changed = [&](const Mueller& m, const Geometry& g) {
+      return change_frame(m, g, Frame::xy, options.frame);
+    };
+    const double allowed = evaluation_error + (q == 3 ? rounding : 0);
+    RC_ASSERT(deviation_of_m11(found[q], changed(xy[q], geometries[q])) <= allowed);
+    const Geometry g{at.incident(), directions[q]};
+    RC_ASSERT(deviation_of_m11(reflected[q], changed(reflected_xy[q], g)) <= evaluation_error + rounding);
+    const Mueller other = changed(model.at(0.6).evaluate(geometries[q]), geometries[q]);
+    RC_ASSERT(deviation_of_m11(at_wavelengths[q], other) <= allowed);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "given/cases.hpp"
@@ -125,6 +126,75 @@ Mueller reference(const Model& model, double wavelength, const Geometry& g) {
   return turned(sum_in_extended_precision(model, wavelength, at_zero), g.incident.phi);
 }
 
+/// Beside random ones all that are singular in a frame, and their neighbours.
+std::vector<Geometry> singular_geometries() {
+  const double phi = between(-pi, pi), other = between(-pi, pi), theta = between(0.05, 1.5);
+  const double close = std::pow(10.0, -between(1, 7));  // the limit of parallel beams is 1e-8
+  const Direction d{theta, phi}, normal{0, phi}, grazing{pi / 2, phi};
+  std::vector<Geometry> result{{normal, d},
+                               {d, normal},
+                               {normal, {0, other}},
+                               {d, d},
+                               {d, {theta, phi + 2e-9}},
+                               {d, {theta - 2e-9, phi}},
+                               {grazing, grazing},
+                               {grazing, {pi / 2, phi + pi}},
+                               {{pi / 2 - 3e-9, phi}, {pi / 2, phi + pi - 2e-9}},
+                               {d, {theta, phi + close}},
+                               {d, {theta + close / 20, phi}},
+                               {grazing, {pi / 2 - close, phi + pi}},
+                               {grazing, {pi / 2, phi + pi + close}},
+                               {d, {theta, phi + pi}},
+                               {d, {theta, phi + pi / 2}}};
+  for (const double tiny : {1e-9, 1e-30, 1e-130, 1e-250})
+    for (const Direction& end : {d, normal, Direction{tiny, other}})
+      result.insert(result.end(), {{{tiny, phi}, end}, {end, {tiny, phi}}});
+  return result;
+}
+
+double sine_between(const Geometry& g) {
+  const Vector3 i = unit_vector(g.incident), r = unit_vector(g.reflected);
+  return std::hypot(i[1] * r[2] - i[2] * r[1], i[2] * r[0] - i[0] * r[2], i[0] * r[1] - i[1] * r[0]);
+}
+
+/// Geometries as the columns have them.
+template <class T>
+std::vector<Geometry> geometries_of(const Vectors<T>& vectors) {
+  std::vector<Geometry> result;
+  for (std::size_t q = 0; q < vectors.columns[0].size(); ++q) {
+    const auto at = [&](std::size_t first) {
+      return direction({vectors.columns[first][q], vectors.columns[first + 1][q], vectors.columns[first + 2][q]});
+    };
+    result.push_back({at(0), at(3)});
+  }
+  return result;
+}
+
+/// Of azimuths up to 3π and of vectors: it turns the plane of nearly parallel beams (change_frame in geometry.hpp).
+constexpr double azimuth_rounding = 1e-14;
+
+/// Every frame against change_frame() of xy. `rounding` is divided by the sine of the angle between the beams.
+template <class T>
+void expect_frames(const Kernel& kernel, KernelModel<T> model, const KernelPoints<T>& points,
+                   const std::vector<Geometry>& geometries, double error, double rounding) {
+  const std::vector<Mueller> in_xy = matrices(kernel, model, points, geometries.size());
+  for (const auto& [frame, asked] :
+       {std::pair(Frame::sp, KernelFrame::sp), std::pair(Frame::scattering_plane, KernelFrame::scattering_plane)}) {
+    model.frame = asked;
+    const std::vector<Mueller> found = matrices(kernel, model, points, geometries.size());
+    for (std::size_t q = 0; q < geometries.size(); ++q) {
+      const double sine = sine_between(geometries[q]);
+      const bool is_plane = frame == Frame::scattering_plane && sine > parallel_limit / 2;
+      const Mueller expected = change_frame(in_xy[q], geometries[q], Frame::xy, frame);
+      EXPECT_LE(deviation_of_m11(found[q], expected), error + (is_plane ? rounding / sine : 0))
+          << kernel.name << ' ' << to_string(frame) << ' ' << geometries[q].incident.theta << ' '
+          << geometries[q].incident.phi << ' ' << geometries[q].reflected.theta << ' ' << geometries[q].reflected.phi
+          << ' ' << sine;
+      if (::testing::Test::HasFailure()) return;
+    }
+  }
+}
+
 struct Case {
   Model model;
   double wavelength;
@@ -181,6 +251,54 @@ RC_GTEST_PROP(Kernel, WithFusedMultiplyAddsHasTheSameBitsForEveryWidth, ()) {
     for (const KernelPoints<double>& points : {angles(geometries), vectors.points()})
       RC_ASSERT(matrices(*kernel, arranged.model(), points, geometries.size()) ==
                 matrices(*fused.front(), arranged.model(), points, geometries.size()));
+}
+
+RC_GTEST_PROP(Kernel, OfEveryInstructionSetIsInTheFrameAskedFor, ()) {
+  const Case c = any_case();
+  std::vector<Geometry> geometries = any_geometries();
+  const std::vector<Geometry> singular = singular_geometries();
+  geometries.insert(geometries.begin() + *rc::gen::inRange<std::ptrdiff_t>(0, 5) % std::ssize(geometries),
+                    singular.begin(), singular.end());
+  const Arranged<double> arranged(c.model, c.wavelength);
+  const Arranged<float> in_single(c.model, c.wavelength);
+  const Vectors<double> vectors(geometries);
+  const Vectors<float> short_vectors(geometries);
+  for (const Kernel* kernel : kernels_that_run_here()) {
+    expect_frames(*kernel, arranged.model(), angles(geometries), geometries, evaluation_error, azimuth_rounding);
+    expect_frames(*kernel, arranged.model(), vectors.points(), geometries_of(vectors), evaluation_error,
+                  azimuth_rounding);
+    const bool fused = std::strcmp(kernel->name, "baseline") != 0;  // no digits of ⊥ are lost then
+    expect_frames(*kernel, in_single.model(), short_vectors.points(), geometries_of(short_vectors),
+                  single_precision_error, fused ? 0 : 1e-6);
+  }
+  RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+RC_GTEST_PROP(Kernel, ForOneIncidentDirectionIsInTheFrameAskedFor, ()) {
+  const Case c = any_case();
+  const PreparedModel prepared = prepare(c.model, c.wavelength);
+  for (Geometry g : singular_geometries()) {
+    if (g.incident.theta > 0.1) g.incident.phi += *rc::gen::element(0.0, 2 * pi, 1e7);
+    const PreparedIncidence at = prepared.at(g.incident);
+    std::vector<Geometry> geometries = any_geometries();
+    geometries.push_back(g);
+    for (Geometry& one : geometries) one.incident = g.incident;
+    const Vectors<double> vectors(geometries);
+    std::vector<Geometry> of_vectors = geometries_of(vectors);
+    for (Geometry& one : of_vectors) one.incident = g.incident;
+    KernelPoints<double> from_angles = angles(geometries), from_vectors = vectors.points();
+    for (std::size_t j = 0; j < 3; ++j) {
+      from_angles.column[j] = angles(geometries).column[(2 + j) % 4];
+      from_vectors.column[j] = vectors.points().column[3 + j];
+    }
+    // Azimuths of 1e7 are rounded to 1e-9.
+    const double rounding = std::abs(g.incident.phi) > max_azimuth ? 1e-8 : azimuth_rounding;
+    for (const Kernel* kernel : kernels_that_run_here()) {
+      expect_frames(*kernel, Evaluation::model(at), from_angles, geometries, evaluation_error, rounding);
+      expect_frames(*kernel, Evaluation::model(at), from_vectors, of_vectors, evaluation_error, rounding);
+    }
+  }
+  RC_ASSERT(!::testing::Test::HasFailure());
 }
 
 TEST(Kernel, ListEndsWithOneThatRunsEverywhere) {

@@ -34,7 +34,7 @@ struct MuellerColumns {
 };
 
 struct BatchOptions {
-  Frame frame = Frame::xy;                   ///< the others cost a change of frame for each matrix
+  Frame frame = Frame::xy;                   ///< another than xy costs a few ns for each matrix
   int threads = 1;                           ///< 0: one for each core
   std::span<const double> wavelengths = {};  ///< of each geometry, micrometres; empty: that of the prepared model
 };

@@ -2,6 +2,7 @@
 // Compiled once for each instruction set, with MMBRDF_ISA as its name.
 #include "model/kernel/kernel.hpp"
 
+#include "model/kernel/kernel_frames.hpp"
 #include "model/kernel/kernel_geometry.hpp"
 #include "model/kernel/kernel_germer2017.hpp"
 #include "model/kernel/kernel_incidence.hpp"
@@ -114,6 +115,44 @@ MMBRDF_INLINE auto directions(const KernelModel<T>& model, const Columns<T>& poi
   }
 }
 
+template <bool one_incident_direction, class T>
+MMBRDF_INLINE Turn<Pack<T>> turn_to_frame(const KernelModel<T>& model, const Columns<T>& points, size_t q) {
+  using R = Pack<T>;
+  const auto in = [&](int j) { return load(points.column[j] + q); };
+  const auto vector = [&](int j) { return Vector<R>{in(j), in(j + 1), in(j + 2)}; };
+  const auto incident = [&](int j) { return R(model.incident[j]); };
+  const Complex<R> e_i{R(model.turned_by[0]), R(model.turned_by[1])};
+  if constexpr (sizeof(T) == sizeof(double)) {
+    const auto angles = [&](int j) { return Angles<R>{in(j), in(j + 1), circle(in(j + 1))}; };
+    if (points.angles && one_incident_direction)
+      return turn_to(model.frame, Angles<R>{incident(0), incident(1), e_i}, angles(0));
+    if (points.angles) return turn_to(model.frame, angles(0), angles(2));
+  }
+  if constexpr (one_incident_direction) {
+    const Vector<R> i{incident(2), incident(3), incident(4)};
+    return turn_to(model.frame, i, vector(0), [&] { return square(e_i); });
+  } else {
+    const Vector<R> i = vector(0);
+    return turn_to(model.frame, i, vector(3), [&] { return doubled_azimuth(i); });
+  }
+}
+
+/// A function of its own, with its own copy of the matrix, so that evaluation in xy has all registers to itself.
+template <bool one_incident_direction, class T>
+[[gnu::noinline]] void apply_frame(const KernelModel<T>& model, const Columns<T>& points, size_t q, Pack<T>* f) {
+  apply(turn_to_frame<one_incident_direction>(model, points, q), f);
+}
+
+template <Form form, class T>
+MMBRDF_INLINE void into_frame(const KernelModel<T>& model, const Columns<T>& points, size_t q, Pack<T> (&f)[16]) {
+  if (model.frame == KernelFrame::xy) [[likely]]
+    return;
+  Pack<T> copy[16];
+  for (int e = 0; e < 16; ++e) copy[e] = f[e];
+  apply_frame<has_one_incident_direction(form)>(model, points, q, copy);
+  for (int e = 0; e < 16; ++e) f[e] = copy[e];
+}
+
 template <Form form, class T, class C, class Directions>
 MMBRDF_INLINE void evaluate_pack(const C& a, const KernelModel<T>& model, Pack<T> scale, const Directions& at,
                                  Pack<T> (&f)[16]) {
@@ -155,6 +194,7 @@ void evaluate_columns(const KernelModel<T>& model, const Columns<T>& points, con
     const R scale = points.wavelength ? load(points.scale + q) : R(model.scale);
     R f[16];
     evaluate_pack<form>(a, model, scale, at, f);
+    into_frame<form>(model, points, q, f);
     write(f, out, q);
     at = next;
   }
@@ -190,6 +230,7 @@ void evaluate_any_order(const KernelModel<T>& model, const Columns<T>& points, c
       all_functions(a, model.list.order, scale, w_r, f);
     for (int h = 0; h < packs_together; ++h) {
       if (model.turned) turn(turned[h], f[h]);
+      into_frame<form>(model, points, begin[h], f[h]);
       write(f[h], out, begin[h]);
     }
   }

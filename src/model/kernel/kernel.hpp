@@ -18,6 +18,10 @@ enum class Form {
   functions,  ///< any: coefficient 16 j + e is that of function j in element e
 };
 
+/// Frame of geometry.hpp, which no kernel may include; and its parallel_limit.
+enum class KernelFrame { xy, sp, scattering_plane };
+inline constexpr double kernel_parallel_limit = 1e-8;
+
 /// S, D = K_a(i) K_b(r) ± K_b(i) K_a(r), without the norms of K; positions are those of zernike_index.
 struct KernelPair {
   int a, b;
@@ -47,7 +51,9 @@ struct KernelModel {
   Form form;
   bool projected;         ///< disc mapping
   bool turned;            ///< evaluate at phi_i = 0 and turn the result
+  KernelFrame frame;      ///< of the matrices
   T turned_by[2];         ///< cos phi_i and sin phi_i, of the forms for one incident direction
+  T incident[5];          ///< theta_i, phi_i and x, y, z of that direction, for frames other than xy
   PairList list;          ///< of Form::pairs
   const T* coefficients;  ///< power after power
   int powers;             ///< highest power of the wavelength; 0 if it is folded in

@@ -24,15 +24,26 @@ struct Vector {
   R x, y, z;
 };
 
-/// w = (x + iy)/√(L (L + z)), where L = |v| is 1 to 1e-6, so that two terms of its series are enough.
+template <class R>
+MMBRDF_INLINE R norm(const Vector<R>& v) {
+  return fma(v.z, v.z, fma(v.x, v.x, v.y * v.y));
+}
+
+/// L of L², where L is 1 to 1e-6, so that two terms of the series are enough.
+template <class R>
+MMBRDF_INLINE R near_one_root(R square) {
+  const R e = square - R(1);
+  return fma(e, fma(e, R(-0.125f), R(0.5f)), R(1));
+}
+
+/// w = (x + iy)/√(L (L + z)), where L = |v| is 1 to 1e-6.
 template <class R>
 struct Lambert {
   R area, denominator;  // x² + y²;  L² + L z
   MMBRDF_INLINE explicit Lambert(const Vector<R>& v) {
     area = fma(v.x, v.x, v.y * v.y);
-    const R square = fma(v.z, v.z, area), e = square - R(1);
-    const R length = fma(e, fma(e, R(-0.125f), R(0.5f)), R(1));
-    denominator = fma(length, v.z, square);
+    const R square = fma(v.z, v.z, area);
+    denominator = fma(near_one_root(square), v.z, square);
   }
 };
 
@@ -67,18 +78,35 @@ MMBRDF_INLINE Complex<R> disc_point(const Vector<R>& v, bool projected) {
   return {v.x * factor, v.y * factor};
 }
 
-/// w / |w|; 1 at the normal. Tiny w are first made large, since their squares are 0.
+/// Tiny w are made large, since their squares are 0.
 template <class T>
-MMBRDF_INLINE Complex<Pack<T>> phase(Complex<Pack<T>> w) {
+MMBRDF_INLINE Complex<Pack<T>> with_square(Complex<Pack<T>> w) {
   using R = Pack<T>;
   constexpr T tiny = sizeof(T) == 8 ? T(0x1p-400) : T(0x1p-50f), huge = sizeof(T) == 8 ? T(0x1p+700) : T(0x1p+90f);
   const auto is_tiny = (w.re.v < tiny) & (w.re.v > -tiny) & (w.im.v < tiny) & (w.im.v > -tiny);
-  const R factor = select(is_tiny, R(huge), R(1));
-  const Complex<R> large = factor * w;
-  const R square = fma(large.re, large.re, large.im * large.im), length = sqrt(square);
-  const auto is_normal = square.v == R(0).v;
+  return select(is_tiny, R(huge), R(1)) * w;
+}
+
+/// w / |w|; 1 at the normal.
+template <class T>
+MMBRDF_INLINE Complex<Pack<T>> phase(Complex<Pack<T>> w) {
+  using R = Pack<T>;
+  const Complex<R> large = with_square(w);
+  const R length = sqrt(norm(large));
+  const auto is_normal = length.v == R(0).v;
   const R inverse = R(1) / select(is_normal, R(1), length);
   return {select(is_normal, R(1), large.re * inverse), large.im * inverse};
+}
+
+/// (w / |w|)²; 1 at the normal.
+template <class T>
+MMBRDF_INLINE Complex<Pack<T>> doubled_phase(Complex<Pack<T>> w) {
+  using R = Pack<T>;
+  const Complex<R> large = with_square(w);
+  const R length = norm(large);
+  const auto is_normal = length.v == R(0).v;
+  const Complex<R> doubled = (R(1) / select(is_normal, R(1), length)) * square(large);
+  return {select(is_normal, R(1), doubled.re), doubled.im};
 }
 
 constexpr double factorial(int n) { return n == 0 ? 1 : n * factorial(n - 1); }

@@ -4,6 +4,8 @@
 // How the coefficients of a model become those of a form of the kernel: the choice of the form, and Form::pairs.
 #include <algorithm>
 #include <map>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "model/kernel/plan_parts.hpp"
@@ -143,6 +145,20 @@ std::vector<double> by_powers(const Model& model) {
       result.insert(result.end(), first, first + static_cast<std::ptrdiff_t>(count));
     }
   return result;
+}
+
+static_assert(kernel_parallel_limit == parallel_limit);
+
+KernelFrame kernel_frame(Frame frame) {
+  switch (frame) {
+    case Frame::xy:
+      return KernelFrame::xy;
+    case Frame::sp:
+      return KernelFrame::sp;
+    case Frame::scattering_plane:
+      return KernelFrame::scattering_plane;
+  }
+  throw std::invalid_argument("frame " + std::to_string(static_cast<int>(frame)) + " is none");
 }
 
 }  // namespace mmbrdf

@@ -58,13 +58,18 @@ Form incidence_form(const Plan& plan);
 std::vector<double> incidence_coefficients(const PreparedPattern& pattern, std::span<const double> of_modes,
                                            const Direction& incident);
 
+/// Throws std::invalid_argument for a number that is no frame.
+KernelFrame kernel_frame(Frame frame);
+
 /// For the kernel; refers to `plan` and `coefficients`. All powers: not folded.
 template <class T>
 KernelModel<T> kernel_model(const Plan& plan, std::span<const T> coefficients, int powers, T scale) {
   return {.form = plan.form,
           .projected = plan.projected,
           .turned = plan.turned,
+          .frame = KernelFrame::xy,
           .turned_by = {1, 0},
+          .incident = {},
           .list = {plan.order, plan.pairs.data(), plan.runs.data(), static_cast<int>(plan.runs.size())},
           .coefficients = coefficients.data(),
           .powers = powers,
