@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "bindings.hpp"
+#include "matrices.hpp"
 #include "mmbrdf/polarization/decompositions.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/quantities/quantities.hpp"
@@ -15,11 +16,30 @@ namespace mmbrdf::python {
 
 namespace {
 
-/// A quantity of a matrix as a function of an array (..., 4, 4).
+/// A function of an array (..., 4, 4).
+template <class F>
+void define_over(py::module_& m, const char* name, F over, const std::string& doc) {
+  m.def(
+      name, [over](const Given& mueller, const std::string& invalid) { return over(mueller, refused_from(invalid)); },
+      py::arg("mueller"), py::kw_only(), py::arg("invalid") = "raise", (doc + invalid_doc).c_str());
+}
+
+/// A quantity of a matrix as such a function.
 template <class Result>
 void define(py::module_& m, const char* name, Result (*quantity)(const Mueller&), const char* doc) {
-  m.def(
-      name, [quantity](const Given& mueller) { return over_matrices(mueller, quantity); }, py::arg("mueller"), doc);
+  define_over(
+      m, name, [quantity](const Given& mueller, Refused refused) { return over_matrices(mueller, refused, quantity); },
+      doc);
+}
+
+/// The same where there is a function for many.
+template <class Result>
+void define(py::module_& m, const char* name, Result (*one)(const Mueller&), Many<Result> many,
+            const std::vector<py::ssize_t>& core, const char* doc) {
+  define_over(
+      m, name,
+      [=](const Given& mueller, Refused refused) { return over_matrices<Result>(mueller, refused, one, many, core); },
+      doc);
 }
 
 template <std::size_t n>
@@ -77,32 +97,36 @@ std::string documentation(const Quantity& q) {
   return q.takes_light ? text + "\nstokes (..., 4) is the incident light, in the frame of the matrices." : text;
 }
 
-/// A function of an array (..., 4, 4), and of one (..., 4) if it takes light.
+/// A function of an array (..., 4, 4), and of one (..., 4) if it takes light; with one for many matrices, where there is.
 template <class Result>
 void define(py::module_& m, const std::string& name, Result (*function)(const Mueller&, const Stokes&),
-            bool takes_light, const std::string& doc) {
+            bool takes_light, const std::string& doc, Many<double> many = nullptr) {
   if (!takes_light) {
-    m.def(
-        name.c_str(),
-        [=](const Given& mueller) {
-          return over_matrices(mueller, [=](const Mueller& matrix) { return function(matrix, {}); });
+    const auto one = [=](const Mueller& matrix) { return function(matrix, {}); };
+    define_over(
+        m, name.c_str(),
+        [=](const Given& mueller, Refused refused) {
+          if constexpr (std::is_same_v<Result, double>)
+            if (many) return over_matrices<double>(mueller, refused, one, many, {});
+          return over_matrices(mueller, refused, one);
         },
-        py::arg("mueller"), doc.c_str());
+        doc);
     return;
   }
   m.def(
       name.c_str(),
-      [=](const Given& mueller, const Given& stokes) {
+      [=](const Given& mueller, const Given& stokes, const std::string& invalid) {
         const Broadcast broadcast({{"mueller", mueller, {4, 4}}, {"stokes", stokes, {4}}});
-        return map(broadcast, [&](std::size_t i) { return function(broadcast.mueller(0, i), broadcast.at<4>(1, i)); });
+        return map(broadcast, refused_from(invalid),
+                   [&](std::size_t i) { return function(broadcast.mueller(0, i), broadcast.at<4>(1, i)); });
       },
-      py::arg("mueller"), py::arg("stokes"), doc.c_str());
+      py::arg("mueller"), py::arg("stokes"), py::kw_only(), py::arg("invalid") = "raise", (doc + invalid_doc).c_str());
 }
 
 void bind_quantities(py::module_& m) {
   for (const Quantity& q : quantities()) {
     const std::string name(q.name), slopes = "Derivatives of " + name + " with respect to M_ij: array (..., 4, 4).";
-    define(m, name, q.value, q.takes_light, documentation(q));
+    define(m, name, q.value, q.takes_light, documentation(q), q.values);
     define(m, name + "_gradient", q.gradient, q.takes_light, slopes);
   }
   for (const std::string suffix : {"", "_gradient"})  // as C++ has it
@@ -119,16 +143,16 @@ void bind_quantities(py::module_& m) {
 void bind_properties(py::module_& m) {
   define(m, "diattenuation_vector", diattenuation_vector, "(M12, M13, M14) / M11: array (..., 3).");
   define(m, "polarizance_vector", polarizance_vector, "(M21, M31, M41) / M11: array (..., 3).");
-  define(m, "coherency_eigenvalues", coherency_eigenvalues,
-         "Of Cloude's coherency matrix, rising, in units of M: array (..., 4).");
+  define<std::array<double, 4>>(m, "coherency_eigenvalues", coherency_eigenvalues, coherency_eigenvalues, {4},
+                                "Of Cloude's coherency matrix, rising, in units of M: array (..., 4).");
   define(m, "coherency", coherency, "Cloude's coherency matrix, row-major: complex array (..., 16), in units of M.");
-  define(m, "realizable", realizable, "Whether a medium can have this matrix: array of bool.");
-  m.def(
-      "retardance",
-      [](const Given& mueller) {
-        return over_matrices(mueller, [](const Mueller& retarder) { return degrees(retardance(retarder)); });
+  define<bool>(m, "realizable", realizable, realizable, {}, "Whether a medium can have this matrix: array of bool.");
+  define_over(
+      m, "retardance",
+      [](const Given& mueller, Refused refused) {
+        return over_matrices(mueller, refused, [](const Mueller& retarder) { return degrees(retardance(retarder)); });
       },
-      py::arg("mueller"), "Angle in degrees, 0 to 180, by which a retarder turns the Poincare sphere.");
+      "Angle in degrees, 0 to 180, by which a retarder turns the Poincare sphere.");
   define(m, "depolarization_power", depolarization_power, "1 - |tr m| / 3 of a depolarizer (Lu & Chipman).");
 }
 
@@ -149,6 +173,14 @@ void bind_gradients(py::module_& m) {
       "positive semidefinite.");
 }
 
+std::size_t nearest_matrices(std::span<const Mueller> matrices, std::span<Mueller> out,
+                             const MatricesOptions& options) {
+  std::vector<Projection> projections(matrices.size());
+  const std::size_t refused = nearest_realizable(matrices, projections, options);
+  std::ranges::transform(projections, out.begin(), &Projection::matrix);
+  return refused;
+}
+
 void bind_sums(py::module_& m) {
   m.def(
       "co_and_cross_polarized",
@@ -158,17 +190,11 @@ void bind_sums(py::module_& m) {
       py::arg("mueller_sp"),
       "PolarizedBrdf(ss, sp, ps, pp) of matrices in the sp frame, in their units; the first letter is the incident\n"
       "polarization.");
-  m.def(
-      "cloude_decomposition",
-      [](const Given& mueller) {
-        const py::object all = over_matrices(mueller, [](const Mueller& f) {
-          const CloudeDecomposition d = cloude_decomposition(f);
-          std::array<double, 68> values;
-          std::copy(d.weights.begin(), d.weights.end(), values.begin());
-          const auto components = flat(d.components);
-          std::copy(components.begin(), components.end(), values.begin() + 4);
-          return values;
-        });
+  define_over(
+      m, "cloude_decomposition",
+      [](const Given& mueller, Refused refused) {
+        const py::object all = over_matrices<CloudeDecomposition>(
+            mueller, refused, [](const Mueller& f) { return cloude_decomposition(f); }, cloude_decomposition, {68});
         const py::slice weights(0, 4, 1), components(4, 68, 1);
         const py::array matrices = all[py::make_tuple(py::ellipsis(), components)].cast<py::array>();
         std::vector<py::ssize_t> shape(matrices.shape(), matrices.shape() + matrices.ndim() - 1);
@@ -176,44 +202,31 @@ void bind_sums(py::module_& m) {
         return named("CloudeDecomposition", py::make_tuple(all[py::make_tuple(py::ellipsis(), weights)],
                                                            matrices.attr("reshape")(py::cast(shape))));
       },
-      py::arg("mueller"),
       "CloudeDecomposition(weights (..., 4), components (..., 4, 4, 4)): M = sum of weight x component, falling.");
-  m.def(
-      "nearest_realizable",
-      [](const Given& mueller) {
-        return over_matrices(mueller, [](const Mueller& f) { return nearest_realizable(f).matrix; });
-      },
-      py::arg("mueller"), "The realizable matrices closest in the sum of squares, with the same M11.");
+  define<Mueller>(
+      m, "nearest_realizable", [](const Mueller& f) { return nearest_realizable(f).matrix; }, nearest_matrices, {4, 4},
+      "The realizable matrices closest in the sum of squares, with the same M11.");
 }
 
 void bind_factors(py::module_& m) {
-  m.def(
-      "lu_chipman",
-      [](const Given& mueller) {
-        return named("LuChipman",
-                     split_matrices(over_matrices(mueller,
-                                                  [](const Mueller& f) {
-                                                    const LuChipman d = lu_chipman(f);
-                                                    return flat<3>({d.depolarizer, d.retarder, d.diattenuator});
-                                                  }),
-                                    3));
+  define_over(
+      m, "lu_chipman",
+      [](const Given& mueller, Refused refused) {
+        return named("LuChipman", split_matrices(over_matrices<LuChipman>(
+                                                     mueller, refused, [](const Mueller& f) { return lu_chipman(f); },
+                                                     lu_chipman, {48}),
+                                                 3));
       },
-      py::arg("mueller"), "LuChipman(depolarizer, retarder, diattenuator): M is their product. Each (..., 4, 4).");
-  m.def(
-      "symmetric_decomposition",
-      [](const Given& mueller) {
-        return named(
-            "SymmetricDecomposition",
-            split_matrices(
-                over_matrices(
-                    mueller,
-                    [](const Mueller& f) {
-                      const SymmetricDecomposition d = symmetric_decomposition(f);
-                      return flat<5>({d.diattenuator2, d.retarder2, d.depolarizer, d.retarder1, d.diattenuator1});
-                    }),
-                5));
+      "LuChipman(depolarizer, retarder, diattenuator): M is their product. Each (..., 4, 4).");
+  define_over(
+      m, "symmetric_decomposition",
+      [](const Given& mueller, Refused refused) {
+        const auto factors = [](const Mueller& f) {
+          const SymmetricDecomposition d = symmetric_decomposition(f);
+          return flat<5>({d.diattenuator2, d.retarder2, d.depolarizer, d.retarder1, d.diattenuator1});
+        };
+        return named("SymmetricDecomposition", split_matrices(over_matrices(mueller, refused, factors), 5));
       },
-      py::arg("mueller"),
       "SymmetricDecomposition(diattenuator2, retarder2, depolarizer, retarder1, diattenuator1): M is the product\n"
       "diattenuator2 retarder2 depolarizer retarder1^T diattenuator1. Each (..., 4, 4).");
 }

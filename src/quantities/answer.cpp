@@ -86,11 +86,16 @@ Answered in_first_order(const Quantity& quantity, const Mueller& m_sp, const Sto
 
 /// Instead of the uncertainty in first order that of draws, or none, where the quantity has no meaning in one of them.
 void set_distribution(Answered& answered, const std::vector<Mueller>& drawn, const Stokes& light) {
-  std::vector<double> values;
-  values.reserve(drawn.size());
+  const Quantity& quantity = *answered.quantity;
+  std::vector<Mueller> matrices(drawn.size());
+  std::ranges::transform(drawn, matrices.begin(), without_unknown);
+  std::vector<double> values(drawn.size());
   answered.uncertainty.reset();
   try {
-    for (const Mueller& m : drawn) values.push_back(answered.quantity->value(without_unknown(m), light));
+    if (quantity.values)
+      quantity.values(matrices, values, {});
+    else
+      std::ranges::transform(matrices, values.begin(), [&](const Mueller& m) { return quantity.value(m, light); });
   } catch (const std::invalid_argument&) {
     return;
   }

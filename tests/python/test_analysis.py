@@ -267,3 +267,34 @@ def test_analyze_has_nan_where_there_is_no_number(ptfe):
     assert np.isnan(analyzed["depolarization"].value) and analyzed["f_ss"].value < 0
     with pytest.raises(ValueError, match="cannot exist"):
         ptfe.analyze(532, 45, 0, 30, 180, stokes=[1, 1, 1, 0])
+
+
+def test_matrices_without_an_answer_are_counted_or_become_nan():
+    matrices = np.tile(np.diag([1.0, 0.8, 0.7, 0.6]), (3, 4, 1, 1))
+    matrices[1, 2, 0, 0] = -1
+    matrices[2, 3, 1, 1] = np.nan
+    refused = np.zeros((3, 4), bool)
+    refused[1, 2] = refused[2, 3] = True
+    for function in [mmbrdf.purity, mmbrdf.depolarization_ratio, mmbrdf.entropy, mmbrdf.diattenuation_vector]:
+        answers = function(matrices, invalid="nan")
+        has_none = np.isnan(answers) if answers.ndim == 2 else np.isnan(answers).all(axis=-1)
+        assert has_none[1, 2] and not has_none[~refused].any()
+    for factor in mmbrdf.lu_chipman(matrices, invalid="nan"):
+        np.testing.assert_array_equal(np.isnan(factor).all(axis=(-1, -2)), refused)
+    nearest = mmbrdf.nearest_realizable(matrices, invalid="nan")
+    np.testing.assert_array_equal(np.isnan(nearest).all(axis=(-1, -2)), refused)
+    np.testing.assert_array_equal(mmbrdf.realizable(matrices, invalid="nan")[2], [True, True, True, False])
+    with pytest.raises(ValueError, match=r"M11 = -1, must be positive, at \[1, 2\]; 2 matrices have no answer"):
+        mmbrdf.purity(matrices)
+    with pytest.raises(ValueError, match="invalid = 'skip', must be 'raise' or 'nan'"):
+        mmbrdf.purity(matrices, invalid="skip")
+
+
+def test_a_large_array_has_the_bits_of_its_matrices_one_by_one():
+    rng = np.random.default_rng(1)
+    matrices = np.diag([1.0, 0.6, 0.5, 0.4]) + 0.05 * rng.normal(size=(300, 70, 4, 4))
+    for function in [mmbrdf.entropy, mmbrdf.realizable, mmbrdf.nearest_realizable, mmbrdf.coherency_eigenvalues]:
+        whole = function(matrices)
+        for place in [(0, 0), (299, 69), (17, 33)]:
+            np.testing.assert_array_equal(function(matrices[place]), whole[place])
+        np.testing.assert_array_equal(function(matrices[::3, ::-2]), whole[::3, ::-2])

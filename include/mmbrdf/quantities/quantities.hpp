@@ -3,9 +3,11 @@
 /// and the text of --help are made from this table; docs/formats.md shows it.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string_view>
 
+#include "mmbrdf/polarization/analysis_batch.hpp"
 #include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
@@ -23,6 +25,8 @@ struct Quantity {
   Elements needs;  ///< elements that it is made of, with light of all four components
   double (*value)(const Mueller& m_sp, const Stokes& light_sp);
   Mueller (*gradient)(const Mueller& m_sp, const Stokes& light_sp);  ///< derivatives with respect to M_ij
+  /// The values of many matrices, as analysis_batch.hpp gives them; null where there is no such function.
+  std::size_t (*values)(std::span<const Mueller> m_sp, std::span<double> out, const MatricesOptions& options) = nullptr;
 };
 
 /// In the order of the columns: first those of a matrix alone, then, if asked for, those that take light.
