@@ -152,7 +152,7 @@ ordered_json posterior_json(const Posterior& posterior) {
   return result;
 }
 
-Posterior read_posterior(const Field& field, DiscMapping mapping, const Elements& not_measured) {
+PosteriorData read_posterior_data(const Field& field, DiscMapping mapping, const Elements& not_measured) {
   field.require_no_other_than({"orders", "shared_errors", "readings", "wavelengths"});
   const std::vector<Field> orders = field["orders"].items();
   require_count(field["orders"], orders.size(), 2, "of f11 and of the other elements");
@@ -163,6 +163,11 @@ Posterior read_posterior(const Field& field, DiscMapping mapping, const Elements
     data.errors.push_back({error["name"].text(), error["size"].number()});
   for (const Field& list : field["readings"].items()) data.readings.push_back(read_readings(list));
   for (const Field& at : field["wavelengths"].items()) data.wavelengths.push_back(read_at(at, blocks));
+  return data;
+}
+
+Posterior read_posterior(const Field& field, DiscMapping mapping, const Elements& not_measured) {
+  PosteriorData data = read_posterior_data(field, mapping, not_measured);
   return checked(field, [&] { return Posterior(std::move(data)); });
 }
 

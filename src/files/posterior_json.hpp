@@ -8,6 +8,7 @@
 namespace mmbrdf {
 
 nlohmann::ordered_json posterior_json(const Posterior& posterior);
+PosteriorData read_posterior_data(const Field& field, DiscMapping mapping, const Elements& not_measured);
 Posterior read_posterior(const Field& field, DiscMapping mapping, const Elements& not_measured);
 
 }  // namespace mmbrdf

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "basis/spectral.hpp"
+#include "fitting/fit_to_predict.hpp"
 #include "fitting/mixed_fit.hpp"
 #include "fitting/row_variance.hpp"
 #include "fitting/undetermined.hpp"
@@ -95,10 +96,13 @@ FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
 
 void FitAccumulator::merge(const FitAccumulator& other) {
   if (!(basis_ == other.basis_)) throw std::invalid_argument("cannot merge fits of different bases");
+  std::vector<LeastSquares*> folded;
+  std::vector<const LeastSquares*> others;
   for (const auto& [wavelength, theirs] : other.wavelengths_) {
     AtWavelength& ours = slot(wavelength);
     for (std::size_t e = 0; e < 16; ++e) {
-      ours.elements[e].merge(theirs.elements[e]);
+      folded.push_back(&ours.elements[e]);
+      others.push_back(&theirs.elements[e]);
       ours.weight[e] += theirs.weight[e];
     }
     for (const auto& [elements, where] : theirs.measured) {
@@ -108,6 +112,7 @@ void FitAccumulator::merge(const FitAccumulator& other) {
       measured.theta_r_max = std::max(measured.theta_r_max, where.theta_r_max);
     }
   }
+  LeastSquares::merge(folded, others);
   sides_ = static_cast<Sides>(sides_ | other.sides_);
   samples_ += other.samples_;
 }
@@ -196,10 +201,18 @@ FitResult FitAccumulator::solve(const FitOptions& options) const {
 }
 
 FitResult FitAccumulator::solved(const FitOptions& options) const {
+  SvdCache known;
+  return solved(options, known, true);
+}
+
+FitResult fit_to_predict(const FitAccumulator& samples, const FitOptions& options, SvdCache& known) {
+  return samples.solved(options, known, false);
+}
+
+FitResult FitAccumulator::solved(const FitOptions& options, SvdCache& known, bool covariances) const {
   if (samples_ == 0) throw std::invalid_argument("no samples");
   const int powers = chosen_powers(options);
   std::string complaints;
-  SvdCache known;
   FitResult result;
   result.sides = sides_;
   Model& model = result.model;
@@ -226,7 +239,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
         model.not_measured.set(element.index());
     FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
                        solution.condition(), solution.null_space, solution.rows};
-    if (const std::optional<double> variance = row_variance(solution, options.covariance)) {
+    if (const std::optional<double> variance = row_variance(solution, options.covariance); covariances && variance) {
       fitted.covariance = solution.inverse;
       for (double& c : fitted.covariance) c *= *variance;
     }
@@ -237,7 +250,7 @@ FitResult FitAccumulator::solved(const FitOptions& options) const {
   for (std::size_t e = 0; e < 16; ++e)
     if (block_of_[e] < 0 && !model.not_measured[e])  // no mode: the model's element is 0
       result.elements[e] = element_fit(e, std::array{0.0}, model.reflectance);
-  if (takes_own_reflectance(options) && row_variance(result.solutions.front(), options.covariance))
+  if (covariances && takes_own_reflectance(options) && row_variance(result.solutions.front(), options.covariance))
     add_own_reflectance_covariance(result, options, known, nullptr);
   return result;
 }

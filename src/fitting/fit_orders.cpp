@@ -2,8 +2,10 @@
 // The same samples at other orders, and under another model: what cross-validation is made of.
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "mmbrdf/fitting/fit.hpp"
 #include "numerics/svd_cache.hpp"
@@ -38,20 +40,34 @@ FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
   FitAccumulator result(basis);
   result.sides_ = sides_;
   result.samples_ = samples_;
+  for (const auto& [wavelength, at] : wavelengths_) {
+    AtWavelength& to = result.slot(wavelength);
+    to.measured = at.measured;
+    to.weight = at.weight;
+  }
+  struct Parts {
+    std::vector<const LeastSquares*> from;
+    std::vector<LeastSquares*> to;
+  };
+  std::map<std::vector<std::size_t>, Parts> lower;  // by which modes of the element's block are kept
   for (std::size_t e = 0; e < 16; ++e) {
-    std::vector<std::size_t> kept;  // of the modes of the element's block
+    std::vector<std::size_t> kept;
     if (result.block_of_[e] >= 0) {
       const std::vector<Mode>& all = blocks_[static_cast<std::size_t>(block_of_[e])].modes;
       for (const Mode& mode : result.blocks_[static_cast<std::size_t>(result.block_of_[e])].modes)
         kept.push_back(static_cast<std::size_t>(std::find(all.begin(), all.end(), mode) - all.begin()));
     }
+    Parts& parts = lower[kept];
     for (const auto& [wavelength, at] : wavelengths_) {
-      AtWavelength& to = result.slot(wavelength);
-      to.measured = at.measured;
-      to.weight[e] = at.weight[e];
-      to.elements[e] = kept.empty() ? at.elements[e].restricted(std::array{std::size_t{0}}).repeated(std::array{0.0})
-                                    : at.elements[e].restricted(kept);
+      parts.from.push_back(&at.elements[e]);
+      parts.to.push_back(&result.slot(wavelength).elements[e]);
     }
+  }
+  for (const auto& [kept, parts] : lower) {
+    const std::vector<LeastSquares> restricted =
+        LeastSquares::restricted(parts.from, kept.empty() ? std::vector<std::size_t>{0} : kept);
+    for (std::size_t i = 0; i < restricted.size(); ++i)
+      *parts.to[i] = kept.empty() ? restricted[i].repeated(std::array{0.0}) : restricted[i];
   }
   return result;
 }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "fitting/fit_to_predict.hpp"
+#include "numerics/threads.hpp"
 #include "text/numbers.hpp"
 
 // Every fold is folded into triangles once, at the highest orders. All the rest comes from those: the training set of a
@@ -123,12 +125,13 @@ AtOrder at_order(const FitAccumulator& all, const std::vector<Folded>& partition
   return result;
 }
 
-HeldOut held_out(const Folded& folded, const Partition& partition, const Part& part, const FitOptions& options) {
+HeldOut held_out(const Folded& folded, const Partition& partition, const Part& part, const FitOptions& options,
+                 SvdCache& known) {
   HeldOut result;
   double chi_squared = 0, weight = 0;
   for (std::size_t f = 0; f < folded.fold.size(); ++f) {
     try {
-      const FitResult fit = folded.rest[f].solve(options);
+      const FitResult fit = fit_to_predict(folded.rest[f], options, known);
       std::string undetermined = part.undetermined(fit);
       if (!undetermined.empty()) throw std::invalid_argument(undetermined);
       const ElementFit error = part.sum(folded.fold[f].misfit(fit.model));
@@ -148,12 +151,12 @@ HeldOut held_out(const Folded& folded, const Partition& partition, const Part& p
 }
 
 Candidate candidate(const AtOrder& at, std::span<const Partition> partitions, const Part& part, int order,
-                    const FitOptions& options) {
+                    const FitOptions& options, SvdCache& known) {
   Candidate result;
   result.order = order;
   result.powers = options.powers.value_or(0);
   try {
-    const FitResult fit = at.all.solve(options);
+    const FitResult fit = fit_to_predict(at.all, options, known);
     for (const FittedBlock& fitted : fit.model.blocks)
       if (part.holds(fitted)) {
         result.coefficients += static_cast<int>(fitted.coefficients.size());
@@ -175,7 +178,7 @@ Candidate candidate(const AtOrder& at, std::span<const Partition> partitions, co
     result.refusal = error.what();
   }
   for (std::size_t p = 0; p < partitions.size(); ++p) {
-    result.held_out.push_back(held_out(at.partitions[p], partitions[p], part, options));
+    result.held_out.push_back(held_out(at.partitions[p], partitions[p], part, options, known));
     if (result.refusal.empty() && !result.held_out.back().undetermined.empty())
       result.refusal = "not determined " + result.held_out.back().undetermined;
   }
@@ -325,13 +328,19 @@ void require_valid(std::span<const Sample> samples, std::span<const Partition> p
 
 PartSelection try_all(const FitAccumulator& all, const std::vector<Folded>& folded,
                       std::span<const Partition> partitions, const SelectionOptions& options, const Part& part) {
-  PartSelection result;
   const Range& orders = part.is_f11 ? *options.orders_f11 : *options.orders_other;
-  for (int order = orders.first; order <= orders.last; ++order) {
+  const auto count = static_cast<std::size_t>(orders.last - orders.first) + 1;
+  std::vector<std::vector<Candidate>> of_orders(count);
+  in_any_order(count, [&](std::size_t i) {
+    const int order = orders.last - static_cast<int>(i);  // what takes longest first
     const AtOrder at = at_order(all, folded, part.orders(order));
+    SvdCache known;  // the rows of all powers are the same, and often those of folds and wavelengths
     for (int powers = options.powers->first; powers <= options.powers->last; ++powers)
-      result.candidates.push_back(candidate(at, partitions, part, order, part.options(options, powers)));
-  }
+      of_orders[static_cast<std::size_t>(order - orders.first)].push_back(
+          candidate(at, partitions, part, order, part.options(options, powers), known));
+  });
+  PartSelection result;
+  for (std::vector<Candidate>& of_order : of_orders) std::ranges::move(of_order, std::back_inserter(result.candidates));
   std::stable_sort(result.candidates.begin(), result.candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.powers < b.powers; });
   return result;

@@ -3,6 +3,7 @@
 
 #ifdef MMBRDF_NETCDF
 
+#include <dlfcn.h>
 #include <netcdf.h>
 
 #include <algorithm>
@@ -27,34 +28,75 @@ const std::map<int, double> default_fills{{NC_SHORT, NC_FILL_SHORT},
                                           {NC_FLOAT, static_cast<double>(NC_FILL_FLOAT)},
                                           {NC_DOUBLE, NC_FILL_DOUBLE}};
 
+/// Its functions, loaded with the first file: it and some forty libraries that it needs take a program ten times as
+/// long to start as all else.
+class Library {
+  void* handle_ = ::dlopen(MMBRDF_NETCDF, RTLD_LAZY | RTLD_LOCAL);
+
+  struct Symbol {
+    void* address;
+    template <class Function>
+    operator Function*() const {
+      return reinterpret_cast<Function*>(address);
+    }
+  };
+  Symbol found(const char* name) const {
+    const Symbol result{handle_ == nullptr ? nullptr : ::dlsym(handle_, name)};
+    if (result.address == nullptr) throw std::runtime_error("NetCDF library: " + std::string(::dlerror()));
+    return result;
+  }
+
+ public:
+  decltype(&::nc_close) close = found("nc_close");
+  decltype(&::nc_free_string) free_string = found("nc_free_string");
+  decltype(&::nc_get_att_double) get_att_double = found("nc_get_att_double");
+  decltype(&::nc_get_att_string) get_att_string = found("nc_get_att_string");
+  decltype(&::nc_get_att_text) get_att_text = found("nc_get_att_text");
+  decltype(&::nc_get_vara_double) get_vara_double = found("nc_get_vara_double");
+  decltype(&::nc_inq_att) inq_att = found("nc_inq_att");
+  decltype(&::nc_inq_attlen) inq_attlen = found("nc_inq_attlen");
+  decltype(&::nc_inq_dimlen) inq_dimlen = found("nc_inq_dimlen");
+  decltype(&::nc_inq_dimname) inq_dimname = found("nc_inq_dimname");
+  decltype(&::nc_inq_var) inq_var = found("nc_inq_var");
+  decltype(&::nc_inq_vardimid) inq_vardimid = found("nc_inq_vardimid");
+  decltype(&::nc_inq_varid) inq_varid = found("nc_inq_varid");
+  decltype(&::nc_open) open = found("nc_open");
+  decltype(&::nc_strerror) strerror = found("nc_strerror");
+};
+
+const Library& library() {
+  static const Library result;
+  return result;
+}
+
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
   require_classic_header(path);
   // Absolute, so that no name of a file is taken for an address.
-  if (const int status = nc_open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
-    throw std::runtime_error(path + ": not to be opened as NetCDF: " + nc_strerror(status) + "; cut off?");
+  if (const int status = library().open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
+    throw std::runtime_error(path + ": not to be opened as NetCDF: " + library().strerror(status) + "; cut off?");
 }
 
-NetcdfFile::~NetcdfFile() { nc_close(id_); }
+NetcdfFile::~NetcdfFile() { library().close(id_); }
 
 void NetcdfFile::require(int status, const std::string& what) const {
-  if (status != NC_NOERR) throw std::runtime_error(path_ + ": " + what + ": " + nc_strerror(status));
+  if (status != NC_NOERR) throw std::runtime_error(path_ + ": " + what + ": " + library().strerror(status));
 }
 
 std::optional<NetcdfVariable> NetcdfFile::variable(const std::string& name) const {
   NetcdfVariable result{name, 0, {}, {}};
-  const int status = nc_inq_varid(id_, name.c_str(), &result.id);
+  const int status = library().inq_varid(id_, name.c_str(), &result.id);
   if (status == NC_ENOTVAR) return {};
   require(status, name);
   nc_type type = NC_NAT;
   int count = 0;
-  require(nc_inq_var(id_, result.id, nullptr, &type, &count, nullptr, nullptr), name);
+  require(library().inq_var(id_, result.id, nullptr, &type, &count, nullptr, nullptr), name);
   result.dimensions.resize(static_cast<std::size_t>(count));
-  require(nc_inq_vardimid(id_, result.id, result.dimensions.data()), name);
+  require(library().inq_vardimid(id_, result.id, result.dimensions.data()), name);
   if (type == NC_CHAR || type == NC_STRING || type > NC_STRING) throw error(name, "holds no numbers");
   for (const char* packed : {"scale_factor", "add_offset"})
-    if (nc_inq_att(id_, result.id, packed, nullptr, nullptr) == NC_NOERR)
+    if (library().inq_att(id_, result.id, packed, nullptr, nullptr) == NC_NOERR)
       throw error(name, std::string(packed) + ": packed numbers cannot be read; write them unpacked");
   result.missing = missing_values(name, result.id, type);
   return result;
@@ -67,10 +109,10 @@ std::vector<double> NetcdfFile::missing_values(const std::string& name, int id, 
   bool filled = false;
   for (const char* attribute : {"_FillValue", "missing_value"}) {
     std::size_t length = 0;
-    if (nc_inq_attlen(id_, id, attribute, &length) != NC_NOERR || length == 0) continue;
+    if (library().inq_attlen(id_, id, attribute, &length) != NC_NOERR || length == 0) continue;
     if (length > most) throw error(name, std::string(attribute) + " has " + std::to_string(length) + " values");
     std::vector<double> values(length);
-    require(nc_get_att_double(id_, id, attribute, values.data()), name + ": " + attribute);
+    require(library().get_att_double(id_, id, attribute, values.data()), name + ": " + attribute);
     filled = filled || attribute[0] == '_';
     result.insert(result.end(), values.begin(), values.end());
   }
@@ -84,13 +126,13 @@ std::vector<double> NetcdfFile::missing_values(const std::string& name, int id, 
 
 std::size_t NetcdfFile::length(int dimension) const {
   std::size_t result = 0;
-  require(nc_inq_dimlen(id_, dimension, &result), "a dimension");
+  require(library().inq_dimlen(id_, dimension, &result), "a dimension");
   return result;
 }
 
 std::string NetcdfFile::dimension_name(int dimension) const {
   std::array<char, NC_MAX_NAME + 1> name{};
-  require(nc_inq_dimname(id_, dimension, name.data()), "a dimension");
+  require(library().inq_dimname(id_, dimension, name.data()), "a dimension");
   return name.data();
 }
 
@@ -99,17 +141,17 @@ std::string NetcdfFile::text(const NetcdfVariable& variable, const std::string& 
   for (const int where : {variable.id, NC_GLOBAL}) {
     nc_type type = NC_NAT;
     std::size_t length = 0;
-    if (nc_inq_att(id_, where, attribute.c_str(), &type, &length) != NC_NOERR) continue;
+    if (library().inq_att(id_, where, attribute.c_str(), &type, &length) != NC_NOERR) continue;
     if (type == NC_CHAR && length <= longest) {
       std::string result(length, '\0');
-      require(nc_get_att_text(id_, where, attribute.c_str(), result.data()), attribute);
+      require(library().get_att_text(id_, where, attribute.c_str(), result.data()), attribute);
       return result.substr(0, result.find('\0'));
     }
     if (type == NC_STRING && length == 1) {
       char* one = nullptr;
-      require(nc_get_att_string(id_, where, attribute.c_str(), &one), attribute);
+      require(library().get_att_string(id_, where, attribute.c_str(), &one), attribute);
       const std::string result = one == nullptr ? "" : one;
-      nc_free_string(1, &one);
+      library().free_string(1, &one);
       return result;
     }
     throw error(variable.name, "attribute " + attribute + " is no text");
@@ -119,9 +161,9 @@ std::string NetcdfFile::text(const NetcdfVariable& variable, const std::string& 
 
 void NetcdfFile::read(const NetcdfVariable& variable, const std::vector<std::size_t>& start,
                       const std::vector<std::size_t>& count, std::span<double> values) const {
-  const int status = nc_get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
+  const int status = library().get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
   if (status != NC_NOERR && status != NC_ERANGE)
-    throw error(variable.name, std::string(nc_strerror(status)) + ": cut off?");
+    throw error(variable.name, std::string(library().strerror(status)) + ": cut off?");
   for (double& value : values)
     if (std::ranges::find(variable.missing, value) != variable.missing.end())
       value = std::numeric_limits<double>::quiet_NaN();

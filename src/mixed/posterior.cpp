@@ -6,7 +6,9 @@
 #include <cmath>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "mixed/readings.hpp"
 #include "numerics/eigen_index.hpp"
@@ -86,26 +88,26 @@ std::vector<SharedError> shared_errors(const DeclaredErrors& declared) {
           {"declared receiver arm", declared.receiver}};
 }
 
-struct Posterior::State {
+namespace {
+
+/// What comes of the data.
+struct Numbers {
   struct Covariances {
     std::once_flag once;
     std::vector<std::vector<double>> of_blocks;
   };
 
   PosteriorData data;
-  std::vector<Block> blocks;
   std::vector<MixedColumns> columns;
   mutable std::vector<Covariances> known;  // at each wavelength
 
-  explicit State(PosteriorData from);
+  Numbers(PosteriorData from, const std::vector<Block>& blocks);
   MatrixXd covariance(const PosteriorAt& at, std::size_t block) const;
   const std::vector<double>& covariance(std::size_t wavelength, std::size_t block) const;
 };
 
-Posterior::State::State(PosteriorData from)
-    : data(std::move(from)),
-      blocks(without(data.not_measured, mmbrdf::blocks(Family::isotropic, data.orders))),
-      known(data.wavelengths.size()) {
+Numbers::Numbers(PosteriorData from, const std::vector<Block>& blocks)
+    : data(std::move(from)), known(data.wavelengths.size()) {
   require(!data.not_measured[0], "f11 must be measured");
   require(!data.wavelengths.empty(), "no wavelength");
   require(data.errors.size() >= declared_errors, "number of shared errors");
@@ -127,17 +129,17 @@ Posterior::State::State(PosteriorData from)
   }
 }
 
-MatrixXd Posterior::State::covariance(const PosteriorAt& at, std::size_t block) const {
+MatrixXd Numbers::covariance(const PosteriorAt& at, std::size_t block) const {
   if (!at.blocks[block].factor.empty()) return from_rounded(at.blocks[block]);
   const Index count = columns[block].isotropic_count();
   return covariance_of_all(data, at, at.blocks[block], columns[block]).topLeftCorner(count, count);
 }
 
-const std::vector<double>& Posterior::State::covariance(std::size_t wavelength, std::size_t block) const {
+const std::vector<double>& Numbers::covariance(std::size_t wavelength, std::size_t block) const {
   Covariances& at = known[wavelength];
   std::call_once(at.once, [&] {
-    std::vector<std::vector<double>> all(blocks.size());
-    in_any_order(blocks.size(), [&](std::size_t b) {
+    std::vector<std::vector<double>> all(columns.size());
+    in_any_order(all.size(), [&](std::size_t b) {
       const MatrixXd matrix = covariance(data.wavelengths[wavelength], b);
       all[b].assign(matrix.data(), matrix.data() + matrix.size());
     });
@@ -146,12 +148,44 @@ const std::vector<double>& Posterior::State::covariance(std::size_t wavelength, 
   return at.of_blocks[block];
 }
 
-Posterior::Posterior(PosteriorData data) : state_(std::make_shared<const State>(std::move(data))) {}
+}  // namespace
 
-const PosteriorData& Posterior::data() const { return state_->data; }
+struct Posterior::State {
+  Orders orders;
+  DiscMapping mapping;
+  Elements not_measured;
+  std::function<PosteriorData()> data;
+  std::vector<Block> blocks = without(not_measured, mmbrdf::blocks(Family::isotropic, orders));
+  mutable std::once_flag once{};
+  mutable std::optional<Numbers> made{};
+
+  const Numbers& numbers() const {
+    std::call_once(once, [this] {
+      PosteriorData all = data();
+      require(all.orders == orders && all.mapping == mapping && all.not_measured == not_measured,
+              "data of something else");
+      made.emplace(std::move(all), blocks);
+    });
+    return *made;
+  }
+};
+
+Posterior::Posterior(const Orders& orders, DiscMapping mapping, const Elements& not_measured,
+                     std::function<PosteriorData()> data)
+    : state_(new State{orders, mapping, not_measured, std::move(data)}) {}
+
+Posterior::Posterior(PosteriorData data)
+    : Posterior(data.orders, data.mapping, data.not_measured,
+                [once = std::make_shared<PosteriorData>(std::move(data))] { return std::move(*once); }) {
+  state_->numbers();
+}
+
+const PosteriorData& Posterior::data() const { return state_->numbers().data; }
+DiscMapping Posterior::mapping() const { return state_->mapping; }
+const Elements& Posterior::not_measured() const { return state_->not_measured; }
 const std::vector<Block>& Posterior::blocks() const { return state_->blocks; }
 std::span<const double> Posterior::covariance(std::size_t wavelength, std::size_t block) const {
-  return state_->covariance(wavelength, block);
+  return state_->numbers().covariance(wavelength, block);
 }
 
 }  // namespace mmbrdf

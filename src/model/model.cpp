@@ -170,8 +170,8 @@ void require_posterior(const Model& model) {
   const auto refuse = [](const std::string& why) { throw std::invalid_argument("the posterior of the model " + why); };
   const std::vector<Block>& behind = model.posterior->blocks();
   if (model.family != Family::isotropic) refuse("is of the isotropic family, the model of " + to_string(model.family));
-  if (model.mapping != model.posterior->data().mapping) refuse("has another mapping to the disc");
-  if (model.not_measured != model.posterior->data().not_measured) refuse("is of other elements");
+  if (model.mapping != model.posterior->mapping()) refuse("has another mapping to the disc");
+  if (model.not_measured != model.posterior->not_measured()) refuse("is of other elements");
   if (model.blocks.size() != behind.size()) refuse("has " + std::to_string(behind.size()) + " blocks");
   for (std::size_t b = 0; b < behind.size(); ++b)
     for (const Mode& mode : model.blocks[b].block.modes)

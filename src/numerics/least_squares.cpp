@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -196,6 +197,65 @@ LeastSquares LeastSquares::restricted(std::span<const std::size_t> unknowns) con
   return result;
 }
 
+/// Calls work(positions) for each set of problems that share their rows, and what is at the same places of `others` too.
+template <class Work>
+void LeastSquares::for_alike(std::span<const LeastSquares* const> problems, std::span<const LeastSquares* const> others,
+                             Work work) {
+  const auto is_single = [](const LeastSquares* one) { return one->values_ == 1; };
+  if (!std::ranges::all_of(problems, is_single) || !std::ranges::all_of(others, is_single) ||
+      (!others.empty() && others.size() != problems.size()))
+    throw std::invalid_argument("problems must be as many as the others and have one column of values each");
+  std::vector<bool> done(problems.size());
+  for (std::size_t first = 0; first < problems.size(); ++first) {
+    if (done[first]) continue;
+    std::vector<std::size_t> alike;
+    for (std::size_t p = first; p < problems.size(); ++p)
+      if (!done[p] && problems[p]->has_rows_of(*problems[first]) &&
+          (others.empty() || others[p]->has_rows_of(*others[first]))) {
+        alike.push_back(p);
+        done[p] = true;
+      }
+    work(alike);
+  }
+}
+
+std::vector<LeastSquares> LeastSquares::restricted(std::span<const LeastSquares* const> problems,
+                                                   std::span<const std::size_t> unknowns) {
+  std::vector<LeastSquares> result(problems.size(), LeastSquares(1));
+  for_alike(problems, {}, [&](const std::vector<std::size_t>& alike) {
+    const LeastSquares all = joined(problems, alike).restricted(unknowns);
+    for (std::size_t v = 0; v < alike.size(); ++v) {
+      result[alike[v]] = all.of(static_cast<int>(v));
+      result[alike[v]].rows_ = problems[alike[v]]->rows_;
+    }
+  });
+  return result;
+}
+
+void LeastSquares::merge(std::span<LeastSquares* const> problems, std::span<const LeastSquares* const> others) {
+  const std::vector<const LeastSquares*> before(problems.begin(), problems.end());
+  for_alike(before, others, [&](const std::vector<std::size_t>& alike) {
+    LeastSquares all = joined(before, alike);
+    all.merge(joined(others, alike));
+    for (std::size_t v = 0; v < alike.size(); ++v) {
+      const long rows = problems[alike[v]]->rows_ + others[alike[v]]->rows_;
+      *problems[alike[v]] = all.of(static_cast<int>(v));
+      problems[alike[v]]->rows_ = rows;
+    }
+  });
+}
+
+/// Some of them beside each other.
+LeastSquares LeastSquares::joined(std::span<const LeastSquares* const> problems, std::span<const std::size_t> which) {
+  LeastSquares result = *problems[which.front()];
+  result.values_ = static_cast<int>(which.size());
+  for (const std::size_t p : which.subspan(1))
+    result.triangle_.insert(result.triangle_.end(),
+                            problems[p]->triangle_.end() - static_cast<std::ptrdiff_t>(result.height()),
+                            problems[p]->triangle_.end());
+  return result;
+}
+
 void LeastSquares::copy_column(std::size_t j, double factor, RowColumns& rows, std::size_t to) const {
   for (std::size_t i = 0; i < height(); ++i) rows.column(to)[i] = factor * triangle_[j * height() + i];
 }
@@ -213,9 +273,10 @@ LeastSquares LeastSquares::of(int value) const {
 }
 
 bool LeastSquares::has_rows_of(const LeastSquares& other) const {
-  const auto size = static_cast<std::ptrdiff_t>((height() - 1) * height());
-  return unknowns_ == other.unknowns_ &&
-         std::equal(triangle_.begin(), triangle_.begin() + size, other.triangle_.begin());
+  if (unknowns_ != other.unknowns_) return false;
+  const std::size_t size = (height() - 1) * height();
+  return this == &other || std::memcmp(triangle_.data(), other.triangle_.data(), size * sizeof(double)) == 0 ||
+         std::equal(triangle_.data(), triangle_.data() + size, other.triangle_.data());  // 0 and -0 are the same
 }
 
 LeastSquares LeastSquares::beside(std::span<const LeastSquares* const> problems, std::span<const double> divisors) {

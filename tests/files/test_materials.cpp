@@ -8,6 +8,7 @@
 
 #include "given/halton.hpp"
 #include "given/published.hpp"
+#include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/files/samples_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/prepared.hpp"
@@ -46,6 +47,14 @@ TEST(Materials, ReflectAsPtfeDoes) {
       EXPECT_NEAR(prepared.f11(geometry) * std::numbers::pi, 1, 0.05) << name << " at " << wavelength;
       EXPECT_EQ(prepared.outside(geometry), inside);
     }
+  }
+}
+
+// Their posteriors are kept apart from the rest of the file, and read later.
+TEST(Materials, AreWhatTheirFilesHold) {
+  for (const std::string& name : materials()) {
+    const Model there = load_model(MMBRDF_SOURCE_DIR "/materials/" + name + ".json");
+    EXPECT_EQ(to_json(material(name)), to_json(there)) << name;
   }
 }
 

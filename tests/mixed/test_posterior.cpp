@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "given/halton.hpp"
@@ -51,6 +53,32 @@ TEST(Posterior, RefusesWhatIsNone) {
     faults[f](doctored);
     EXPECT_THROW(Posterior{doctored}, std::invalid_argument) << f;
   }
+}
+
+TEST(Posterior, MakesItsDataWhenTheyAreFirstAskedFor) {
+  const Model model = fitted();
+  const PosteriorData& sound = model.posterior->data();
+  int made = 0;
+  const Posterior deferred(sound.orders, sound.mapping, sound.not_measured, [&] { return ++made, sound; });
+  const Posterior copy = deferred;
+  EXPECT_EQ(deferred.mapping(), sound.mapping);
+  EXPECT_EQ(deferred.not_measured(), sound.not_measured);
+  EXPECT_EQ(deferred.blocks().size(), model.posterior->blocks().size());
+  EXPECT_EQ(made, 0);
+  EXPECT_TRUE(std::ranges::equal(deferred.covariance(0, 1), model.posterior->covariance(0, 1)));
+  EXPECT_EQ(copy.data().wavelengths[0].blocks[1].mean, sound.wavelengths[0].blocks[1].mean);
+  EXPECT_EQ(made, 1);
+}
+
+TEST(Posterior, ThrowsWhatIsWrongWithItsDataWhenTheyAreAskedFor) {
+  const PosteriorData sound = fitted().posterior->data();
+  const Posterior others({sound.orders.f11 + 1, sound.orders.other}, sound.mapping, sound.not_measured,
+                         [&] { return sound; });
+  EXPECT_THROW(others.data(), std::invalid_argument);
+  EXPECT_THROW(others.covariance(0, 0), std::invalid_argument);
+  const Posterior none(sound.orders, sound.mapping, sound.not_measured,
+                       []() -> PosteriorData { throw std::runtime_error("no data"); });
+  EXPECT_THROW(none.data(), std::runtime_error);
 }
 
 /// The same in its rounded form.

@@ -555,6 +555,36 @@ RC_GTEST_PROP(LeastSquares, HoldsColumnsOfValuesAsIfEachWereAlone, ()) {
   RC_ASSERT(!accumulated(problem).has_rows_of(alone[0]));
 }
 
+RC_GTEST_PROP(LeastSquares, OfSeveralProblemsDoesWhatItDoesOfEachToTheLastBit, ()) {
+  Problem problem = any_determined_problem(), other = any_problem(problem.unknowns, problem.count());
+  std::vector<LeastSquares> problems, others;
+  for (int p = 0; p < 5; ++p) {  // the first three share their rows, and of the others the last four
+    problem.values = any_numbers(problem.count());
+    other.values = any_numbers(other.count());
+    if (p >= 3) problem.rows[0] += 1;
+    if (p == 1) other.rows[0] += 1;
+    problems.push_back(accumulated(problem));
+    others.push_back(accumulated(other));
+  }
+  std::vector<std::size_t> kept = any_order(problem.unknowns);
+  kept.resize(*rc::gen::inRange<std::size_t>(1, problem.unknowns + 1));
+  std::vector<const LeastSquares*> from, beside;
+  std::vector<LeastSquares*> into;
+  std::vector<LeastSquares> merged = problems;
+  for (std::size_t p = 0; p < problems.size(); ++p) {
+    from.push_back(&problems[p]);
+    beside.push_back(&others[p]);
+    into.push_back(&merged[p]);
+  }
+  const std::vector<LeastSquares> restricted = LeastSquares::restricted(from, kept);
+  LeastSquares::merge(into, beside);
+  for (std::size_t p = 0; p < problems.size(); ++p) {
+    RC_ASSERT(restricted[p].state() == problems[p].restricted(kept).state());
+    problems[p].merge(others[p]);
+    RC_ASSERT(merged[p].state() == problems[p].state());
+  }
+}
+
 RC_GTEST_PROP(LeastSquares, SolvesOverColumnsOfValuesAsOverRowsThatAreRepeatedForEach, ()) {
   Problem problem = any_determined_problem();
   const std::vector<Numbers> columns{problem.values, any_numbers(problem.count()), any_numbers(problem.count())};
@@ -638,6 +668,10 @@ TEST(LeastSquares, RefusesProblemsThatDoNotFitEachOther) {
   EXPECT_THROW(pair.of(-1), std::invalid_argument);
   EXPECT_THROW(pair.merge(two), std::invalid_argument);
   EXPECT_THROW(pair.state(), std::invalid_argument);
+  const std::array<const LeastSquares*, 2> different{&two, &pair};
+  const std::array<LeastSquares*, 1> one{&two};
+  EXPECT_THROW(LeastSquares::restricted(different, std::array<std::size_t, 1>{0}), std::invalid_argument);
+  EXPECT_THROW(LeastSquares::merge(one, problems), std::invalid_argument);
   EXPECT_THROW(pair.solve(), std::invalid_argument);
   EXPECT_THROW(pair.solve_over(Numbers{1, 1, 1}, 2, 1e-10), std::invalid_argument);
   EXPECT_THROW(two.merge_repeated(other, Numbers{1, 1}), std::invalid_argument);

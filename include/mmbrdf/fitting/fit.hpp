@@ -173,9 +173,11 @@ class FitAccumulator {
   static std::shared_ptr<const std::vector<Design>> designs(std::span<const Block> blocks, Family family);
   AtWavelength& slot(double wavelength);
   friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);
+  friend FitResult fit_to_predict(const FitAccumulator&, const FitOptions&, SvdCache&);  // for selection
   static FitResult of_noise(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
                             Weights weights);
   static FitResult of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options, Weights weights);
+  FitResult solved(const FitOptions& options, SvdCache& known, bool covariances) const;
   FitResult solved(const FitOptions& options) const;
   DirectionPairs::Grid grid() const;
   Measured& measured_of(AtWavelength& at, unsigned long elements) const;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -96,8 +97,14 @@ class Posterior {
  public:
   /// Throws std::invalid_argument unless sizes agree, numbers are finite, variances positive and wavelengths rise.
   explicit Posterior(PosteriorData data);
+  /// The same, of data that are made when more of them is asked for than is given here. Whatever asks then throws what
+  /// `data` throws, and std::invalid_argument as above or for data that are of something else.
+  Posterior(const Orders& orders, DiscMapping mapping, const Elements& not_measured,
+            std::function<PosteriorData()> data);
 
   const PosteriorData& data() const;
+  DiscMapping mapping() const;
+  const Elements& not_measured() const;
   const std::vector<Block>& blocks() const;  ///< of the isotropic modes, in canonical order
   /// Of the isotropic modes of a block at one of the wavelengths, without declared errors: square.
   std::span<const double> covariance(std::size_t wavelength, std::size_t block) const;

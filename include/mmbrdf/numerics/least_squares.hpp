@@ -72,6 +72,12 @@ class LeastSquares {
   /// The problem that has some of the unknowns only, in this order; the others are 0. Positions count from 0. Throws
   /// std::invalid_argument for none of them, or one that there is not or that comes twice.
   LeastSquares restricted(std::span<const std::size_t> unknowns) const;
+  /// Each of several problems with one column of values so, and each merged with the one at the same place of `others`:
+  /// to the last bit what the functions of one problem do, but rows that problems share are worked on once.
+  /// Throws std::invalid_argument as those do, for more columns of values, and for another number of others.
+  static std::vector<LeastSquares> restricted(std::span<const LeastSquares* const> problems,
+                                              std::span<const std::size_t> unknowns);
+  static void merge(std::span<LeastSquares* const> problems, std::span<const LeastSquares* const> others);
 
   /// ‖A x − b‖ for any x of the right size, of the first column of values.
   double residual_norm(std::span<const double> x) const;
@@ -111,6 +117,11 @@ class LeastSquares {
  private:
   std::size_t height() const { return static_cast<std::size_t>(unknowns_) + 1; }
   std::size_t width() const { return static_cast<std::size_t>(unknowns_ + values_); }
+
+  template <class Work>
+  static void for_alike(std::span<const LeastSquares* const> problems, std::span<const LeastSquares* const> others,
+                        Work work);
+  static LeastSquares joined(std::span<const LeastSquares* const> problems, std::span<const std::size_t> which);
 
   /// Column j of the triangle, multiplied by a factor, as column `to`.
   void copy_column(std::size_t j, double factor, RowColumns& rows, std::size_t to) const;
