@@ -56,5 +56,6 @@ void register_limits();
 void register_textbook();
 void register_evaluation();
 void register_batches();
+void register_uncertainty();
 
 }  // namespace mmbrdf::bench

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   mmbrdf::bench::register_textbook();
   mmbrdf::bench::register_evaluation();
   mmbrdf::bench::register_batches();
+  mmbrdf::bench::register_uncertainty();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
 }
