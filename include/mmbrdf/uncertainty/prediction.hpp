@@ -119,7 +119,7 @@ bool knows_uncertainty(const Model& model);
 
 inline constexpr double covariance_tolerance = 1e-9;
 /// How far variances of evaluate(), standard_uncertainty() and covariance(gradient, gradient) are from each other, of the
-/// largest at that geometry.
+/// largest at that geometry; azimuths of many turns add their rounding.
 inline constexpr double batch_error = 1e-12;
 
 }  // namespace mmbrdf
