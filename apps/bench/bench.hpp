@@ -58,5 +58,6 @@ void register_textbook();
 void register_evaluation();
 void register_batches();
 void register_analysis();
+void register_uncertainty();
 
 }  // namespace mmbrdf::bench

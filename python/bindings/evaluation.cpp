@@ -2,6 +2,9 @@
 // Models at many wavelengths and geometries.
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <span>
+
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
@@ -63,32 +66,47 @@ py::object evaluate(const Question& question, Frame frame, int threads, const st
   return result;
 }
 
-/// f(covariance) at each position.
-template <std::size_t n, class F>
-py::object from_covariances(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms, int threads,
-                            std::vector<py::ssize_t> core, F f) {
-  struct Prepared {
-    PreparedUncertainty uncertainty;
-    PreparedModel model;
-  };
+/// Uncertainties of a model with terms of type B.
+struct PreparedBudget {
+  PreparedUncertainty uncertainty;
+  PreparedModel model;
+  const std::vector<TypeBTerm>& terms;
+
+  MuellerCovariance total(const Geometry& geometry, Frame frame) const {
+    return budget(model, uncertainty, terms, geometry, frame).total;
+  }
+  void evaluate(std::span<const Geometry> geometries, Frame frame, std::span<MuellerCovariance> out) const {
+    if (terms.empty()) return uncertainty.evaluate(geometries, frame, out);
+    std::ranges::transform(geometries, out.begin(), [&](const Geometry& g) { return total(g, frame); });
+  }
+  void evaluate(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const {
+    if (terms.empty()) return uncertainty.standard_uncertainty(geometries, frame, out);
+    std::ranges::transform(geometries, out.begin(),
+                           [&](const Geometry& g) { return standard_uncertainty(total(g, frame)); });
+  }
+};
+
+/// Result, which is numbers alone, at each position.
+template <class Result>
+py::object uncertainties(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms, int threads,
+                         std::vector<py::ssize_t> core) {
   auto result = new_array<double>(question.broadcast(), core);
-  double* const out = result.mutable_data();
+  auto* const out = reinterpret_cast<Result*>(result.mutable_data());
   Range range(question.object());
   without_gil([&] {
     question.each(
         threads, 64,
         [&](double wavelength) {
-          return Prepared{prepare_uncertainty(question.model(), wavelength), question.prepared(wavelength)};
+          return PreparedBudget{prepare_uncertainty(question.model(), wavelength), question.prepared(wavelength),
+                                terms};
         },
-        [&](const Prepared& p, const Some& some) {
+        [&](const PreparedBudget& p, const Some& some) {
           range.count(p.model.wavelength(), some.geometries);
-          std::vector<MuellerCovariance> covariances(some.geometries.size());
-          if (terms.empty()) p.uncertainty.evaluate(some.geometries, frame, covariances);
-          for (std::size_t i = 0; i < some.geometries.size(); ++i) {
-            if (!terms.empty()) covariances[i] = budget(p.model, p.uncertainty, terms, some.geometries[i], frame).total;
-            const std::array<double, n> values = f(covariances[i]);
-            std::copy(values.begin(), values.end(), out + n * some.position(i));
-          }
+          const std::size_t count = some.geometries.size();
+          if (!some.positions) return p.evaluate(some.geometries, frame, std::span(out + some.begin, count));
+          std::vector<Result> here(count);
+          p.evaluate(some.geometries, frame, here);
+          for (std::size_t i = 0; i < count; ++i) out[some.position(i)] = here[i];
         });
   });
   range.warn(question.broadcast().size());
@@ -97,13 +115,11 @@ py::object from_covariances(const Question& question, Frame frame, const std::ve
 
 py::object evaluate_uncertainty(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms,
                                 int threads) {
-  return from_covariances<16>(question, frame, terms, threads, {4, 4},
-                              [](const MuellerCovariance& c) { return standard_uncertainty(c).elements; });
+  return uncertainties<Mueller>(question, frame, terms, threads, {4, 4});
 }
 
 py::object covariance(const Question& question, Frame frame, const std::vector<TypeBTerm>& terms, int threads) {
-  return from_covariances<256>(question, frame, terms, threads, {16, 16},
-                               [](const MuellerCovariance& c) { return c.values; });
+  return uncertainties<MuellerCovariance>(question, frame, terms, threads, {16, 16});
 }
 
 py::object outside_of(const Question& question) {
@@ -155,9 +171,11 @@ py::object evaluate_draws(const Question& question, Frame frame, int count, unsi
         threads, 16, [&](double wavelength) { return draws.at(wavelength); },
         [&](const std::vector<PreparedModel>& models, const Some& some) {
           range.count(models.front().wavelength(), some.geometries);
-          for (std::size_t d = 0; d < models.size(); ++d)
-            for (std::size_t i = 0; i < some.geometries.size(); ++i)
-              out[d * size + some.position(i)] = models[d].evaluate(some.geometries[i], frame);
+          std::vector<Mueller> here(some.geometries.size());
+          for (std::size_t d = 0; d < models.size(); ++d) {
+            models[d].evaluate(some.geometries, frame, here);
+            for (std::size_t i = 0; i < here.size(); ++i) out[d * size + some.position(i)] = here[i];
+          }
         });
   });
   range.warn(size);

@@ -102,12 +102,12 @@ PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<
 PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries) {
   const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength);
   const auto [ss, sp, ps, pp] = co_and_cross_polarized_gradients();
+  std::vector<MuellerCovariance> covariances(geometries.size());
+  prepared.evaluate(geometries, Frame::sp, covariances);
   PolarizedCurve curve;
-  for (const Geometry& geometry : geometries) {
-    const MuellerCovariance covariance = prepared.evaluate(geometry, Frame::sp);
+  for (const MuellerCovariance& covariance : covariances)
     curve.push_back({standard_uncertainty(ss, covariance), standard_uncertainty(sp, covariance),
                      standard_uncertainty(ps, covariance), standard_uncertainty(pp, covariance)});
-  }
   return curve;
 }
 

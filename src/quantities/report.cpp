@@ -155,7 +155,7 @@ void add_reflectances(Json& rows, const Reported& reported, double wavelength) {
   for (const auto& [name, geometry] : {std::pair("0:45", Geometry{{0, 0}, {radians(45), radians(180)}}),
                                        std::pair("45:0", Geometry{{radians(45), 0}, {0, 0}})})
     add(std::string("reflectance factor ") + name, reflectance_factor(prepared.f11(geometry)),
-        [&, &place = geometry] { return reflectance_factor(standard_uncertainty(u->fit.evaluate(place))(0, 0)); });
+        [&, &place = geometry] { return reflectance_factor(u->fit.standard_uncertainty(place)(0, 0)); });
 }
 
 Json reflectances(const Reported& reported) {

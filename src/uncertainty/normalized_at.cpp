@@ -55,13 +55,6 @@ void add_products(std::vector<MuellerCovariance>& sum, const std::vector<Element
 
 }  // namespace
 
-MuellerCovariance NormalizedAt::total(std::size_t geometry) const {
-  MuellerCovariance result;
-  for (const Part& part : parts)
-    std::ranges::transform(result.values, part.covariances[geometry].values, result.values.begin(), std::plus{});
-  return result;
-}
-
 std::string name_of_fit(std::span<const BlockAt> blocks) { return blocks.front().parts.empty() ? "fit" : "posterior"; }
 
 NormalizedAt normalized_at(std::span<const BlockAt> blocks, int order, DiscMapping mapping,

@@ -18,8 +18,6 @@ struct NormalizedAt {
   };
   std::vector<Mueller> m;
   std::vector<Part> parts;  // the first that of the fit
-
-  MuellerCovariance total(std::size_t geometry) const;
 };
 
 /// `order` and `mapping` are those of the rows of the blocks.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "text/numbers.hpp"
 #include "uncertainty/block_at.hpp"
 #include "uncertainty/normalized_at.hpp"
+#include "uncertainty/variances.hpp"
 
 // Element e of the normalised matrix is g_e · a(λ) with a(λ) = Σ_p λ^p a_p, and f11 = R(λ) g_11 · a(λ). So
 //
@@ -32,7 +34,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double estimability_limit = 1e-8;  // theory 4.7
-constexpr std::size_t at_once = 32;          // geometries: their rows stay in the cache
 
 /// Of F_e = f11 m_e, F_11 = f11, from that of f11 and m: dF_e = m_e df11 + f11 dm_e.
 MuellerCovariance of_product(Mueller m, const MuellerCovariance& c) {
@@ -44,6 +45,11 @@ MuellerCovariance of_product(Mueller m, const MuellerCovariance& c) {
       result(e, other) = m.elements[e] * m.elements[other] * c(0, 0) + direct;
     }
   return result;
+}
+
+void require_room(std::size_t asked, const char* what, std::size_t room) {
+  if (asked != room)
+    throw std::invalid_argument(std::to_string(asked) + " " + what + ", room for " + std::to_string(room));
 }
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -59,6 +65,7 @@ Eigen::Map<const RowMajor> slopes_of(const MuellerGradient& gradient, Index para
 
 struct PreparedUncertainty::Blocks {
   std::vector<BlockAt> list;
+  std::optional<Variances> variances;  // of the list
   Index parameters = 0;
   double freedom = 0;
   int order = 0;  // of the functions of the rows
@@ -72,6 +79,13 @@ struct PreparedUncertainty::Blocks {
     MuellerCovariance result = transformed(covariance, left, right);
     set_unknown(result, unknown_in(geometry, frame));
     return result;
+  }
+
+  void covariances(Variances::Of what, std::span<const Geometry> geometries, Frame frame,
+                   std::span<MuellerCovariance> out) const {
+    for (const Geometry& geometry : geometries) require_valid(geometry);
+    variances->covariances(what, geometries, frame, out);
+    for (std::size_t g = 0; g < out.size() && unknown.any(); ++g) set_unknown(out[g], unknown_in(geometries[g], frame));
   }
 
   Elements unknown_in(const Geometry& geometry, Frame frame) const {
@@ -92,13 +106,10 @@ struct PreparedUncertainty::Blocks {
     return {functions_at(i, order, mapping), functions_at(r, order, mapping)};
   }
 
-  NormalizedAt normalized(std::span<const Geometry> geometries) const {
-    std::vector<Geometry> asked;
-    for (const Geometry& geometry : geometries) {
-      require_valid(geometry);
-      asked.push_back(turned(geometry));
-    }
-    return normalized_at(list, order, mapping, asked);
+  NormalizedAt normalized(const Geometry& geometry) const {
+    require_valid(geometry);
+    const Geometry asked = turned(geometry);
+    return normalized_at(list, order, mapping, {&asked, 1});
   }
 
   /// L and R of M → L M R that brings what the modes give into a frame.
@@ -157,12 +168,14 @@ PreparedUncertainty prepare_uncertainty(const Model& model, double wavelength) {
     block.first = blocks->parameters;
     blocks->parameters += block.covariance.rows();
   }
+  blocks->variances.emplace(blocks->list, blocks->order, blocks->mapping, blocks->turns);
   return PreparedUncertainty(std::move(blocks));
 }
 
 MuellerCovariance PreparedUncertainty::normalized(const Geometry& geometry, Frame frame) const {
-  const NormalizedAt at = blocks_->normalized({&geometry, 1});
-  return blocks_->in_frame(at.total(0), geometry, frame);
+  MuellerCovariance result;
+  blocks_->covariances(Variances::Of::normalized, {&geometry, 1}, frame, {&result, 1});
+  return result;
 }
 
 MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame frame) const {
@@ -173,19 +186,31 @@ MuellerCovariance PreparedUncertainty::evaluate(const Geometry& geometry, Frame 
 
 void PreparedUncertainty::evaluate(std::span<const Geometry> geometries, Frame frame,
                                    std::span<MuellerCovariance> out) const {
-  if (out.size() != geometries.size())
-    throw std::invalid_argument(std::to_string(out.size()) + " covariances for " + std::to_string(geometries.size()) +
-                                " geometries");
-  for (std::size_t first = 0; first < geometries.size(); first += at_once) {
-    const auto some = geometries.subspan(first, std::min(at_once, geometries.size() - first));
-    const NormalizedAt at = blocks_->normalized(some);
-    for (std::size_t g = 0; g < some.size(); ++g)
-      out[first + g] = blocks_->in_frame(of_product(at.m[g], at.total(g)), some[g], frame);
+  require_room(geometries.size(), "geometries", out.size());
+  blocks_->covariances(Variances::Of::matrix, geometries, frame, out);
+}
+
+Mueller PreparedUncertainty::standard_uncertainty(const Geometry& geometry, Frame frame) const {
+  Mueller result;
+  standard_uncertainty({&geometry, 1}, frame, {&result, 1});
+  return result;
+}
+
+void PreparedUncertainty::standard_uncertainty(std::span<const Geometry> geometries, Frame frame,
+                                               std::span<Mueller> out) const {
+  require_room(geometries.size(), "geometries", out.size());
+  for (const Geometry& geometry : geometries) require_valid(geometry);
+  blocks_->variances->standard_uncertainties(geometries, frame, out);
+  if (blocks_->unknown.none()) return;
+  for (std::size_t g = 0; g < out.size(); ++g) {
+    const Elements unknown = blocks_->unknown_in(geometries[g], frame);
+    for (std::size_t e = 0; e < 16; ++e)
+      if (unknown[e]) out[g].elements[e] = std::numeric_limits<double>::quiet_NaN();
   }
 }
 
 std::vector<BudgetTerm> PreparedUncertainty::parts(const Geometry& geometry, Frame frame) const {
-  const NormalizedAt at = blocks_->normalized({&geometry, 1});
+  const NormalizedAt at = blocks_->normalized(geometry);
   std::vector<BudgetTerm> result;
   for (const NormalizedAt::Part& part : at.parts)
     result.push_back({part.name, blocks_->in_frame(of_product(at.m[0], part.covariances[0]), geometry, frame)});
@@ -275,11 +300,16 @@ bool PreparedUncertainty::estimable(const Geometry& geometry) const {
 }
 
 double PreparedUncertainty::directional_hemispherical_reflectance(const Direction& incident) const {
-  require_valid(Geometry{incident, {}});
-  const auto [k_i, unused] = blocks_->tables({incident, incident});
-  const BlockAt& f11 = blocks_->list.front();
-  const VectorXd slopes = f11.slopes(f11.row({}, k_i, over_hemisphere(blocks_->mapping)));
-  return std::sqrt(std::max(slopes.dot(f11.covariance * slopes), 0.0));
+  double result = 0;
+  directional_hemispherical_reflectance({&incident, 1}, {&result, 1});
+  return result;
+}
+
+void PreparedUncertainty::directional_hemispherical_reflectance(std::span<const Direction> incident,
+                                                                std::span<double> out) const {
+  require_room(incident.size(), "directions", out.size());
+  for (const Direction& direction : incident) require_valid(Geometry{direction, {}});
+  blocks_->variances->directional_hemispherical(incident, out);
 }
 
 MuellerGradient PreparedUncertainty::bihemispherical_gradient() const {

@@ -153,7 +153,7 @@ TEST(Report, HasTheNumbersOfTheModelToTheLastBit) {
   const Geometry to_the_normal{{radians(45), 0}, {0, 0}};
   EXPECT_EQ(factor["quantity"], "reflectance factor 45:0");
   EXPECT_EQ(factor["value"].get<double>(), reflectance_factor(prepare(model, green[0]).f11(to_the_normal)));
-  EXPECT_EQ(factor["u"].get<double>(), reflectance_factor(standard_uncertainty(u.fit.evaluate(to_the_normal))(0, 0)));
+  EXPECT_EQ(factor["u"].get<double>(), reflectance_factor(u.fit.standard_uncertainty(to_the_normal)(0, 0)));
 }
 
 TEST(Report, HasTheNumbersOfTheSamplesToTheLastBit) {

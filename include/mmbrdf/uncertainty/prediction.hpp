@@ -39,8 +39,16 @@ class PreparedUncertainty {
   /// Throws std::invalid_argument for an invalid geometry.
   MuellerCovariance evaluate(const Geometry& geometry, Frame frame = Frame::xy) const;
 
-  /// The same of many geometries, several times faster. Throws std::invalid_argument for lists of different lengths, too.
+  /// The same of many geometries, several times faster, and with the same bits. Throws std::invalid_argument for lists of
+  /// different lengths, too.
   void evaluate(std::span<const Geometry> geometries, Frame frame, std::span<MuellerCovariance> out) const;
+
+  /// Standard uncertainties of the elements in sr⁻¹: the roots of the diagonal of evaluate(), without the rest of it, which
+  /// takes longer. Squares differ from that diagonal by rounding, at most batch_error of its largest element. Unknown
+  /// elements are NaN. Throws std::invalid_argument for an invalid geometry, and for lists of different lengths.
+  Mueller standard_uncertainty(const Geometry& geometry, Frame frame = Frame::xy) const;
+  /// The same of many geometries, many times faster, and with the same bits.
+  void standard_uncertainty(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
 
   /// Covariance of f11 in sr⁻¹ (element 11) and of the other elements divided by it. Throws std::invalid_argument for
   /// an invalid geometry.
@@ -84,6 +92,9 @@ class PreparedUncertainty {
   /// Standard uncertainty of the directional-hemispherical reflectance for unpolarized light. Throws
   /// std::invalid_argument for an invalid direction.
   double directional_hemispherical_reflectance(const Direction& incident) const;
+  /// The same of many directions, faster, and with the same bits. Throws std::invalid_argument for lists of different
+  /// lengths, too.
+  void directional_hemispherical_reflectance(std::span<const Direction> incident, std::span<double> out) const;
 
  private:
   friend PreparedUncertainty prepare_uncertainty(const Model&, double);
@@ -107,5 +118,8 @@ std::vector<std::string> names_of_parts(const Model& model);
 bool knows_uncertainty(const Model& model);
 
 inline constexpr double covariance_tolerance = 1e-9;
+/// How far variances of evaluate(), standard_uncertainty() and covariance(gradient, gradient) are from each other, of the
+/// largest at that geometry; azimuths of many turns add their rounding.
+inline constexpr double batch_error = 1e-12;
 
 }  // namespace mmbrdf

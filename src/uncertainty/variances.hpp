@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Standard uncertainties and covariances at many geometries: rows of modes side by side, and products with the
+/// covariances of the blocks that stay in the cache.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mmbrdf/geometry/geometry.hpp"
+#include "uncertainty/block_at.hpp"
+#include "uncertainty/variances_kernel.hpp"
+
+namespace mmbrdf {
+
+/// The best that runs here.
+const VariancesKernel& variances_kernel();
+
+/// A symmetric matrix as the kernel reads it.
+class Packed {
+ public:
+  explicit Packed(const Eigen::MatrixXd& symmetric);
+  PackedSymmetric view() const { return {values_.data(), rows_}; }
+  long rows() const { return rows_; }
+
+ private:
+  long rows_;
+  std::vector<double> values_;
+};
+
+/// What all blocks at one wavelength say. May be used in many threads at once; unknown elements are 0.
+class Variances {
+ public:
+  /// `turns`: the modes are asked at phi_i = 0, and what they give is turned.
+  Variances(std::span<const BlockAt> blocks, int order, DiscMapping mapping, bool turns);
+
+  /// Of valid geometries.
+  void standard_uncertainties(std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
+  enum class Of { matrix, normalized };  // the latter: f11, and the other elements divided by it
+  void covariances(Of what, std::span<const Geometry> geometries, Frame frame, std::span<MuellerCovariance> out) const;
+  void directional_hemispherical(std::span<const Direction> incident, std::span<double> out) const;
+
+ private:
+  struct Row {
+    std::size_t element;
+    std::vector<RowTerm> terms;
+    std::vector<int> column, with;  // as in RowColumns
+    std::vector<double> coefficients;
+    Row(const BlockAt& block, std::size_t of_element);
+    RowColumns view() const {
+      return {terms.data(), column.data(), coefficients.data(), with.data(), static_cast<int>(with.size()) - 1};
+    }
+  };
+  /// Elements whose rows are worked on together.
+  struct Together {
+    std::vector<std::size_t> elements;
+    bool turned = false;  ///< rows, not variances
+  };
+  struct OfBlock {
+    std::vector<Row> rows;
+    Together all;                    // where axes do not turn
+    std::vector<Together> in_turns;  // where they do
+    Packed covariance;               // of what stands in a row
+    long modes;
+    double reflectance;
+    bool knows_reflectance;
+  };
+  /// Of the integral of f11 over the hemisphere: the functions of the incident direction that it has, and the covariance
+  /// of their coefficients.
+  struct Hemispherical {
+    std::vector<std::size_t> functions;
+    Packed covariance;
+  };
+  struct Some;
+
+  static std::vector<Together> in_turns(const std::vector<std::size_t>& elements);
+  static Hemispherical hemispherical(const BlockAt& f11, int order, DiscMapping mapping);
+  void set_functions(Some& some, std::span<const Geometry> geometries) const;
+  void set_rows(Some& some, const OfBlock& block, const Together& together) const;
+  void add_variances(Some& some, const OfBlock& block) const;
+
+  int order_;
+  DiscMapping mapping_;
+  bool turns_;
+  std::vector<OfBlock> blocks_;
+  Hemispherical hemispherical_;
+};
+
+}  // namespace mmbrdf
