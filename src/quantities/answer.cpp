@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/polarization/analysis_batch.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
 

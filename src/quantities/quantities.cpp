@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mmbrdf/polarization/analysis.hpp"
+#include "mmbrdf/polarization/analysis_batch.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"

@@ -7,10 +7,11 @@
 #include <span>
 #include <string_view>
 
-#include "mmbrdf/polarization/analysis_batch.hpp"
 #include "mmbrdf/polarization/mueller.hpp"
 
 namespace mmbrdf {
+
+struct MatricesOptions;  // analysis_batch.hpp
 
 /// A quantity of a matrix M in the frame sp, in sr⁻¹ as a model has it, and of incident light where it takes some: its
 /// Stokes vector in the same frame, in any unit. Both functions throw std::invalid_argument where the quantity has no
