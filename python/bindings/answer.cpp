@@ -36,9 +36,10 @@ py::array_t<double> rows(const Question& question, const Answers& answers, std::
         },
         [&](const AnswersAt& here, const Some& some) {
           range.count(here.wavelength, some.geometries);
-          for (std::size_t i = 0; i < some.geometries.size(); ++i) {
+          const std::vector<Answer> all = here.answers.at(some.geometries);
+          for (std::size_t i = 0; i < all.size(); ++i) {
             double* to = out + some.position(i);
-            for (const Answered& a : here.answers.at(some.geometries[i]).quantities) {
+            for (const Answered& a : all[i].quantities) {
               std::vector<std::optional<double>> column{a.value, a.uncertainty, a.low, a.high};
               column.insert(column.end(), a.parts.begin(), a.parts.end());
               column.resize(per_one);

@@ -10,6 +10,7 @@
 #include "mmbrdf/polarization/analysis_batch.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
+#include "uncertainty/drawn_errors.hpp"
 
 namespace mmbrdf {
 
@@ -18,6 +19,7 @@ struct Answers::Asked {
   AnswerOptions options;
   std::string unknown_uncertainty;
   std::optional<Draws> draws;
+  std::vector<double> errors = {};  // of the terms in the draws
 };
 
 struct PreparedAnswers::Prepared {
@@ -68,53 +70,215 @@ Mueller without_unknown(Mueller m) {
   return m;
 }
 
-Answered in_first_order(const Quantity& quantity, const Mueller& m_sp, const Stokes& light,
-                        const std::optional<Budget>& budget) {
+/// What is known of the error of a matrix in the frame sp.
+struct Error {
+  MuellerCovariance total;
+  std::optional<Budget> budget;
+  std::vector<Mueller> effects;  // of the terms, in turn
+};
+
+void add(MuellerCovariance& sum, const Mueller& effect) {
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t other = 0; other < 16; ++other) sum(e, other) += effect.elements[e] * effect.elements[other];
+}
+
+Answered in_first_order(const Quantity& quantity, const Mueller& m_sp, const Stokes& light, const Error* error) {
   Answered answered{.quantity = &quantity};
   answered.known = is_known(quantity, m_sp, light);
   if (!answered.known) return answered;
   try {
     const Mueller m = without_unknown(m_sp);
     const double value = quantity.value(m, light);
-    if (budget) answered.parts = parts(quantity.gradient(m, light), *budget);
+    if (error) {
+      const Mueller gradient = quantity.gradient(m, light);
+      if (error->budget) answered.parts = parts(gradient, *error->budget);
+      answered.uncertainty = error->budget ? answered.parts.back() : standard_uncertainty(gradient, error->total);
+    }
     answered.value = value;
   } catch (const std::invalid_argument&) {
-    return answered;  // it has no meaning here
+    answered.uncertainty.reset();  // it has no meaning here
   }
-  if (budget) answered.uncertainty = answered.parts.back();
   return answered;
 }
 
-/// Instead of the uncertainty in first order that of draws, or none, where the quantity has no meaning in one of them.
-void set_distribution(Answered& answered, const std::vector<Mueller>& drawn, const Stokes& light) {
-  const Quantity& quantity = *answered.quantity;
-  std::vector<Mueller> matrices(drawn.size());
-  std::ranges::transform(drawn, matrices.begin(), without_unknown);
-  std::vector<double> values(drawn.size());
-  answered.uncertainty.reset();
-  try {
-    if (quantity.values)
-      quantity.values(matrices, values, {});
-    else
-      std::ranges::transform(matrices, values.begin(), [&](const Mueller& m) { return quantity.value(m, light); });
-  } catch (const std::invalid_argument&) {
-    return;
+std::optional<bool> realizable_unless_unknown(const Mueller& m) {
+  if (!(m(0, 0) > 0)) return false;
+  return unknown_elements(m).none() ? std::optional(realizable(m)) : std::nullopt;
+}
+
+/// Takes the values of a quantity in all draws, or finds that it has no meaning in one of them.
+struct Distributed {
+  Answered* answered;
+  std::vector<double> values;
+  bool has_meaning = true;
+
+  void add(std::size_t first, std::span<const Mueller> matrices, const Stokes& light) {
+    if (!has_meaning) return;
+    const Quantity& quantity = *answered->quantity;
+    const std::span out = std::span(values).subspan(first, matrices.size());
+    try {
+      if (quantity.values)
+        quantity.values(matrices, out, {});
+      else
+        std::ranges::transform(matrices, out.begin(), [&](const Mueller& m) { return quantity.value(m, light); });
+    } catch (const std::invalid_argument&) {
+      has_meaning = false;
+    }
   }
-  const Distribution d = distribution(values);
-  answered.uncertainty = d.standard_deviation;
-  answered.low = d.low;
-  answered.high = d.high;
+
+  /// Instead of the uncertainty in first order that of the draws, or none.
+  void finish() const {
+    answered->uncertainty.reset();
+    if (!has_meaning) return;
+    const Distribution d = distribution(values);
+    answered->uncertainty = d.standard_deviation;
+    answered->low = d.low;
+    answered->high = d.high;
+  }
+};
+
+/// A geometry that is drawn at.
+struct DrawnAt {
+  Geometry geometry;
+  Stokes light;
+  const std::vector<Mueller>* effects;  // of the terms
+  std::vector<Distributed> quantities;
+};
+
+constexpr std::size_t draws_at_once = 32;
+
+/// Some draws at some geometries are evaluated together: a draw at all of these, while its coefficients are at hand.
+void draw(std::span<const PreparedModel> draws, std::span<const double> errors, std::span<DrawnAt> places) {
+  std::vector<Geometry> geometries;
+  for (const DrawnAt& place : places) geometries.push_back(place.geometry);
+  std::vector<Mueller> of_draw(places.size()), matrices(places.size() * draws_at_once);
+  for (std::size_t first = 0; first < draws.size(); first += draws_at_once) {
+    const std::size_t count = std::min(draws_at_once, draws.size() - first);
+    for (std::size_t d = 0; d < count; ++d) {
+      draws[first + d].evaluate(geometries, Frame::sp, of_draw);
+      for (std::size_t g = 0; g < places.size(); ++g) {
+        const std::vector<Mueller>& effects = *places[g].effects;
+        const double* error = errors.data() + (first + d) * effects.size();
+        Mueller m = of_draw[g];
+        for (const Mueller& effect : effects) m = m + *error++ * effect;
+        matrices[g * draws_at_once + d] = without_unknown(m);
+      }
+    }
+    for (std::size_t g = 0; g < places.size(); ++g)
+      for (Distributed& quantity : places[g].quantities)
+        quantity.add(first, std::span(matrices).subspan(g * draws_at_once, count), places[g].light);
+  }
 }
 
 }  // namespace
+
+/// Answers of some geometries at once.
+class PreparedAnswers::Block {
+ public:
+  Block(const Prepared& prepared, std::span<const Geometry> geometries)
+      : prepared_(prepared), geometries_(geometries), errors_(geometries.size()) {}
+
+  void append_to(std::vector<Answer>& out) {
+    const AnswerOptions& options = prepared_.asked->options;
+    const std::vector<Mueller> elements = matrices(options.frame), matrices_sp = matrices(Frame::sp);
+    find_errors();
+    const std::size_t first = out.size();
+    for (std::size_t g = 0; g < geometries_.size(); ++g) {
+      const Geometry& geometry = geometries_[g];
+      Answer& a = out.emplace_back();
+      a.elements = elements[g];
+      a.outside = prepared_.model.outside(geometry);
+      a.realizable = realizable_unless_unknown(a.elements);
+      if (prepared_.uncertainty)
+        a.estimable = !leaves_known_range(a.outside) && prepared_.uncertainty->estimable(geometry);
+      const Error* error = errors_[g] ? &*errors_[g] : nullptr;
+      const Stokes light = light_sp(options, geometry);
+      for (const Quantity& quantity : quantities(options.light.has_value()))
+        a.quantities.push_back(in_first_order(quantity, matrices_sp[g], light, error));
+      if (!error) continue;
+      a.budget = error->budget;
+      a.uncertainties = standard_uncertainty(unknown_elements(matrices_sp[g]).none()
+                                                 ? change_frame(error->total, geometry, Frame::sp, options.frame)
+                                                 : total_of_one(geometry, options.frame));  // sp mixes more
+    }
+    if (!prepared_.draws.empty()) find_distributions(std::span(out).subspan(first));
+  }
+
+ private:
+  std::vector<Mueller> matrices(Frame frame) const {
+    std::vector<Mueller> result(geometries_.size());
+    prepared_.model.evaluate(geometries_, frame, result);
+    return result;
+  }
+
+  std::vector<MuellerCovariance> covariances(std::span<const Geometry> geometries, Frame frame) const {
+    std::vector<MuellerCovariance> result(geometries.size());
+    prepared_.uncertainty->evaluate(geometries, frame, result);
+    return result;
+  }
+
+  std::vector<Mueller> effects_of_terms(const Geometry& geometry, Frame frame) const {
+    std::vector<Mueller> result;
+    for (const TypeBTerm& term : prepared_.asked->options.terms)
+      for (const Mueller& effect : effects(term, prepared_.model, geometry, frame)) result.push_back(effect);
+    return result;
+  }
+
+  MuellerCovariance total_of_one(const Geometry& geometry, Frame frame) const {
+    MuellerCovariance result = covariances({&geometry, 1}, frame).front();
+    for (const Mueller& effect : effects_of_terms(geometry, frame)) add(result, effect);
+    return result;
+  }
+
+  void find_errors() {
+    if (!prepared_.uncertainty) return;
+    const AnswerOptions& options = prepared_.asked->options;
+    std::vector<MuellerCovariance> of_fit;
+    if (!options.parts) of_fit = covariances(geometries_, Frame::sp);
+    for (std::size_t g = 0; g < geometries_.size(); ++g) {
+      const Geometry& geometry = geometries_[g];
+      if (!has_limit(options.terms, geometry)) continue;
+      Error& error = errors_[g].emplace();
+      if (!options.parts || !prepared_.draws.empty()) error.effects = effects_of_terms(geometry, Frame::sp);
+      if (options.parts) {
+        error.budget = budget(prepared_.model, *prepared_.uncertainty, options.terms, geometry, Frame::sp);
+        error.total = error.budget->total;
+        continue;
+      }
+      error.total = of_fit[g];
+      for (const Mueller& effect : error.effects) add(error.total, effect);
+    }
+  }
+
+  void find_distributions(std::span<Answer> answers) const {
+    const AnswerOptions& options = prepared_.asked->options;
+    std::vector<DrawnAt> places;
+    for (std::size_t g = 0; g < answers.size(); ++g) {
+      if (!errors_[g]) continue;
+      places.push_back({geometries_[g], light_sp(options, geometries_[g]), &errors_[g]->effects, {}});
+      for (Answered& answered : answers[g].quantities)
+        if (answered.value && !answered.quantity->first_order)
+          places.back().quantities.push_back({&answered, std::vector<double>(prepared_.draws.size())});
+    }
+    draw(prepared_.draws, prepared_.asked->errors, places);
+    for (const DrawnAt& place : places)
+      for (const Distributed& quantity : place.quantities) quantity.finish();
+  }
+
+  const Prepared& prepared_;
+  std::span<const Geometry> geometries_;
+  std::vector<std::optional<Error>> errors_;  // none: not known
+};
 
 Answers::Answers(const Model& model, AnswerOptions options) {
   require_semidefinite(model);
   if (options.draws < 0) throw std::invalid_argument("draws = " + std::to_string(options.draws) + " is negative");
   if (options.light) degree_of_polarization(*options.light);  // refuses
   auto asked = std::make_shared<Asked>(Asked{model, std::move(options), why_uncertainty_is_unknown(model), {}});
-  if (asked->options.draws > 0 && asked->unknown_uncertainty.empty())
-    asked->draws.emplace(model, asked->options.draws, asked->options.seed);
+  if (const auto& o = asked->options; o.draws > 0 && asked->unknown_uncertainty.empty()) {
+    asked->draws.emplace(model, o.draws, o.seed);
+    asked->errors = drawn_errors(o.terms, static_cast<std::size_t>(o.draws), o.seed);
+  }
   asked_ = std::move(asked);
 }
 
@@ -136,35 +300,18 @@ PreparedAnswers Answers::at(double wavelength) const {
   return PreparedAnswers(std::make_shared<const PreparedAnswers::Prepared>(std::move(p)));
 }
 
-Answer PreparedAnswers::at(const Geometry& geometry) const {
-  const auto& [asked, model, uncertainty, draws] = *prepared_;
-  const AnswerOptions& options = asked->options;
-  const Mueller m_sp = model.evaluate(geometry, Frame::sp);
-  const Stokes light = light_sp(options, geometry);
-  Answer a;
-  a.elements = model.evaluate(geometry, options.frame);
-  a.outside = model.outside(geometry);
-  if (!(a.elements(0, 0) > 0))
-    a.realizable = false;
-  else if (unknown_elements(a.elements).none())
-    a.realizable = realizable(a.elements);
-  std::vector<Mueller> drawn_sp;
-  if (uncertainty) {
-    a.estimable = !leaves_known_range(a.outside) && uncertainty->estimable(geometry);
-    if (has_limit(options.terms, geometry)) {
-      a.budget = budget(model, *uncertainty, options.terms, geometry, Frame::sp);
-      a.uncertainties = standard_uncertainty(
-          unknown_elements(m_sp).none()
-              ? change_frame(a.budget->total, geometry, Frame::sp, options.frame)
-              : budget(model, *uncertainty, options.terms, geometry, options.frame).total);  // sp mixes more
-      if (!draws.empty()) drawn_sp = drawn(draws, model, options.terms, geometry, Frame::sp, options.seed);
-    }
-  }
-  for (const Quantity& quantity : quantities(options.light.has_value())) {
-    Answered& answered = a.quantities.emplace_back(in_first_order(quantity, m_sp, light, a.budget));
-    if (answered.value && !quantity.first_order && !drawn_sp.empty()) set_distribution(answered, drawn_sp, light);
-  }
-  return a;
+Answer PreparedAnswers::at(const Geometry& geometry) const { return std::move(at({&geometry, 1}).front()); }
+
+std::vector<Answer> PreparedAnswers::at(std::span<const Geometry> geometries) const {
+  for (const Geometry& geometry : geometries) require_valid(geometry);
+  constexpr std::size_t most = 64, values = 1 << 16;  // of a quantity in all draws, for each of some
+  const std::size_t block =
+      std::clamp<std::size_t>(values / std::max<std::size_t>(prepared_->draws.size(), 1), 1, most);
+  std::vector<Answer> result;
+  result.reserve(geometries.size());
+  for (std::size_t first = 0; first < geometries.size(); first += block)
+    Block(*prepared_, geometries.subspan(first, std::min(block, geometries.size() - first))).append_to(result);
+  return result;
 }
 
 }  // namespace mmbrdf

@@ -11,6 +11,7 @@
 
 #include "numerics/random.hpp"
 #include "text/numbers.hpp"
+#include "uncertainty/drawn_errors.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -58,10 +59,11 @@ Mueller detector_slope(const PreparedModel& model, const Geometry& geometry) {
 /// geometries. Independent errors with one variance are so in every frame: axes turn by orthogonal matrices.
 std::vector<Mueller> calibration_effects(const PreparedModel& model, const Geometry& geometry, double uncertainty,
                                          Frame frame) {
+  const double f11 = model.f11(geometry);
   std::vector<Mueller> result;
   for (std::size_t e = 1; e < 16; ++e) {
     Mueller effect;
-    effect.elements[e] = uncertainty * model.f11(geometry);
+    effect.elements[e] = uncertainty * f11;
     result.push_back(change_frame(effect, geometry, Frame::sp, frame));
   }
   return result;
@@ -157,13 +159,23 @@ std::vector<Mueller> drawn(std::span<const PreparedModel> draws, const PreparedM
   std::vector<Mueller> errors;
   for (const TypeBTerm& term : terms)
     for (const Mueller& effect : effects(term, model, geometry, frame)) errors.push_back(effect);
-  std::mt19937_64 engine(~seed);  // not the stream of Draws with the same seed
+  const std::vector<double> sizes = drawn_errors(terms, draws.size(), seed);
+  const double* size = sizes.data();
   std::vector<Mueller> result;
   result.reserve(draws.size());
   for (const PreparedModel& draw : draws) {
     result.push_back(draw.evaluate(geometry, frame));
-    for (const Mueller& error : errors) result.back() = result.back() + normal(engine) * error;
+    for (const Mueller& error : errors) result.back() = result.back() + *size++ * error;
   }
+  return result;
+}
+
+std::vector<double> drawn_errors(std::span<const TypeBTerm> terms, std::size_t draws, unsigned long seed) {
+  std::size_t count = 0;
+  for (const TypeBTerm& term : terms) count += term.what == ErrorOf::calibration ? 15 : 1;
+  std::vector<double> result(draws * count);
+  std::mt19937_64 engine(~seed);  // not the stream of Draws with the same seed
+  for (double& error : result) error = normal(engine);
   return result;
 }
 

@@ -239,12 +239,16 @@ Distribution distribution(std::span<const double> values, double coverage, Inter
   double squares = 0;
   for (const double value : d.relative) squares += value * value;
   std::vector<double> sorted(values.begin(), values.end());
-  std::sort(sorted.begin(), sorted.end());
   const std::size_t count = sorted.size();
   // JCGM 101, 7.7.1: q = ⌊p M + ½⌋ steps from the low end to the high end.
   const auto steps = std::min(static_cast<std::size_t>(coverage * static_cast<double>(count) + 0.5), count - 1);
   std::size_t low = (count - steps + 1) / 2 - 1;  // r = ⌊(M − q + 1) / 2⌋, counted from 1
-  if (interval == Interval::shortest) {
+  if (interval == Interval::symmetric) {          // two of them in their places take a fifth of the time of all
+    const auto at = [&](std::size_t place) { return sorted.begin() + static_cast<std::ptrdiff_t>(place); };
+    std::nth_element(sorted.begin(), at(low), sorted.end());
+    if (steps > 0) std::nth_element(at(low + 1), at(low + steps), sorted.end());
+  } else {
+    std::sort(sorted.begin(), sorted.end());
     low = 0;
     for (std::size_t r = 1; r + steps < count; ++r)
       if (sorted[r + steps] - sorted[r] < sorted[low + steps] - sorted[low]) low = r;

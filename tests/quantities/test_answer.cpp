@@ -10,6 +10,7 @@
 #include "given/least_squares.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/polarization/gradients.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -92,6 +93,77 @@ TEST(Answer, HasNoBudgetWhereATermHasNoLimit) {
   const Answers answers(least_squares("ptfe-532"), {.terms = {{"arm", ErrorOf::theta_r, 1e-3}}});
   EXPECT_TRUE(answers.at(0.532).at(oblique).budget);
   EXPECT_FALSE(answers.at(0.532).at({{0.8, 0}, {radians(90), 0}}).budget);
+}
+
+/// More than are worked out together, one of them without a limit of `arm`.
+std::vector<Geometry> many() {
+  std::vector<Geometry> result{{{0.8, 0}, {radians(90), 0}}};
+  for (int i = 0; i < 70; ++i) result.push_back({{0.017 * i, 0.1 * i}, {1.3 - 0.013 * i, 3 - 0.2 * i}});
+  return result;
+}
+const std::vector<TypeBTerm> with_arm{terms[0], terms[1], {"arm", ErrorOf::theta_r, 1e-3}};
+
+TEST(Answer, OfManyGeometriesIsThatOfEach) {
+  const PreparedAnswers here =
+      Answers(least_squares("ptfe-532"), {.terms = with_arm, .light = Stokes{1, 0.5, 0.2, 0}, .draws = 75}).at(0.532);
+  const std::vector<Geometry> geometries = many();
+  const std::vector<Answer> answers = here.at(geometries);
+  ASSERT_EQ(answers.size(), geometries.size());
+  for (std::size_t g = 0; g < answers.size(); ++g) {
+    const Answer one = here.at(geometries[g]);
+    EXPECT_EQ(answers[g].elements, one.elements);
+    EXPECT_EQ(answers[g].uncertainties, one.uncertainties);
+    EXPECT_EQ(answers[g].budget.has_value(), g > 0);
+    EXPECT_EQ(answers[g].estimable, one.estimable);
+    for (std::size_t i = 0; i < one.quantities.size(); ++i) {
+      const Answered &a = answers[g].quantities[i], &b = one.quantities[i];
+      EXPECT_TRUE(a.value == b.value && a.uncertainty == b.uncertainty && a.low == b.low && a.high == b.high)
+          << g << ' ' << b.quantity->name;
+    }
+  }
+  EXPECT_THROW(here.at(std::vector<Geometry>{oblique, {{2, 0}, {0, 0}}}), std::invalid_argument);
+}
+
+TEST(Answer, HasTheDistributionOfTheMatricesThatAreDrawn) {
+  const Model model = least_squares("ptfe-532");
+  const std::vector<PreparedModel> draws = Draws(model, 75, 5).at(0.532);
+  const PreparedModel prepared = prepare(model, 0.532);
+  const std::vector<Geometry> geometries{oblique, {{0.1, 1}, {1.2, -2}}};
+  const std::vector<Answer> answers = Answers(model, {.terms = terms, .draws = 75, .seed = 5}).at(0.532).at(geometries);
+  for (std::size_t g = 0; g < geometries.size(); ++g) {
+    const std::vector<Mueller> matrices = drawn(draws, prepared, terms, geometries[g], Frame::sp, 5);
+    for (const Answered& q : answers[g].quantities) {
+      if (q.quantity->first_order) continue;
+      std::vector<double> values;
+      for (const Mueller& m : matrices) values.push_back(q.quantity->value(m, {}));
+      const Distribution d = distribution(values);
+      EXPECT_TRUE(q.uncertainty == d.standard_deviation && q.low == d.low && q.high == d.high) << q.quantity->name;
+    }
+  }
+}
+
+TEST(Answer, WithoutPartsHasTheSameUncertainties) {
+  const Model model = least_squares("ptfe-532");
+  const std::vector<Geometry> geometries = many();
+  const std::vector<Answer> with =
+      Answers(model, {.frame = Frame::scattering_plane, .terms = with_arm}).at(0.532).at(geometries);
+  const std::vector<Answer> without =
+      Answers(model, {.frame = Frame::scattering_plane, .terms = with_arm, .parts = false}).at(0.532).at(geometries);
+  for (std::size_t g = 0; g < geometries.size(); ++g) {
+    const Answer &a = with[g], &b = without[g];
+    EXPECT_FALSE(b.budget);
+    ASSERT_EQ(a.uncertainties.has_value(), b.uncertainties.has_value());
+    const double u_f11 = a.uncertainties ? (*a.uncertainties)(0, 0) : 0;
+    for (std::size_t e = 0; e < 16 && a.uncertainties; ++e)
+      EXPECT_NEAR(a.uncertainties->elements[e], b.uncertainties->elements[e], 1e-6 * u_f11) << g << ' ' << e;
+    for (std::size_t i = 0; i < a.quantities.size(); ++i) {
+      EXPECT_TRUE(b.quantities[i].parts.empty());
+      EXPECT_EQ(a.quantities[i].value, b.quantities[i].value);
+      ASSERT_EQ(a.quantities[i].uncertainty.has_value(), b.quantities[i].uncertainty.has_value());
+      if (const auto& u = a.quantities[i].uncertainty)
+        EXPECT_NEAR(*b.quantities[i].uncertainty / *u, 1, 1e-9) << g << ' ' << i;
+    }
+  }
 }
 
 }  // namespace

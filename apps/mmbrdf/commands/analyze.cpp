@@ -50,10 +50,11 @@ void require_possible(const Stokes& light) {
   }
 }
 
-/// Draws and covariances may be refused, and are the model's: "name: …".
-Answers answers_of(const Model& model, const Options& options) {
+/// Draws and covariances may be refused, and are the model's: "name: …". Parts are for pages, not for rows.
+Answers answers_of(const Model& model, const Options& options, bool parts) {
   AnswerOptions asked = options.asked;
   asked.frame = options.frame;
+  asked.parts = parts;
   try {
     const Answers answers(model, asked);
     if (!answers.unknown_uncertainty().empty()) warn("uncertainties are not known: " + answers.unknown_uncertainty());
@@ -66,14 +67,14 @@ Answers answers_of(const Model& model, const Options& options) {
 void analyze_one(const Options& options) {
   const Model model = model_of(options);
   const double wavelength = wavelength_from(options.wavelength_nm, model);
-  const Answers answers = answers_of(model, options);
+  const Answers answers = answers_of(model, options, options.format != Format::csv);
   const Place place = place_of(model, options, wavelength);
   const Geometry geometry = geometry_of(options);
   if (options.format == Format::csv) {
     const AddedColumns columns = analyzed_columns(answers, options.strict);
-    std::string row = fields(place);
-    warn_if_outside(place.model, columns.append(row, wavelength, geometry), model.validity);
-    std::cout << place_columns << columns.names << '\n' << row << '\n';
+    const AddedFields added = columns.fields(wavelength, {&geometry, 1}).front();
+    warn_if_outside(place.model, added.outside, model.validity);
+    std::cout << place_columns << columns.names << '\n' << fields(place) << added.text << '\n';
     return;
   }
   const AnalysisReport report{options, place, answers, answers.at(wavelength).at(geometry), options.terms.budget};
@@ -82,16 +83,41 @@ void analyze_one(const Options& options) {
   (options.format == Format::json ? print_json : print_text)(report);
 }
 
+/// Rows of a scan that have one wavelength.
+struct ScanRows {
+  double wavelength = 0;
+  std::vector<Geometry> geometries;
+  std::vector<std::string> places;
+};
+
+/// From a row on; not all at once, so that they are written while there are more.
+ScanRows scan_rows(const Model& model, const Options& options, long row) {
+  constexpr std::size_t most = 256;
+  ScanRows result;
+  for (; row < row_count(options.scans) && result.places.size() < most; ++row) {
+    const Question question = at_row(options.scans, options, row);
+    const double wavelength = wavelength_from(question.wavelength_nm, model);
+    if (!result.places.empty() && wavelength != result.wavelength) break;
+    result.wavelength = wavelength;
+    result.geometries.push_back(geometry_of(question));
+    result.places.push_back(fields(place_of(model, question, wavelength)));
+  }
+  return result;
+}
+
 /// Counts the rows.
 RangeCount write_scan(std::ostream& out, const Model& model, const Options& options, const AddedColumns& columns) {
   RangeCount range;
   RowWriter writer(out, place_columns + columns.names + "\n");
-  for (long row = 0; out && row < row_count(options.scans); ++row) {
-    const Question question = at_row(options.scans, options, row);
-    const double wavelength = wavelength_from(question.wavelength_nm, model);
-    writer.text() += fields(place_of(model, question, wavelength));
-    range.add(columns.append(writer.text(), wavelength, geometry_of(question)));
-    writer.end_row();
+  for (long row = 0; out && row < row_count(options.scans);) {
+    const ScanRows rows = scan_rows(model, options, row);
+    const std::vector<AddedFields> added = columns.fields(rows.wavelength, rows.geometries);
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      writer.text() += rows.places[i] + added[i].text;
+      range.add(added[i].outside);
+      writer.end_row();
+    }
+    row += static_cast<long>(added.size());
   }
   writer.flush();
   return range;
@@ -102,7 +128,7 @@ void analyze_scan(const Options& options) {
   require_model_kept(options.model, options.output);
   const Model model = model_of(options);
   wavelength_from(at_row(options.scans, options, 0).wavelength_nm, model);
-  const Answers answers = answers_of(model, options);
+  const Answers answers = answers_of(model, options, false);
   const AddedColumns columns = analyzed_columns(answers, options.strict);
   RangeCount range;
   write_output(options.output, [&](std::ostream& out) { range = write_scan(out, model, options, columns); });
@@ -111,8 +137,8 @@ void analyze_scan(const Options& options) {
 
 void analyze_file(const Options& options) {
   const Model model = model_of_rows(options);
-  const Answers answers = answers_of(model, options);
-  evaluate_file(model, rows_of(options), one_by_one(analyzed_columns(answers, options.strict)));
+  const Answers answers = answers_of(model, options, false);
+  evaluate_file(model, rows_of(options), with_columns(analyzed_columns(answers, options.strict)));
 }
 
 void analyze(Options& options) {

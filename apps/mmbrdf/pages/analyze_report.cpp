@@ -227,11 +227,14 @@ AddedColumns analyzed_columns(const Answers& answers, bool strict) {
   using ByWavelength = AtWavelengths<std::function<PreparedAnswers(double)>>;
   const auto prepared = std::make_shared<ByWavelength>([answers](double wavelength) { return answers.at(wavelength); },
                                                        wavelengths_to_keep(answers.options().draws));
-  return {columns(answers), [=](std::string& text, double wavelength, const Geometry& geometry) {
-            const Answer a = (*prepared)(wavelength).at(geometry);
-            if (strict) require_inside(a.outside, answers.model().validity);
-            append_fields(text, a, answers);
-            return a.outside;
+  return {columns(answers), [=](double wavelength, std::span<const Geometry> geometries) {
+            std::vector<AddedFields> result;
+            for (const Answer& a : (*prepared)(wavelength).at(geometries)) {
+              if (strict) require_inside(a.outside, answers.model().validity);
+              result.push_back({{}, a.outside});
+              append_fields(result.back().text, a, answers);
+            }
+            return result;
           }};
 }
 

@@ -130,6 +130,27 @@ void evaluate_stream(const Model& model, const RowsOfFile& what, const Evaluated
   evaluator.report();
 }
 
+/// Of the rows from `first` on that have its wavelength, the end.
+std::size_t end_of_wavelength(const Rows& rows, std::size_t first) {
+  std::size_t end = first + 1;
+  while (end < rows.size() && rows.wavelengths[end] == rows.wavelengths[first]) ++end;
+  return end;
+}
+
+/// Fields of rows of one wavelength. What is thrown names the first row without an answer.
+std::vector<AddedFields> fields_of(const AddedColumns& columns, const GeometrySource& source, const Rows& rows,
+                                   std::size_t first, std::size_t end) {
+  const std::span geometries = std::span(rows.geometries).subspan(first, end - first);
+  try {
+    return columns.fields(rows.wavelengths[first], geometries);
+  } catch (const std::invalid_argument& error) {
+    if (geometries.size() == 1) throw source.error(rows.numbers[first], error.what());
+  }
+  std::vector<AddedFields> result;
+  for (; first < end; ++first) result.push_back(fields_of(columns, source, rows, first, first + 1).front());
+  return result;
+}
+
 /// Evaluates rows of one wavelength after the other at once.
 class RowsEvaluator {
  public:
@@ -143,8 +164,7 @@ class RowsEvaluator {
     RangeCount range;
     out.reserve(rows.size() * (binary_ ? 16 * sizeof(double) : 420));
     for (std::size_t first = 0, end = 0; first < rows.size(); first = end) {
-      end = first + 1;
-      while (end < rows.size() && rows.wavelengths[end] == rows.wavelengths[first]) ++end;
+      end = end_of_wavelength(rows, first);
       write(source, rows, first, end, out, range);
     }
     return range;
@@ -222,18 +242,16 @@ Evaluated evaluated_rows(const Model& model, Frame frame, bool normalized, bool 
           }};
 }
 
-Evaluated one_by_one(const AddedColumns& columns) {
+Evaluated with_columns(const AddedColumns& columns) {
   const auto write = [columns](const GeometrySource& source, const Rows& rows, std::string& out) {
     RangeCount range;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      out += rows.text(row);
-      try {
-        range.add(columns.append(out, rows.wavelengths[row], rows.geometries[row]));
-      } catch (const std::invalid_argument& error) {
-        throw source.error(rows.numbers[row], error.what());
+    for (std::size_t row = 0; row < rows.size();)
+      for (const AddedFields& added : fields_of(columns, source, rows, row, end_of_wavelength(rows, row))) {
+        out += rows.text(row++);
+        out += added.text;
+        out += '\n';
+        range.add(added.outside);
       }
-      out += '\n';
-    }
     return range;
   };
   return {.names = columns.names, .binary = false, .writer = [write] { return write; }};

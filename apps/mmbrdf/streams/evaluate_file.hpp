@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <ostream>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "mmbrdf/geometry/geometry.hpp"
 #include "mmbrdf/model/description.hpp"
@@ -12,12 +14,16 @@
 
 namespace mmbrdf::program {
 
-/// What is written behind the geometry of a row.
+/// What is written behind the geometry of a row: fields, each with a comma before it.
+struct AddedFields {
+  std::string text;
+  Outside outside = inside;
+};
+
 struct AddedColumns {
   std::string names;  ///< ",f11,f12,…"
-  /// Appends the fields, each with a comma before it. Throws std::invalid_argument where there is no answer. The
-  /// wavelength is in micrometres.
-  std::function<Outside(std::string& text, double wavelength, const Geometry& geometry)> append;
+  /// Of rows of one wavelength, in micrometres. Throws std::invalid_argument where there is no answer to one of them.
+  std::function<std::vector<AddedFields>(double wavelength, std::span<const Geometry> geometries)> fields;
 };
 
 /// What is written of many rows.
@@ -33,8 +39,8 @@ struct Evaluated {
 /// The 16 elements, and the validity unless binary.
 Evaluated evaluated_rows(const Model& model, Frame frame, bool normalized, bool binary);
 
-/// The same of columns that are worked out row by row in one thread.
-Evaluated one_by_one(const AddedColumns& columns);
+/// The same of other columns, in one thread.
+Evaluated with_columns(const AddedColumns& columns);
 
 struct RowsOfFile {
   std::string model;      ///< name, for messages
