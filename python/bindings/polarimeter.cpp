@@ -5,13 +5,18 @@
 #include <pybind11/complex.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "instrument.hpp"
+#include "matrices.hpp"
 #include "mmbrdf/polarimetry/reduction.hpp"
 #include "mmbrdf/polarimetry/rotating_retarders.hpp"
 #include "mmbrdf/polarization/elements.hpp"
@@ -78,14 +83,94 @@ py::array_t<bool> determined(const Polarimeter& p) {
   return result;
 }
 
-py::object reduced(const Polarimeter& p, const Given& readings) {
+/// `pixels` of Number at any strides, whose readings are the last axes.
+template <class Number>
+class Pixels {
+ public:
+  Pixels(const py::array& array, std::size_t core) : data_(static_cast<const char*>(array.data())) {
+    const auto axes = static_cast<std::size_t>(array.ndim());
+    for (std::size_t d = 0; d < axes; ++d) {
+      const auto axis = static_cast<py::ssize_t>(d);
+      (d < axes - core ? outer_ : core_).push_back({array.shape(axis), array.strides(axis)});
+    }
+    adjacent_ =
+        (array.flags() & py::array::c_style) != 0 && reinterpret_cast<std::uintptr_t>(data_) % alignof(Number) == 0;
+  }
+
+  /// Where they all stand one behind the other; null if they do not.
+  const Number* adjacent() const { return adjacent_ ? reinterpret_cast<const Number*>(data_) : nullptr; }
+
+  void gather(std::size_t begin, std::size_t end, Number* out) const {
+    for (; begin < end; ++begin) {
+      const char* from = data_;
+      std::size_t rest = begin;
+      for (std::size_t d = outer_.size(); d-- > 0;) {
+        const auto length = static_cast<std::size_t>(outer_[d].length);
+        from += static_cast<py::ssize_t>(rest % length) * outer_[d].stride;
+        rest /= length;
+      }
+      const Axis columns = core_.back(), rows = core_.size() > 1 ? core_.front() : Axis{1, 0};
+      for (py::ssize_t a = 0; a < rows.length; ++a)
+        for (py::ssize_t b = 0; b < columns.length; ++b, ++out)
+          std::memcpy(out, from + a * rows.stride + b * columns.stride, sizeof *out);
+    }
+  }
+
+ private:
+  struct Axis {
+    py::ssize_t length, stride;
+  };
+  const char* data_;
+  std::vector<Axis> outer_, core_;
+  bool adjacent_;
+};
+
+template <class Number>
+py::object reduced(const Polarimeter& p, const Broadcast& broadcast, const py::array& array, Refused refused) {
   const Reduction reduction(p);
-  const Broadcast broadcast({readings_operand(p, readings, "readings")});
-  return map(broadcast, [&](std::size_t i) {
-    std::vector<double> all(p.readings());
-    broadcast.gather(0, i, i + 1, all.data());
-    return reduction.mueller(all);
+  const std::size_t n = p.readings();
+  const Pixels<Number> pixels(array, shape_of(p).size());
+  auto result = new_array<Number>(broadcast, {4, 4});
+  Number* const out = result.mutable_data();
+  std::atomic<std::size_t> count = 0;
+  const auto reduce = [&](const Number* from, std::size_t begin, std::size_t end) {
+    count += reduction.muellers(std::span(from, n * (end - begin)), std::span(out + 16 * begin, 16 * (end - begin)),
+                                {.refused = Refused::nan});
+  };
+  without_gil([&] {
+    in_parts(broadcast.size(), 0, 8192, [&](std::size_t begin, std::size_t end) {
+      if (const Number* const all = pixels.adjacent()) return reduce(all + n * begin, begin, end);
+      constexpr std::size_t block = 256;
+      std::vector<Number> some(n * block);
+      for (std::size_t first = begin; first < end; first += block) {
+        const std::size_t last = std::min(first + block, end);
+        pixels.gather(first, last, some.data());
+        reduce(some.data(), first, last);
+      }
+    });
+    std::vector<Number> one(n);
+    for (std::size_t i = 0; count > 0 && refused == Refused::error; ++i) {
+      pixels.gather(i, i + 1, one.data());
+      if (std::ranges::all_of(one, [](Number reading) { return std::isfinite(reading); })) continue;
+      const std::string others = count == 1 ? "" : "; " + std::to_string(count) + " pixels have no answer";
+      throw std::invalid_argument(broadcast.at_place(std::invalid_argument("a reading is not finite"), i).what() +
+                                  others);
+    }
   });
+  return result;
+}
+
+py::object reduced_as_given(const Polarimeter& p, const Given& readings, const std::string& invalid) {
+  const Refused refused = refused_from(invalid);
+  const py::module_ numpy = py::module_::import("numpy");
+  if (py::hasattr(readings, "dtype") && readings.attr("dtype").equal(py::dtype::of<float>()) &&
+      !numpy.attr("ma").attr("is_masked")(readings).cast<bool>()) {
+    const py::array array = numpy.attr("asarray")(readings);
+    const Given shape_alone = numpy.attr("broadcast_to")(0.0, array.attr("shape"));  // one number, without strides
+    return reduced<float>(p, Broadcast({readings_operand(p, shape_alone, "readings")}), array, refused);
+  }
+  const Broadcast broadcast({readings_operand(p, readings, "readings")});
+  return reduced<double>(p, broadcast, broadcast.array(0), refused);
 }
 
 py::object reduced_covariance(const Polarimeter& p, const Given& variances) {
@@ -157,12 +242,14 @@ void bind_instrument(py::module_& m) {
           "Ratio of the largest singular value to the smallest of these: 3 at best")
       .def("readings", readings_of, py::arg("mueller"),
            "Of matrices (..., 4, 4): array (..., analyzer states, generator states), or (..., pairs)")
-      .def("reduce", reduced, py::arg("readings"),
+      .def("reduce", reduced_as_given, py::arg("readings"), py::arg("invalid") = "raise",
            "Matrices (..., 4, 4) that readings (..., analyzer states, generator states), or (..., pairs), stand for, "
            "by\n"
            "least squares, in the frame scattering_plane. Readings are dark-subtracted and divided by monitor and "
            "gain.\n"
-           "NaN: the readings do not determine that element.")
+           "NaN: the readings do not determine that element. An array of float32 gives one of float32, of the same "
+           "numbers\n"
+           "rounded. invalid='nan' makes NaN of matrices with a reading that is not finite, instead of an error.")
       .def("covariance", reduced_covariance, py::arg("variances"),
            "Of the sixteen elements, from independent readings with these variances: array (..., 16, 16), NaN as "
            "reduce()")

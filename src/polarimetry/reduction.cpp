@@ -5,15 +5,21 @@
 // states that has rank four in each arm is the product of those of the arms.
 #include <Eigen/Core>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
+#include <string>
+#include <type_traits>
 
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/semidefinite.hpp"
+#include "numerics/threads.hpp"
 #include "polarimetry/columns.hpp"
+#include "polarimetry/kernel/reduction_kernels.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -26,7 +32,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 struct Reduction::Solution {
   Polarimeter polarimeter;
   MatrixXd rows;     ///< H, readings × 16
-  MatrixXd inverse;  ///< H⁺
+  MatrixXd inverse;  ///< H⁺, to the last digit: no step of refinement is needed where it is used
   Elements undetermined;
   int rank = 16;
   double condition = 1;
@@ -113,11 +119,35 @@ Inverse inverse_of(const Polarimeter& polarimeter, const MatrixXd& rows) {
   return of_rows(rows);
 }
 
+/// What rounding of the decompositions left of X = H⁺ is taken away by one step of Newton's method, (2 I − X H) X, which is
+/// what a step of iterative refinement would do to each solution.
+void refine(MatrixXd& inverse, const MatrixXd& rows) {
+  using Extended = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const Extended x = inverse.cast<long double>();
+  Extended step = -x.lazyProduct(rows.cast<long double>());
+  step.diagonal().array() += 2;
+  inverse = step.lazyProduct(x).cast<double>();
+}
+
 MuellerCovariance covariance_of(const MatrixXd& matrix, const Elements& undetermined) {
   MuellerCovariance result;
   Eigen::Map<RowMajor>(result.values.data(), 16, 16) = (matrix + matrix.transpose()) / 2;
   set_unknown(result, undetermined);
   return result;
+}
+
+constexpr const char* not_finite = "a reading is not finite";
+
+template <class Number>
+bool all_finite(std::span<const Number> readings) {
+  return std::ranges::all_of(readings, [](Number reading) { return std::isfinite(reading); });
+}
+
+bool run(const double* inverse, std::size_t n, const double* from, std::size_t count, double* to, double*) {
+  return best_reduction_kernel().run_double(inverse, n, from, count, to);
+}
+bool run(const double* inverse, std::size_t n, const float* from, std::size_t count, float* to, double* room) {
+  return best_reduction_kernel().run_float(inverse, n, from, count, to, room);
 }
 
 Mueller with_unknown(Mueller m, const Elements& undetermined) {
@@ -134,6 +164,9 @@ Reduction::Reduction(const Polarimeter& polarimeter, std::span<const double> cov
   solution->polarimeter = polarimeter;
   solution->rows = rows_of(polarimeter);
   Inverse inverse = inverse_of(polarimeter, solution->rows);
+  if (!inverse.matrix.allFinite())
+    throw std::invalid_argument("states so large or so small that no finite numbers are left");
+  refine(inverse.matrix, solution->rows);
   if (!inverse.matrix.allFinite())
     throw std::invalid_argument("states so large or so small that no finite numbers are left");
   solution->inverse = std::move(inverse.matrix);
@@ -161,16 +194,68 @@ int Reduction::rank() const { return solution_->rank; }
 double Reduction::condition() const { return solution_->condition; }
 
 Mueller Reduction::mueller(std::span<const double> readings) const {
-  if (index(readings.size()) != solution_->inverse.cols())
+  const MatrixXd& inverse = solution_->inverse;
+  if (index(readings.size()) != inverse.cols())
     throw std::invalid_argument(std::to_string(readings.size()) + " readings, the instrument has " +
-                                std::to_string(solution_->inverse.cols()));
-  const Eigen::Map<const VectorXd> b(readings.data(), index(readings.size()));
-  if (!b.allFinite()) throw std::invalid_argument("a reading is not finite");
+                                std::to_string(inverse.cols()));
   Mueller m;
-  Eigen::Map<Eigen::Matrix<double, 16, 1>> x(m.elements.data());
-  x = solution_->inverse * b;
-  x += solution_->inverse * (b - solution_->rows * x);  // what rounding of the inverse left
+  if (!best_reduction_kernel().run_double(inverse.data(), readings.size(), readings.data(), 1, m.elements.data()))
+    if (!all_finite(readings)) throw std::invalid_argument(not_finite);
   return with_unknown(m, solution_->undetermined);
+}
+
+std::size_t Reduction::muellers(std::span<const double> readings, std::span<double> elements,
+                                const MatricesOptions& options) const {
+  return solve(readings, elements, options);
+}
+
+std::size_t Reduction::muellers(std::span<const float> readings, std::span<float> elements,
+                                const MatricesOptions& options) const {
+  return solve(readings, elements, options);
+}
+
+template <class Number>
+std::size_t Reduction::solve(std::span<const Number> readings, std::span<Number> elements,
+                             const MatricesOptions& options) const {
+  const auto n = static_cast<std::size_t>(solution_->inverse.cols());
+  const std::size_t pixels = elements.size() / 16;
+  if (elements.size() % 16 != 0 || readings.size() % n != 0 || readings.size() / n != pixels)
+    throw std::invalid_argument(std::to_string(readings.size()) + " readings and " + std::to_string(elements.size()) +
+                                " elements, the instrument has " + std::to_string(n) + " readings of 16 elements");
+  std::atomic<std::size_t> refused = 0, first_refused = pixels;
+  std::atomic<bool> no_memory = false;
+  in_parts(pixels, options.threads, [&](std::size_t begin, std::size_t count) {
+    const std::size_t block = 24 * std::max<std::size_t>(1, 48 / n);  // pixels: they stay in the nearest cache
+    std::vector<double> room;
+    try {
+      if constexpr (std::is_same_v<Number, float>) room.resize(std::min(block, count) * n);
+    } catch (const std::bad_alloc&) {
+      no_memory = true;
+      return;
+    }
+    for (std::size_t first = begin; first < begin + count; first += block) {
+      const std::size_t here = std::min(block, begin + count - first);
+      const auto from = readings.subspan(first * n, here * n);
+      const auto to = elements.subspan(first * 16, here * 16);
+      if (!run(solution_->inverse.data(), n, from.data(), here, to.data(), room.data()))
+        for (std::size_t q = 0; q < here; ++q) {
+          if (all_finite(from.subspan(q * n, n))) continue;
+          std::ranges::fill(to.subspan(q * 16, 16), std::numeric_limits<Number>::quiet_NaN());
+          ++refused;
+          for (std::size_t before = first_refused;
+               first + q < before && !first_refused.compare_exchange_weak(before, first + q);)
+            continue;
+        }
+      if (solution_->undetermined.any())
+        for (std::size_t i = 0; i < to.size(); ++i)
+          if (solution_->undetermined[i % 16]) to[i] = std::numeric_limits<Number>::quiet_NaN();
+    }
+  });
+  if (no_memory) throw std::bad_alloc();
+  if (refused > 0 && options.refused == Refused::error)
+    throw std::invalid_argument("pixel " + std::to_string(first_refused) + ", counted from 0: " + not_finite + " (" +
+                                std::to_string(refused) + " of " + std::to_string(pixels) + " are refused)");
+  return refused;
 }
 
 MuellerCovariance Reduction::from_readings(std::span<const double> variances) const {

@@ -50,6 +50,47 @@ def test_readings_and_matrices_are_each_others_inverse(random_matrices):
         mmbrdf.Polarimeter(np.ones(4), np.ones((4, 4)))
 
 
+def test_reduction_keeps_single_precision_and_reads_any_strides(random_matrices):
+    ideal = mmbrdf.ideal_polarimeter(120, [-60, -20, 10, 50, 80])
+    readings = ideal.readings(random_matrices)
+    exact = ideal.reduce(readings)
+    assert exact.dtype == np.float64
+    single = readings.astype(np.float32)
+    found = ideal.reduce(single)
+    assert found.dtype == np.float32
+    assert (found == ideal.reduce(single.astype(np.float64)).astype(np.float32)).all()
+    for given, expected in [(readings, exact), (single, found)]:
+        frames_first = np.moveaxis(np.ascontiguousarray(np.moveaxis(given, (-2, -1), (0, 1))), (0, 1), (-2, -1))
+        for same in (frames_first, np.asfortranarray(given), np.repeat(given, 2, axis=-1)[..., ::2]):
+            assert (ideal.reduce(same) == expected).all() and not same.flags.c_contiguous
+        assert (ideal.reduce(given[2, 3]) == expected[2, 3]).all()
+        assert ideal.reduce(given[:0]).shape == (0, 7, 4, 4)
+    many = np.broadcast_to(single[0, 0], (3, 7001, 5, 5))
+    assert (ideal.reduce(many) == found[0, 0]).all()
+    with pytest.raises(ValueError, match=r"readings: its shape \(4, 4\) does not end in \(5, 5\)"):
+        ideal.reduce(np.ones((4, 4), np.float32))
+    with pytest.raises(ValueError, match="masked"):
+        ideal.reduce(np.ma.masked_greater(single, 0))
+
+
+def test_readings_that_are_not_finite_are_refused_or_give_nan(random_matrices):
+    ideal = mmbrdf.ideal_states(["s", "p", "+45", "-45", "L", "R"])
+    for kind in (np.float32, np.float64):
+        readings = ideal.readings(random_matrices).astype(kind)
+        expected = ideal.reduce(readings)
+        readings[1, 2, 3, 4] = np.inf
+        with pytest.raises(ValueError, match=r"^a reading is not finite, at \[1, 2\]$"):
+            ideal.reduce(readings)
+        readings[4, 6] = np.nan
+        with pytest.raises(ValueError, match=r"a reading is not finite, at \[1, 2\]; 2 pixels have no answer"):
+            ideal.reduce(readings)
+        found = ideal.reduce(readings, invalid="nan")
+        assert np.isnan(found[1, 2]).all() and np.isnan(found[4, 6]).all()
+        assert np.isnan(found).sum() == 32 and (np.isnan(found) | (found == expected)).all()
+    with pytest.raises(ValueError, match="invalid = 'no', must be 'raise' or 'nan'"):
+        ideal.reduce(readings, invalid="no")
+
+
 def test_pairs_of_states_determine_what_they_determine_and_leave_nan(random_matrices):
     linear = mmbrdf.ideal_states(["s", "p", "+45", "-45"])
     assert linear.determined.tolist() == [[True] * 3 + [False]] * 3 + [[False] * 4]

@@ -2,11 +2,13 @@
 /// From the readings of a polarimeter to a Mueller matrix, with its covariance.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "mmbrdf/polarimetry/polarimeter.hpp"
+#include "mmbrdf/polarization/analysis_batch.hpp"
 #include "mmbrdf/polarization/covariance.hpp"
 
 namespace mmbrdf {
@@ -35,9 +37,20 @@ class Reduction {
   /// Ratio of the largest singular value to the smallest of these: the product of the two arms' numbers for a grid.
   double condition() const;
 
-  /// Elements that are not determined are NaN. Throws std::invalid_argument for another number of readings than the
-  /// instrument has, or one that is not finite.
+  /// Elements that are not determined are NaN. Each other is within (n + 2) 2⁻⁵³ Σ |x_j B_j| of what the n readings B_j
+  /// times their exact weights x_j add up to, while condition() is at most most_amplified. Throws std::invalid_argument
+  /// for another number of readings than the instrument has, or one that is not finite.
   Mueller mueller(std::span<const double> readings) const;
+
+  /// The same of many pixels, with the same bits, on several threads and without a copy of the whole. The readings of a
+  /// pixel stand one after the other, pixel after pixel, and so do its sixteen elements, in rows; the two must not
+  /// overlap. Single precision is that of what goes in and out: the elements are those of the same readings in double
+  /// precision, rounded. A pixel is refused for a reading that is not finite. Returns how many are; throws
+  /// std::invalid_argument for sizes that are not those of as many pixels.
+  std::size_t muellers(std::span<const double> readings, std::span<double> elements,
+                       const MatricesOptions& options = {}) const;
+  std::size_t muellers(std::span<const float> readings, std::span<float> elements,
+                       const MatricesOptions& options = {}) const;
 
   /// Of the sixteen elements, from independent readings with these variances; NaN for those that are not determined.
   /// Throws as mueller(), and for a negative variance.
@@ -57,6 +70,8 @@ class Reduction {
 
  private:
   struct Solution;
+  template <class Number>
+  std::size_t solve(std::span<const Number> readings, std::span<Number> elements, const MatricesOptions& options) const;
   std::shared_ptr<const Solution> solution_;
 };
 
