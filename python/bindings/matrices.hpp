@@ -80,7 +80,7 @@ py::object over_matrices(const Given& mueller, Refused refused, One one, Many<Re
         count += many(std::span(matrices).first(here), {out + first, here}, {.refused = Refused::nan});
       }
     });
-    for (std::size_t i = 0; count > 0 && refused == Refused::error; ++i) {
+    for (std::size_t i = 0; count > 0 && refused == Refused::error && i < broadcast.size(); ++i) {
       try {
         one(broadcast.mueller(0, i));
       } catch (const std::invalid_argument& error) {

@@ -149,7 +149,7 @@ py::object reduced(const Polarimeter& p, const Broadcast& broadcast, const py::a
       }
     });
     std::vector<Number> one(n);
-    for (std::size_t i = 0; count > 0 && refused == Refused::error; ++i) {
+    for (std::size_t i = 0; count > 0 && refused == Refused::error && i < broadcast.size(); ++i) {
       pixels.gather(i, i + 1, one.data());
       if (std::ranges::all_of(one, [](Number reading) { return std::isfinite(reading); })) continue;
       const std::string others = count == 1 ? "" : "; " + std::to_string(count) + " pixels have no answer";
@@ -163,7 +163,7 @@ py::object reduced(const Polarimeter& p, const Broadcast& broadcast, const py::a
 py::object reduced_as_given(const Polarimeter& p, const Given& readings, const std::string& invalid) {
   const Refused refused = refused_from(invalid);
   const py::module_ numpy = py::module_::import("numpy");
-  if (py::hasattr(readings, "dtype") && readings.attr("dtype").equal(py::dtype::of<float>()) &&
+  if (py::hasattr(readings, "dtype") && py::dtype::of<float>().equal(readings.attr("dtype")) &&
       !numpy.attr("ma").attr("is_masked")(readings).cast<bool>()) {
     const py::array array = numpy.attr("asarray")(readings);
     const Given shape_alone = numpy.attr("broadcast_to")(0.0, array.attr("shape"));  // one number, without strides

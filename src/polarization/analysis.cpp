@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -44,11 +45,12 @@ Scaled scaled(const Mueller& m) {
   return result;
 }
 
-/// The matrix of the same, with M11 > 0 and not so small that the kernel would not divide by it.
+/// The matrix of the same, with M11 > 0. Not below the smallest normal number: a quotient of any element by it is
+/// finite.
 Mueller scaled_with_intensity(const Mueller& m) {
   Mueller result = scaled(m).m;
   if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
-  result(0, 0) = std::max(result(0, 0), 0x1p-999);
+  result(0, 0) = std::max(result(0, 0), std::numeric_limits<double>::min());
   return result;
 }
 
@@ -88,11 +90,13 @@ Mueller mueller_matrix(const Matrix4c& t) {
   return m;
 }
 
-/// A number that has no meaning unless M11 > 0.
+/// What the kernel answers of M or, where it does not scale, of M · 2^−e; nothing where M11 is nothing beside the rest.
+/// Throws std::invalid_argument for what is not finite and unless M11 > 0.
 template <Analysis analysis>
-double relative(const Mueller& m) {
-  if (const auto number = answer_of<analysis>(m)) return (*number)[0];
-  return answer_of<analysis>(scaled_with_intensity(m)).value()[0];
+std::optional<double> relative(const Mueller& m) {
+  auto number = answer_of<analysis>(m);
+  if (!number) number = answer_of<analysis>(scaled_with_intensity(m));
+  return number ? std::optional((*number)[0]) : std::nullopt;
 }
 
 void require_light(const Stokes& light) {
@@ -107,21 +111,33 @@ void require_light(const Stokes& light) {
 
 }  // namespace
 
-double depolarization(const Mueller& m) { return relative<Analysis::depolarization>(m); }
+double depolarization(const Mueller& m) {
+  if (const auto d = relative<Analysis::depolarization>(m)) return *d;
+  const Mueller x = scaled_with_intensity(m);
+  double sum = 0;
+  for (std::size_t i = 1; i < 16; ++i) sum += x.elements[i] * x.elements[i];
+  return std::sqrt(sum / 3) / x(0, 0);
+}
 
 std::array<double, 3> diattenuation_vector(const Mueller& m) {
   scaled_with_intensity(m);
   return {ratio(m(0, 1), m(0, 0)), ratio(m(0, 2), m(0, 0)), ratio(m(0, 3), m(0, 0))};
 }
 
-double diattenuation(const Mueller& m) { return relative<Analysis::diattenuation>(m); }
+double diattenuation(const Mueller& m) {
+  const auto d = relative<Analysis::diattenuation>(m);
+  return d ? *d : length(diattenuation_vector(m));
+}
 
 std::array<double, 3> polarizance_vector(const Mueller& m) {
   scaled_with_intensity(m);
   return {ratio(m(1, 0), m(0, 0)), ratio(m(2, 0), m(0, 0)), ratio(m(3, 0), m(0, 0))};
 }
 
-double polarizance(const Mueller& m) { return relative<Analysis::polarizance>(m); }
+double polarizance(const Mueller& m) {
+  const auto p = relative<Analysis::polarizance>(m);
+  return p ? *p : length(polarizance_vector(m));
+}
 
 double degree_of_polarization(const Stokes& light) {
   require_light(light);
@@ -192,7 +208,11 @@ std::array<double, 4> coherency_eigenvalues(const Mueller& m) {
   return result;
 }
 
-double realizability_margin(const Mueller& m) { return relative<Analysis::realizability_margin>(m); }
+double realizability_margin(const Mueller& m) {
+  if (const auto margin = relative<Analysis::realizability_margin>(m)) return *margin;
+  const Mueller x = scaled_with_intensity(m);
+  return ratio(coherency_eigenvalues(x)[0], x(0, 0));
+}
 
 bool realizable(const Mueller& m) {
   if (const auto is = answer_of<Analysis::realizable>(m)) return (*is)[0] != 0;
@@ -200,9 +220,18 @@ bool realizable(const Mueller& m) {
   return x == Mueller{} || answer_of<Analysis::realizable>(x).value()[0] != 0;
 }
 
-double purity(const Mueller& m) { return relative<Analysis::purity>(m); }
+double purity(const Mueller& m) {
+  if (const auto purity = relative<Analysis::purity>(m)) return *purity;
+  const double d = depolarization(m);
+  return bounded((1 + 3 * d * d) / 4);
+}
 
-double entropy(const Mueller& m) { return relative<Analysis::entropy>(m); }
+double entropy(const Mueller& m) {
+  if (const auto entropy = relative<Analysis::entropy>(m)) return *entropy;
+  Mueller x = scaled_with_intensity(m);
+  x(0, 0) = std::max(x(0, 0), 0x1p-999);  // which the kernel takes; the probabilities hardly depend on it
+  return answer_of<Analysis::entropy>(x).value()[0];
+}
 
 CloudeDecomposition cloude_decomposition(const Mueller& m) {
   const auto parts = [](const std::array<double, 68>& numbers) {
@@ -224,7 +253,7 @@ CloudeDecomposition cloude_decomposition(const Mueller& m) {
 Projection nearest_realizable(const Mueller& m) {
   const auto projection = [&](const std::array<double, 17>& numbers, int exponent) {
     Projection result{m, bounded(std::ldexp(numbers[16], exponent))};
-    for (std::size_t e = 1; e < 16; ++e) result.matrix.elements[e] = std::ldexp(numbers[e], exponent);
+    for (std::size_t e = 1; e < 16; ++e) result.matrix.elements[e] = bounded(std::ldexp(numbers[e], exponent));
     return result;
   };
   if (const auto numbers = answer_of<Analysis::nearest_realizable>(m)) return projection(*numbers, 0);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -32,6 +33,24 @@ struct Refusals {
   }
 };
 
+/// Whether the function for one matrix refuses it, as far as that is quickly said: to throw takes microseconds.
+template <Analysis analysis>
+bool is_plainly_refused(const Mueller& m) {
+  if (!std::ranges::all_of(m.elements, [](double element) { return std::isfinite(element); })) return true;
+  switch (analysis) {
+    case Analysis::realizable:
+    case Analysis::coherency_eigenvalues:
+    case Analysis::cloude_decomposition:
+      return false;
+    case Analysis::nearest_realizable:
+      return m(0, 0) < 0;
+    case Analysis::lu_chipman:
+      return !(m(0, 0) > 0) || !realizable(m);
+    default:
+      return !(m(0, 0) > 0);
+  }
+}
+
 /// Results of matrices first … first + count − 1; those that the kernel leaves are asked for one by one.
 template <Analysis analysis, class Result>
 void run_block(std::span<const Mueller> matrices, Result* out, std::size_t first, Result (*one)(const Mueller&),
@@ -41,12 +60,15 @@ void run_block(std::span<const Mueller> matrices, Result* out, std::size_t first
   if (!best_analysis_kernel().run(analysis, matrices[0].elements.data(), matrices.size(), numbers(out), left)) return;
   for (std::size_t q = 0; q < matrices.size(); ++q) {
     if (left[q] == 0) continue;
+    bool refused = is_plainly_refused<analysis>(matrices[q]);
     try {
-      out[q] = one(matrices[q]);
+      if (!refused) out[q] = one(matrices[q]);
     } catch (const std::invalid_argument&) {
-      refusals.add(first + q);
-      std::fill_n(numbers(out + q), sizeof(Result) / sizeof(double), std::numeric_limits<double>::quiet_NaN());
+      refused = true;
     }
+    if (!refused) continue;
+    refusals.add(first + q);
+    std::fill_n(numbers(out + q), sizeof(Result) / sizeof(double), std::numeric_limits<double>::quiet_NaN());
   }
 }
 

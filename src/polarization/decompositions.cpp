@@ -104,8 +104,7 @@ Matrix3d smallest_rotation(const Vector3d& from, const Vector3d& to) {
   if (u.isZero(0) || v.isZero(0)) return Matrix3d::Identity();
   const Vector3d across = (u - v).stableNormalized();
   Vector3d bisector = u + v;
-  bisector -=
-      across.dot(bisector) * across;  // the rounding of |u| and |v|, which counts where they are nearly opposite
+  if (u.dot(v) < 0) bisector -= across.dot(bisector) * across;  // the rounding of |u| and |v|, where that counts
   bisector = bisector.norm() > 1e-15 ? bisector.normalized() : across.unitOrthogonal();
   const Matrix3d one = Matrix3d::Identity();
   return (2 * bisector * bisector.transpose() - one) * (2 * u * u.transpose() - one);
@@ -265,6 +264,15 @@ LuChipman lu_chipman(const Mueller& m) {
       std::copy_n(from, 16, factor->elements.begin());
       from += 16;
     }
+    return result;
+  }
+  int exponent = 0;
+  std::frexp(m(0, 0), &exponent);
+  if (std::abs(exponent) > 300 && realizable(m)) {  // which the kernel does not scale
+    Mueller x = m;
+    for (double& element : x.elements) element = std::ldexp(element, -exponent);
+    LuChipman result = lu_chipman(x);
+    for (double& element : result.diattenuator.elements) element = std::ldexp(element, exponent);
     return result;
   }
   const Matrix4d n = normalized_realizable(m);

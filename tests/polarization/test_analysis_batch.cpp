@@ -255,6 +255,55 @@ TEST(AnalysisKernel, MovesAMatrixToTheNearestThatCanExist) {
   }
 }
 
+TEST(AnalysisKernel, LeavesToTheRuleOfRanksWhatIsOfRankTwo) {
+  for (const AnalysisKernel* kernel : kernels_that_run_here())
+    for (const double sigma : {1e-14, 3e-16, 3e-20})
+      for (const double others : {1.0, 1e-3, 1e-6, 1e-9}) {
+        const Answers answers = ask(*kernel, Analysis::lu_chipman, {diagonal(1, others, others, -sigma)});
+        EXPECT_EQ(answers.left[0], 1) << kernel->name << " " << others;
+      }
+}
+
+TEST(AnalysisBatch, GivesTheSameFactorsInAnyUnit) {
+  for (const double scale : {1e-300, 1e-150, 1e-100, 1e100, 1e121, 1e150, 1e300}) {
+    const Mueller m = diagonal(1, 1e-9, 1e-9, -3e-16);
+    EXPECT_LT(largest(lu_chipman(scale * m).retarder - lu_chipman(m).retarder), 1e-12) << scale;
+  }
+}
+
+TEST(AnalysisBatch, KeepsLengthsWhoseSquaresAreNoNumbers) {
+  for (const double tiny : {1e-300, 1e-170, 1e-161, 1e-5}) {
+    Mueller m = diagonal(1, 0, 0, 0);
+    m(0, 1) = m(1, 0) = 3 * tiny, m(0, 3) = m(3, 0) = 4 * tiny;
+    EXPECT_NEAR(diattenuation(m) / tiny, 5, 1e-14);
+    EXPECT_NEAR(polarizance(m) / tiny, 5, 1e-14);
+    Mueller beside = diagonal(tiny, 0, 1, 0);  // cannot exist, but has a diattenuation
+    beside(0, 1) = 0.6 * tiny;
+    EXPECT_NEAR(diattenuation(beside), 0.6, 1e-14);
+  }
+  Mueller m = diagonal(0x1p-1010, 0, 0, 0);
+  m(0, 1) = 1;
+  EXPECT_NEAR(diattenuation(m) / 0x1p1010, 1, 1e-14);
+  EXPECT_NEAR(realizability_margin(m) / 0x1p1010, -0.25, 1e-12);
+}
+
+TEST(AnalysisBatch, MultipliesPolarizersOfNearlyTheSameLightBack) {
+  for (double t = 1e-3; t > 1e-12; t /= 3) {
+    Mueller m;
+    const double p[4] = {1, std::cos(t), std::sin(t), 0}, d[4] = {1, 1, 0, 0};
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) m(i, j) = p[i] * d[j] / 2;
+    const LuChipman f = lu_chipman(m);
+    EXPECT_LE(largest(f.depolarizer * f.retarder * f.diattenuator - m), lu_chipman_error * m(0, 0)) << t;
+  }
+}
+
+TEST(AnalysisBatch, NeverMakesInfinityOfTheLargestNumbers) {
+  constexpr double x = std::numeric_limits<double>::max();
+  const Mueller m{{x, 0, -x, 0, 0, x, 0, 0, 0, x, 0, -x, -x, 0, x, 0}};
+  for (const double element : nearest_realizable(m).matrix.elements) EXPECT_TRUE(std::isfinite(element));
+}
+
 TEST(AnalysisBatch, GivesEachMatrixTheBitsThatItHasAloneOnAnyNumberOfThreads) {
   const std::vector<Mueller> matrices = realizable_matrices(10000, 15);
   for (const int threads : {1, 3}) {

@@ -21,6 +21,15 @@ MMBRDF_INLINE R squares_but_first(const R (&m)[16]) {
   return sum;
 }
 
+/// Of a vector, whose squares may be too small for a number.
+MMBRDF_INLINE R length(R a, R b, R c) {
+  R largest(0x1p-1000);
+  const R parts[] = {a, b, c};
+  for (const R& part : parts) largest = select(absolute(part).v > largest.v, absolute(part), largest);
+  const R scale = R(1.0) / largest, x = scale * a, y = scale * b, z = scale * c;
+  return largest * sqrt(fma(x, x, fma(y, y, z * z)));
+}
+
 MMBRDF_INLINE R depolarization(const R (&m)[16]) { return sqrt(squares_but_first(m) * R(1.0 / 3)) / m[0]; }
 
 MMBRDF_INLINE Mask realizable(const R (&m)[16]) {
@@ -196,16 +205,15 @@ bool run(Analysis analysis, const double* from, size_t count, double* out, unsig
   const auto number = [&](auto value) {
     return run([value](const double* m, double* to) { return relative(m, to, value); }, 1, from, count, out, left);
   };
-  const auto length = [](const R& a, const R& b, const R& c) { return sqrt(fma(a, a, fma(b, b, c * c))); };
   switch (analysis) {
     case Analysis::realizable:
       return run([](const double* m, double* to) { return realizable(m, to); }, 1, from, count, out, left);
     case Analysis::depolarization:
       return number([](const R(&m)[16]) { return depolarization(m); });
     case Analysis::diattenuation:
-      return number([=](const R(&m)[16]) { return length(m[1], m[2], m[3]) / m[0]; });
+      return number([](const R(&m)[16]) { return length(m[1], m[2], m[3]) / m[0]; });
     case Analysis::polarizance:
-      return number([=](const R(&m)[16]) { return length(m[4], m[8], m[12]) / m[0]; });
+      return number([](const R(&m)[16]) { return length(m[4], m[8], m[12]) / m[0]; });
     case Analysis::purity:
       return number([](const R(&m)[16]) {
         const R purity = fma(R(0.25), squares_but_first(m) / m[0] / m[0], R(0.25)), largest(0x1.fffffffffffffp+1023);

@@ -101,8 +101,9 @@ MMBRDF_INLINE Mask lu_chipman(const R (&n)[16], R intensity, R (&depolarizer)[16
   R cofactor[9], y[9], product[9];
   cofactors(x, cofactor);
   const R determinant = dot(x, cofactor), size = squares(x), sign = copy_sign(one, determinant);
-  const Mask singular =
-      (length.v > 1 - 1e-6) | (absolute(determinant).v < (R(1e-8) * size * sqrt(size)).v) | (size.v < 1e-20);
+  // With σ1 σ2 at most half of the sum of squares, the last bound leaves no σ3 that the ranks of lu_chipman() count as 0.
+  const Mask singular = (length.v > 1 - 1e-6) | (absolute(determinant).v < (R(1e-8) * size * sqrt(size)).v) |
+                        (absolute(determinant).v < (R(1e-12) * size).v) | (size.v < 1e-20);
   for (int k = 0; k < 9; ++k) x[k] = select(singular, k % 4 == 0 ? one : zero, sign * x[k]);
   rotation_of(x, y);
   times_transposed(x, y, product);
