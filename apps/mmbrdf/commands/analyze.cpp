@@ -50,7 +50,7 @@ void require_possible(const Stokes& light) {
   }
 }
 
-/// Draws and covariances may be refused, and are the model's: "name: …". Parts are for pages, not for rows.
+/// Draws and covariances may be refused, and are the model's: "name: …". Parts are for one question, not for many rows.
 Answers answers_of(const Model& model, const Options& options, bool parts) {
   AnswerOptions asked = options.asked;
   asked.frame = options.frame;
@@ -67,7 +67,7 @@ Answers answers_of(const Model& model, const Options& options, bool parts) {
 void analyze_one(const Options& options) {
   const Model model = model_of(options);
   const double wavelength = wavelength_from(options.wavelength_nm, model);
-  const Answers answers = answers_of(model, options, options.format != Format::csv);
+  const Answers answers = answers_of(model, options, true);
   const Place place = place_of(model, options, wavelength);
   const Geometry geometry = geometry_of(options);
   if (options.format == Format::csv) {
