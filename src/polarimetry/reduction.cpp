@@ -20,6 +20,7 @@
 #include "numerics/threads.hpp"
 #include "polarimetry/columns.hpp"
 #include "polarimetry/kernel/reduction_kernels.hpp"
+#include "polarization/refusals.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -222,7 +223,7 @@ std::size_t Reduction::solve(std::span<const Number> readings, std::span<Number>
   if (elements.size() % 16 != 0 || readings.size() % n != 0 || readings.size() / n != pixels)
     throw std::invalid_argument(std::to_string(readings.size()) + " readings and " + std::to_string(elements.size()) +
                                 " elements, the instrument has " + std::to_string(n) + " readings of 16 elements");
-  std::atomic<std::size_t> refused = 0, first_refused = pixels;
+  Refusals refusals;
   std::atomic<bool> no_memory = false;
   in_parts(pixels, options.threads, [&](std::size_t begin, std::size_t count) {
     const std::size_t block = 24 * std::max<std::size_t>(1, 48 / n);  // pixels: they stay in the nearest cache
@@ -241,10 +242,7 @@ std::size_t Reduction::solve(std::span<const Number> readings, std::span<Number>
         for (std::size_t q = 0; q < here; ++q) {
           if (all_finite(from.subspan(q * n, n))) continue;
           std::ranges::fill(to.subspan(q * 16, 16), std::numeric_limits<Number>::quiet_NaN());
-          ++refused;
-          for (std::size_t before = first_refused;
-               first + q < before && !first_refused.compare_exchange_weak(before, first + q);)
-            continue;
+          refusals.add(first + q);
         }
       if (solution_->undetermined.any())
         for (std::size_t i = 0; i < to.size(); ++i)
@@ -252,10 +250,9 @@ std::size_t Reduction::solve(std::span<const Number> readings, std::span<Number>
     }
   });
   if (no_memory) throw std::bad_alloc();
-  if (refused > 0 && options.refused == Refused::error)
-    throw std::invalid_argument("pixel " + std::to_string(first_refused) + ", counted from 0: " + not_finite + " (" +
-                                std::to_string(refused) + " of " + std::to_string(pixels) + " are refused)");
-  return refused;
+  if (refusals.count > 0 && options.refused == Refused::error)
+    throw std::invalid_argument(refusals.message("pixel", not_finite, pixels));
+  return refusals.count;
 }
 
 MuellerCovariance Reduction::from_readings(std::span<const double> variances) const {

@@ -2,7 +2,6 @@
 #include "mmbrdf/polarization/analysis_batch.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -10,6 +9,7 @@
 
 #include "numerics/threads.hpp"
 #include "polarization/kernel/analysis_kernels.hpp"
+#include "polarization/refusals.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -22,16 +22,6 @@ double* numbers(Result* first) {
   static_assert(sizeof(Result) % sizeof(double) == 0 && std::is_standard_layout_v<Result>);
   return reinterpret_cast<double*>(first);
 }
-
-/// The matrices that were refused: how many, and the first.
-struct Refusals {
-  std::atomic<std::size_t> count = 0, first = std::numeric_limits<std::size_t>::max();
-
-  void add(std::size_t q) {
-    ++count;
-    for (std::size_t before = first; q < before && !first.compare_exchange_weak(before, q);) continue;
-  }
-};
 
 /// Whether the function for one matrix refuses it, as far as that is quickly said: to throw takes microseconds.
 template <Analysis analysis>
@@ -92,9 +82,7 @@ std::size_t in_blocks(std::span<const Mueller> matrices, std::size_t results, Re
     try {
       one(matrices[first]);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("matrix " + std::to_string(first) + ", counted from 0: " + error.what() + " (" +
-                                  std::to_string(refusals.count) + " of " + std::to_string(matrices.size()) +
-                                  " are refused)");
+      throw std::invalid_argument(refusals.message("matrix", error.what(), matrices.size()));
     }
   }
   return refusals.count;

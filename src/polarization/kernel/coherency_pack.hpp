@@ -64,7 +64,6 @@ MMBRDF_INLINE void matrix_of(const HermitianPack& t, R (&m)[16]) {
 /// Whether T + shift is positive definite: the pivots of its Cholesky decomposition, without square roots, are
 /// positive. Rounding counts as a shift of some ε tr T (Demmel 1989), far less than realizability_tolerance.
 MMBRDF_INLINE Mask is_positive_definite(const HermitianPack& t, R shift) {
-  const auto norm = [](C z) { return fma(z.re, z.re, z.im * z.im); };
   const R p0 = t.diagonal[0] + shift, i0 = R(1.0) / p0;
   const C l1 = i0 * t.get<0, 1>(), l2 = i0 * t.get<0, 2>();
   // What is left without the first row: T_jk − conj(T_0j) T_0k / p0.
@@ -93,7 +92,7 @@ struct TurnPack {
 /// The smaller of the two turns (Jacobi). Elements below 1e-17 count as 0: they are far below the rounding of those on
 /// the diagonal, of which the largest is above ⅛.
 MMBRDF_INLINE TurnPack turn_of(R a, R b, C z) {
-  const R square = fma(z.re, z.re, z.im * z.im), h = R(0.5) * (b - a);
+  const R square = norm(z), h = R(0.5) * (b - a);
   const auto counts = square.v > 1e-34;
   const R r = sqrt(fma(h, h, square)), d = absolute(h) + r;
   const R q = R(0.5) / select(counts, r * d, R(1.0)), inverse = sqrt(q);
@@ -159,7 +158,7 @@ MMBRDF_INLINE void diagonalize(HermitianPack& t, Vectors& vectors) {
   constexpr int most_sweeps = 20;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     Mask left = R(0.0).v > 0.0;
-    for (const C& z : t.above) left |= fma(z.re, z.re, z.im * z.im).v > 1e-34;
+    for (const C& z : t.above) left |= norm(z).v > 1e-34;
     if (!any(left)) return;
     turn_both<0, 1, 2, 3>(t, vectors);
     turn_both<0, 2, 1, 3>(t, vectors);
