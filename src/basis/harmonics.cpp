@@ -6,13 +6,13 @@
 #include <tuple>
 
 namespace mmbrdf {
-namespace {
 
-/// k + l of the isotropic family, 2 (σ_out + σ_in).
 int spin_sum(Function function) {
   if (function == Function::u) return 4;
   return function == Function::g || function == Function::h ? 2 : 0;
 }
+
+namespace {
 
 /// All Z of a function with this k + l.
 std::vector<Mode> products(Function function, int order, int sum) {
@@ -24,7 +24,7 @@ std::vector<Mode> products(Function function, int order, int sum) {
   return result;
 }
 
-auto key(const Mode& z) { return std::tuple(z.n, z.m, z.k, z.l); }
+auto radial_key(const Mode& z) { return std::tuple(z.n, z.m, z.k, z.l); }
 
 /// The mode that has the same functions, or the mode itself: Z(r,i) of the real functions and of u, its conjugate of v.
 Mode twin(const Mode& z) {
@@ -49,15 +49,15 @@ bool is_odd(const Mode& z) {
     case Function::m14:
       return z.k >= 0;
     case Function::v:
-      return key(z) > key(twin(z));
+      return radial_key(z) > radial_key(twin(z));
     default:
-      return key(z) >= key(twin(z));
+      return radial_key(z) >= radial_key(twin(z));
   }
 }
 
 void add_harmonic(std::vector<FreeMode>& modes, Function function, int order, int q) {
   for (const Mode& z : products(function, order, spin_sum(function) + q)) {
-    if (key(z) < key(twin(z))) continue;
+    if (radial_key(z) < radial_key(twin(z))) continue;
     const bool real_alone = function == Function::v && z == twin(z);  // then iZ + conj(iZ) is 0
     for (const bool imaginary : {false, true})
       if (!imaginary || !real_alone)

@@ -18,6 +18,9 @@ namespace mmbrdf {
 /// Of m11 … m44.
 Element element_of(Function function);
 
+/// k + l of the isotropic family, 2 (σ_out + σ_in).
+int spin_sum(Function function);
+
 /// Terms of a mode of the isotropic family's functions, whatever k + l, with iZ in place of Z if imaginary. For 14 the
 /// two are exchanged, as its isotropic modes are of iZ.
 std::vector<Term> complex_terms(const Mode& mode, bool imaginary = false);

@@ -55,19 +55,6 @@ bool is_published(const Mode& mode) {
   }
 }
 
-/// k + l of the isotropic family, 2 (σ_out + σ_in).
-int spin_sum(Function function) {
-  switch (function) {
-    case Function::g:
-    case Function::h:
-      return 2;
-    case Function::u:
-      return 4;
-    default:
-      return 0;
-  }
-}
-
 /// The rule that a mode with proper radial and azimuthal orders breaks in its family; empty if none.
 std::string broken_rule(const Mode& mode, Family family) {
   const auto [function, n, m, k, l] = mode;

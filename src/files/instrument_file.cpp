@@ -18,9 +18,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* format_name = "mmbrdf instrument";
+constexpr const char* instrument_format_name = "mmbrdf instrument";
 
-ordered_json conventions() {
+ordered_json instrument_conventions() {
   return {{"frame", "scattering_plane"},
           {"axes", "e1 = perpendicular, e2 = parallel to the scattering plane, e1 x e2 = direction of propagation"},
           {"stokes", "germer2017"},
@@ -28,7 +28,7 @@ ordered_json conventions() {
           {"time_factor", "exp(-i omega t)"},
           {"readings", "row of analyzer . M . row of generator"}};
 }
-ordered_json units() { return {{"wavelength", "nm"}, {"angles", "deg"}, {"film_thickness", "um"}}; }
+ordered_json instrument_units() { return {{"wavelength", "nm"}, {"angles", "deg"}, {"film_thickness", "um"}}; }
 
 // ---- reading --------------------------------------------------------------------------------------------------------
 
@@ -111,7 +111,7 @@ void read_freedom(const Field& field, Calibration& calibration) {
 }
 
 void require_instrument(const Field& root) {
-  require_format(root, format_name, conventions(), units(),
+  require_format(root, instrument_format_name, instrument_conventions(), instrument_units(),
                  {"format",
                   "schema_version",
                   "conventions",
@@ -253,10 +253,10 @@ ordered_json retarders_json(const CalibratedRetarders& retarders) {
 
 ordered_json calibration_json(const Calibration& c) {
   const std::size_t size = 4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size());
-  ordered_json root = {{"format", format_name},
+  ordered_json root = {{"format", instrument_format_name},
                        {"schema_version", schema_version},
-                       {"conventions", conventions()},
-                       {"units", units()},
+                       {"conventions", instrument_conventions()},
+                       {"units", instrument_units()},
                        {"wavelength_nm", in_nanometres(c.wavelength)}};
   if (c.retarders) {
     root["retarders"] = retarders_json(*c.retarders);
@@ -283,11 +283,11 @@ ordered_json calibration_json(const Calibration& c) {
 }
 
 /// What is not finite would be written as null.
-void require_finite(const ordered_json& value, const std::string& name) {
+void require_finite_numbers(const ordered_json& value, const std::string& name) {
   if (value.is_number() && !std::isfinite(value.get<double>()))
     throw std::invalid_argument(name + " of the instrument must be finite");
   if (!value.is_structured()) return;
-  for (const auto& [key, child] : value.items()) require_finite(child, value.is_object() ? key : name);
+  for (const auto& [key, child] : value.items()) require_finite_numbers(child, value.is_object() ? key : name);
 }
 
 }  // namespace
@@ -303,7 +303,7 @@ std::string to_json(const Calibration& calibration) {
     throw std::invalid_argument("an instrument file has pairs of states of turning retarders only");
   Reduction(calibration.polarimeter, calibration.covariance);  // throws for what could not be used
   const ordered_json root = calibration_json(calibration);
-  require_finite(root, "a number");
+  require_finite_numbers(root, "a number");
   std::string text;
   try {
     text = json_text(root);

@@ -26,10 +26,10 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* format_name = "mmbrdf model";
+constexpr const char* model_format_name = "mmbrdf model";
 
 /// What every file says, and must say to be read: there is no other convention that it could be in.
-ordered_json conventions() {
+ordered_json model_conventions() {
   return {{"frame", "xy"},
           {"axes", "e1 = y, e2 = x, e1 x e2 = direction of propagation"},
           {"stokes", "germer2017"},
@@ -38,7 +38,7 @@ ordered_json conventions() {
           {"phi_i", "azimuth of the direction to the source"},
           {"normalised", "f11 in sr^-1; other elements are f_ij/f11"}};
 }
-ordered_json units() {
+ordered_json model_units() {
   return {
       {"wavelength", "um"}, {"f11", "sr^-1"}, {"angles", "deg"}, {"coefficients", "of powers of the wavelength in um"}};
 }
@@ -175,7 +175,7 @@ ReflectanceTable read_reflectance(const Field& field, std::size_t f11_coefficien
 }
 
 Model read_model(const Field& root) {
-  require_format(root, format_name, conventions(), units(),
+  require_format(root, model_format_name, model_conventions(), model_units(),
                  {"format", "schema_version", "name", "basis", "orders", "powers", "mapping", "rotation", "conventions",
                   "units", "validity", "not_measured", "reflectance", "blocks", "posterior", "provenance"});
   Model model;
@@ -244,15 +244,10 @@ ordered_json angle_json(const std::optional<double>& angle) {
 
 ordered_json model_json(const Model& model) {
   const Orders found = orders(model);
-  ordered_json root = {{"format", format_name},
-                       {"schema_version", schema_version},
-                       {"name", model.name},
-                       {"basis", to_string(model.family)},
-                       {"orders", {found.f11, found.other}},
-                       {"powers", model.powers},
-                       {"mapping", to_string(model.mapping)},
-                       {"conventions", conventions()},
-                       {"units", units()}};
+  ordered_json root = {
+      {"format", model_format_name},         {"schema_version", schema_version},   {"name", model.name},
+      {"basis", to_string(model.family)},    {"orders", {found.f11, found.other}}, {"powers", model.powers},
+      {"mapping", to_string(model.mapping)}, {"conventions", model_conventions()}, {"units", model_units()}};
   if (model.rotation != Rotation::covariant) root["rotation"] = to_string(model.rotation);
   require_finite(model.validity.wavelengths, "wavelengths of the validity");
   root["validity"] = {{"wavelengths_um", model.validity.wavelengths},

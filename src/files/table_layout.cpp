@@ -14,10 +14,10 @@ using Pair = std::pair<std::string_view, std::string_view>;
 constexpr Pair spelt_out[] = {Pair{"°", " deg"}, {"\xb0", " deg"}, {"µ", "u"},      {"μ", "u"},        {"θ", "theta"},
                               {"φ", "phi"},      {"ϕ", "phi"},     {"λ", "lambda"}, {"%", " percent"}, {"⁻¹", "-1"}};
 
-constexpr Pair units[] = {Pair{"_degrees", "_deg"}, {"_degree", "_deg"},     {"_radians", "_rad"},
-                          {"_radian", "_rad"},      {"_nanometres", "_nm"},  {"_nanometers", "_nm"},
-                          {"_micrometres", "_um"},  {"_micrometers", "_um"}, {"_microns", "_um"},
-                          {"_micron", "_um"},       {"_1_sr", ""},           {"_sr_1", ""}};
+constexpr Pair unit_endings[] = {Pair{"_degrees", "_deg"}, {"_degree", "_deg"},     {"_radians", "_rad"},
+                                 {"_radian", "_rad"},      {"_nanometres", "_nm"},  {"_nanometers", "_nm"},
+                                 {"_micrometres", "_um"},  {"_micrometers", "_um"}, {"_microns", "_um"},
+                                 {"_micron", "_um"},       {"_1_sr", ""},           {"_sr_1", ""}};
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -83,7 +83,7 @@ std::string column_key(std::string_view name, bool upper_case) {
     else if (!key.empty() && key.back() != '_')
       key += '_';
   while (key.ends_with('_')) key.pop_back();
-  for (const auto& [unit, own] : units)
+  for (const auto& [unit, own] : unit_endings)
     if (key.ends_with(unit)) return key.replace(key.size() - unit.size(), unit.size(), own);
   return key;
 }

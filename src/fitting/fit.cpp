@@ -36,7 +36,7 @@ constexpr Named<Uncertainty> uncertainty_names[] = {{Uncertainty::sample, "sampl
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-std::string nanometres(double wavelength) { return shortest(in_nanometres(wavelength)); }
+std::string nanometre_number(double wavelength) { return shortest(in_nanometres(wavelength)); }
 
 Mueller ones() {
   Mueller result;
@@ -160,13 +160,14 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
     const Solution solution = at.elements[0].solve(options.rank_tolerance, &known);
     if (const std::string free = undetermined(blocks_[0], solution, sides_);
         !free.empty() && !accepts_minimum_norm(options))
-      require_determined("the data at " + nanometres(wavelength) + " nm alone do not determine f11, whose " +
+      require_determined("the data at " + nanometre_number(wavelength) + " nm alone do not determine f11, whose " +
                              "reflectance it is to be divided by; give a reflectance table",
                          free, options);
-    if (solution.rows == 0) throw std::invalid_argument("f11 is not measured at " + nanometres(wavelength) + " nm");
+    if (solution.rows == 0)
+      throw std::invalid_argument("f11 is not measured at " + nanometre_number(wavelength) + " nm");
     const double dhr = std::inner_product(slopes.begin(), slopes.end(), solution.x.begin(), 0.0);
     if (!(dhr > 0))
-      throw std::invalid_argument("the normal-incidence reflectance at " + nanometres(wavelength) +
+      throw std::invalid_argument("the normal-incidence reflectance at " + nanometre_number(wavelength) +
                                   " nm comes out as " + shortest(dhr) + "; give a reflectance table");
     table.wavelengths.push_back(wavelength);
     table.values.push_back(dhr);

@@ -26,8 +26,8 @@ namespace {
 using Column = std::vector<Term>;  // a function: what it gives to each element
 
 constexpr double azimuth_tolerance = radians(0.1);
-constexpr double rounding = 1e-12;  // residuals below this part of the data are no noise
-constexpr int harmonics = 4;        // cos φ, sin φ, cos 2φ, sin 2φ
+constexpr double exact = 1e-12;  // residuals below this part of the data are no noise
+constexpr int harmonics = 4;     // cos φ, sin φ, cos 2φ, sin 2φ
 
 bool is_paired(const Mode& mode) {
   return mode.function == Function::m14 || mode.function == Function::g || mode.function == Function::h;
@@ -198,7 +198,7 @@ FTest compared(const Problem& problem, const Block& block, const std::vector<Col
     test.rms = std::sqrt(without / weight);
     test.rms_extended = std::sqrt(with / weight);
   }
-  const double noise = std::max(with, squared(rounding) * data);  // exact data have none
+  const double noise = std::max(with, squared(exact) * data);  // exact data have none
   if (test.extra <= 0 || test.freedom <= 0 || noise <= 0) {
     test.extra = 0;
     return test;

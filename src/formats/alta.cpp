@@ -16,7 +16,6 @@ namespace mmbrdf {
 namespace {
 
 constexpr double half_pi = std::numbers::pi / 2;
-constexpr double beyond = 1e-4;  // radians: files have few digits of π/2
 
 using Numbers = std::span<const double>;
 using Geometries = std::optional<Geometry> (*)(Numbers);  // nothing: below the horizon
@@ -185,7 +184,7 @@ class AltaReader : public ForeignFile::Reader {
       const std::string what = "coordinate " + std::to_string(c + 1);
       x[c] = file_.number(words[c], what);
       const double most = !input_->angles ? 1 : input_->polar[c] ? half_pi : 4 * half_pi;
-      if (std::abs(x[c]) > most + beyond)
+      if (std::abs(x[c]) > most + few_digits)
         throw file_.error(what + ": " + shortest(x[c]) +
                           (input_->angles ? " is no such angle in radians" : " of a unit vector"));
     }

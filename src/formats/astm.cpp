@@ -13,7 +13,6 @@ namespace mmbrdf {
 namespace {
 
 constexpr std::array angle_names{"theta_i", "phi_i", "theta_s", "phi_s"};
-constexpr double beyond = 1e-4;  // radians: files have few digits of π/2 and 2π
 
 /// The wavelength that the name of a column says, "532nm", in micrometres.
 std::optional<double> named_wavelength(std::string_view name) {
@@ -102,7 +101,7 @@ class AstmReader : public ForeignFile::Reader {
     const auto angle = [&](std::size_t a, double most) {
       if (angles_[a] < 0) return 0.0;
       const double value = file_.number(row[static_cast<std::size_t>(angles_[a])], angle_names[a]);
-      if (std::abs(value) > most + beyond)
+      if (std::abs(value) > most + few_digits)
         throw file_.error(std::string(angle_names[a]) + ": " + shortest(value) +
                           " is no angle in radians; of degrees make radians");
       return value;

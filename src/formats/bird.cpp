@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double beyond = 1e-9;  // of a length of 1, by rounding
+constexpr double off_unit_length = 1e-9;  // of a length of 1, by rounding
 
 /// The variables of `data`, and complaints with their names.
 class Data {
@@ -184,7 +184,7 @@ class BirdReader : public ForeignFile::Reader {
     for (const json& value : data_.list(name, rows_)) {
       const Stokes state = stokes ? stokes_of(value, name, row) : letter(value, name, row);
       const double length = std::hypot(state[1], state[2], state[3]);
-      if (which == &PolarizedValue::analyzed && length > beyond && std::abs(length - 1) > 1e-3)
+      if (which == &PolarizedValue::analyzed && length > off_unit_length && std::abs(length - 1) > 1e-3)
         throw data_.error(name, "value " + std::to_string(row + 1) + ": a partial polarization of " + shortest(length) +
                                     " is no analyzer; 0 or 1 are");
       polarized_ = polarized_ || length > 0;
@@ -244,13 +244,13 @@ class BirdReader : public ForeignFile::Reader {
   std::vector<Sample> samples_;
 };
 
-constexpr std::string_view blanks = " \t\r\n";
+constexpr std::string_view json_blanks = " \t\r\n";
 constexpr std::array<std::string_view, 7> variables{"\"BRDF\"",    "\"uBRDF\"", "\"theta_i\"",     "\"phi_i\"",
                                                     "\"theta_r\"", "\"phi_r\"", "\"wavelength_i\""};
 
 /// Whether a text goes on with this behind blanks; it is then taken from its beginning.
 bool takes(std::string_view& text, std::string_view what) {
-  const std::string_view rest = text.substr(std::min(text.find_first_not_of(blanks), text.size()));
+  const std::string_view rest = text.substr(std::min(text.find_first_not_of(json_blanks), text.size()));
   if (!rest.starts_with(what)) return false;
   text = rest.substr(what.size());
   return true;
@@ -272,7 +272,7 @@ bool is_bird(std::string_view head, std::uint64_t) {
   head.remove_prefix(head.starts_with("\xef\xbb\xbf") ? 3 : 0);
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
   if (!takes(head, "{") || is_own(head)) return false;
-  const std::string_view first = head.substr(std::min(head.find_first_not_of(blanks), head.size()));
+  const std::string_view first = head.substr(std::min(head.find_first_not_of(json_blanks), head.size()));
   const bool begins = first.starts_with("\"data\"") || first.starts_with("\"metadata\"");
   return has("brdf_json_schema") || (has("\"theta_i\"") && has("\"values\"")) ||
          (begins && std::ranges::any_of(variables, has));

@@ -13,8 +13,6 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double single = 1e-5;  // radians: angles are in single precision, or in few digits
-
 /// A beam along k with its axis ⊥: the angle, doubled, from ⊥ to s, which is at `phi` + 90 degrees in the surface.
 Mueller to_sp(const Vector3& k, const Vector3& perpendicular, double phi) {
   const Vector3& x = perpendicular;
@@ -47,9 +45,9 @@ class PbsdfReader : public ForeignFile::Reader {
   explicit PbsdfReader(const Source& source) : path_(source.path), file_(source) {
     source.require_none_told();
     const double half = std::numbers::pi / 2;
-    phi_d_ = angles("phi_d", -2 * std::numbers::pi, 2 * std::numbers::pi);
-    theta_d_ = angles("theta_d", 0, half);
-    theta_h_ = angles("theta_h", 0, half);
+    phi_d_ = file_.angles("phi_d", -2 * std::numbers::pi, 2 * std::numbers::pi);
+    theta_d_ = file_.angles("theta_d", 0, half);
+    theta_h_ = file_.angles("theta_h", 0, half);
     wavelengths_ = file_.axis("wvls");
     for (double& wavelength : wavelengths_) {
       wavelength /= 1000;
@@ -67,7 +65,7 @@ class PbsdfReader : public ForeignFile::Reader {
   void read(const UseSamples& use) override {
     SampleSink sink(use);
     // Both ends of the circle are there, and are one.
-    const bool closed = std::abs(phi_d_.back() - phi_d_.front() - 2 * std::numbers::pi) < single;
+    const bool closed = std::abs(phi_d_.back() - phi_d_.front() - 2 * std::numbers::pi) < single_precision;
     const std::size_t azimuths = phi_d_.size() - (closed && phi_d_.size() > 1 ? 1 : 0);
     std::vector<double> values(theta_h_.size() * wavelengths_.size() * 16);
     for (std::size_t p = 0; p < azimuths; ++p)
@@ -82,17 +80,6 @@ class PbsdfReader : public ForeignFile::Reader {
   }
 
  private:
-  std::vector<double> angles(const std::string& name, double least, double most) {
-    std::vector<double> values = file_.axis(name);
-    for (double& value : values) {
-      if (value < least - single || value > most + single)
-        throw file_.error(file_.field(name),
-                          shortest(value) + " is not in [" + rounded(least, 5) + ", " + rounded(most, 5) + "] radians");
-      value = std::clamp(value, least, most);
-    }
-    return values;
-  }
-
   void add(const HalfDifference& directions, std::span<const double> values, SampleSink& sink) const {
     if (!above_horizon(directions)) return sink.below_horizon(wavelengths_.size());
     const Node node(directions);

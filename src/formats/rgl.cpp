@@ -14,7 +14,6 @@ namespace mmbrdf {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double single = 1e-5;  // radians: angles are in single precision
 
 /// Polar angle and azimuth of a place in the unit square.
 double theta_at(double u) { return u * u * pi / 2; }
@@ -29,8 +28,8 @@ struct Grid {
 class RglReader : public ForeignFile::Reader {
  public:
   explicit RglReader(const Source& source) : path_(source.path), file_(source) {
-    theta_i_ = axis("theta_i", 0, pi / 2);
-    phi_i_ = axis("phi_i", -2 * pi, 2 * pi);
+    theta_i_ = file_.angles("theta_i", 0, pi / 2);
+    phi_i_ = file_.angles("phi_i", -2 * pi, 2 * pi);
     ndf_ = grid("ndf");
     sigma_ = grid("sigma");
     vndf_ = file_.field("vndf");
@@ -68,17 +67,6 @@ class RglReader : public ForeignFile::Reader {
 
  private:
   bool isotropic() const { return phi_i_.size() <= 2; }
-
-  std::vector<double> axis(const std::string& name, double least, double most) {
-    std::vector<double> values = file_.axis(name);
-    for (double& value : values) {
-      if (value < least - single || value > most + single)
-        throw file_.error(file_.field(name),
-                          shortest(value) + " is not in [" + rounded(least, 5) + ", " + rounded(most, 5) + "] radians");
-      value = std::clamp(value, least, most);
-    }
-    return values;
-  }
 
   std::vector<double> numbers(const std::string& name) {
     const TensorField& field = file_.field(name);

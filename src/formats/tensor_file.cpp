@@ -15,7 +15,8 @@ namespace {
 constexpr std::string_view magic("tensor_file\0", 12);
 constexpr std::uint64_t longest_axis = 10000;
 constexpr int float32 = 10, float64 = 11;
-constexpr std::array<std::size_t, 12> type_sizes{0, 1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};  // u8, i8 … i64, f16, f32, f64
+constexpr std::array<std::size_t, 12> tensor_type_sizes{0, 1, 1, 2, 2, 4,
+                                                        4, 8, 8, 2, 4, 8};  // u8, i8 … i64, f16, f32, f64
 
 /// Takes numbers from the beginning of bytes that may end.
 class Bytes {
@@ -125,7 +126,7 @@ TensorFile::TensorFile(const Source& source) : path_(source.path), file_(source.
   for (const TensorField& field : fields_) {
     if (field.type < 1 || field.type > float64 || field.type == 9)
       throw error(field, "type " + std::to_string(field.type) + " cannot be read");
-    std::uint64_t bytes = type_sizes[static_cast<std::size_t>(field.type)];
+    std::uint64_t bytes = tensor_type_sizes[static_cast<std::size_t>(field.type)];
     for (const std::uint64_t size : field.shape) {
       if (size == 0) throw error(field, "shape " + shape_text(field.shape) + " is empty");
       bytes = product(bytes, size);
@@ -143,7 +144,7 @@ const TensorField& TensorFile::field(const std::string& name) const {
 }
 
 void TensorFile::read(const TensorField& field, std::uint64_t first, std::span<double> values) {
-  const std::size_t size = type_sizes[static_cast<std::size_t>(field.type)];
+  const std::size_t size = tensor_type_sizes[static_cast<std::size_t>(field.type)];
   bytes_.resize(values.size() * size);
   file_.read(field.offset + first * size, bytes_);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = number_at(bytes_.data() + i * size, field.type);
@@ -161,6 +162,17 @@ std::vector<double> TensorFile::axis(const std::string& name) {
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]) || (i > 0 && !(values[i] > values[i - 1])))
       throw error(field, "value " + std::to_string(i + 1) + ", " + shortest(values[i]) + ", does not rise");
+  return values;
+}
+
+std::vector<double> TensorFile::angles(const std::string& name, double least, double most) {
+  std::vector<double> values = axis(name);
+  for (double& value : values) {
+    if (value < least - single_precision || value > most + single_precision)
+      throw error(field(name),
+                  shortest(value) + " is not in [" + rounded(least, 5) + ", " + rounded(most, 5) + "] radians");
+    value = std::clamp(value, least, most);
+  }
   return values;
 }
 

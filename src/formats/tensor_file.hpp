@@ -30,6 +30,9 @@ std::vector<std::string> tensor_names(std::string_view head);
 /// Whether any of these is among them.
 bool has_tensor(std::string_view head, std::initializer_list<std::string_view> names);
 
+/// Radians: angles in these files are in single precision, or in few digits.
+inline constexpr double single_precision = 1e-5;
+
 class TensorFile {
  public:
   /// Throws std::runtime_error if the header is cut off, or a field does not lie within the file.
@@ -44,6 +47,9 @@ class TensorFile {
   /// All numbers of a field of one axis: others of length 1 may be around it. At most 10000, finite and rising, or this
   /// throws.
   std::vector<double> axis(const std::string& name);
+
+  /// The same of angles in radians, clamped to [least, most]; what is further outside than single_precision throws.
+  std::vector<double> angles(const std::string& name, double least, double most);
 
   /// Throws unless the field is of floating-point numbers in this shape.
   void require_shape(const TensorField& field, const std::vector<std::uint64_t>& shape) const;

@@ -10,6 +10,9 @@
 
 namespace mmbrdf {
 
+/// Radians: an angle of a text has few digits of π/2 and 2π.
+inline constexpr double few_digits = 1e-4;
+
 class TextFile {
  public:
   explicit TextFile(const std::string& path);

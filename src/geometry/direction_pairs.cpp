@@ -13,13 +13,13 @@ namespace {
 constexpr double tie = 1e-9;  // of a step: half way goes up, however it was rounded
 
 /// Steps and numbers of nodes: θ of either direction, φi, and φr or |φr − φi|.
-struct Axes {
+struct GridAxes {
   double theta_step, phi_step;
   std::size_t theta, phi_i, phi_r;
   std::size_t nodes() const { return theta * theta * phi_i * phi_r; }
 };
-constexpr Axes axes_of[] = {{5, 10, 19, 1, 19}, {10, 20, 10, 18, 18}};
-const Axes& axes(DirectionPairs::Grid grid) { return axes_of[static_cast<std::size_t>(grid)]; }
+constexpr GridAxes grids[] = {{5, 10, 19, 1, 19}, {10, 20, 10, 18, 18}};
+const GridAxes& axes(DirectionPairs::Grid grid) { return grids[static_cast<std::size_t>(grid)]; }
 
 std::size_t bytes_for(std::size_t nodes) { return (nodes + 7) / 8; }
 
@@ -54,7 +54,7 @@ void DirectionPairs::merge(const DirectionPairs& other) {
 }
 
 bool DirectionPairs::reach(double theta_i, double theta_r) const {
-  const Axes& a = axes(grid_);
+  const GridAxes& a = axes(grid_);
   const std::size_t azimuths = a.phi_i * a.phi_r, last_i = nearest(theta_i, a.theta_step),
                     last_r = nearest(theta_r, a.theta_step);
   for (std::size_t i = 0; i <= last_i; ++i)
@@ -72,7 +72,7 @@ void DirectionPairs::keep(const DirectionPairs& other) {
 std::size_t DirectionPairs::nodes() const { return axes(grid_).nodes(); }
 
 std::size_t DirectionPairs::node(const Geometry& geometry) const {
-  const Axes& a = axes(grid_);
+  const GridAxes& a = axes(grid_);
   const auto& [i, r] = geometry;
   const std::size_t theta_i = nearest(i.theta, a.theta_step), theta_r = nearest(r.theta, a.theta_step);
   std::size_t phi_i = 0, phi_r = 0;
@@ -87,7 +87,7 @@ std::size_t DirectionPairs::node(const Geometry& geometry) const {
 }
 
 Geometry DirectionPairs::geometry(std::size_t node) const {
-  const Axes& a = axes(grid_);
+  const GridAxes& a = axes(grid_);
   const auto radians = [](std::size_t steps, double step) {
     return static_cast<double>(steps) * step * (std::numbers::pi / 180);
   };

@@ -107,7 +107,7 @@ void round_covariance(BlockPosterior& posterior, const MatrixXd& covariance) {
       posterior.factor.push_back(static_cast<std::int16_t>(std::lround(factor(i, j) * full_scale)));
 }
 
-BlockFit fit_block_at(const MixedColumns& columns, const Gram& gram, const Block& evaluated, const Variances& at) {
+BlockFit fit_block_at(const MixedColumns& columns, const Gram& gram, const Block& evaluated, const LogVariances& at) {
   const Prior prior = prior_of(columns);
   const Parts parts = parts_of(gram.g, columns.calibration_count());
   return fitted(columns, gram, evaluated, prior, {at, evidence(gram, parts, prior, at), 1});

@@ -29,6 +29,6 @@ BlockFit fit_block(const MixedColumns& columns, const Gram& gram, const Block& e
 /// Fills the rounded form.
 void round_covariance(BlockPosterior& posterior, const Eigen::MatrixXd& covariance);
 /// At given variances.
-BlockFit fit_block_at(const MixedColumns& columns, const Gram& gram, const Block& evaluated, const Variances& at);
+BlockFit fit_block_at(const MixedColumns& columns, const Gram& gram, const Block& evaluated, const LogVariances& at);
 
 }  // namespace mmbrdf

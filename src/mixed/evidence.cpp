@@ -137,7 +137,7 @@ Inverse inverse_of(const MatrixXd& g, const Parts& parts, const VectorXd& varian
   return result;
 }
 
-Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, const Variances& at) {
+Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, const LogVariances& at) {
   const Index count = prior.mean.size(), size = gram.z.size();
   const double noise = std::exp(at(count)), n = static_cast<double>(gram.n);
   const VectorXd theta = at.head(count), v = prior.variances(theta), roots = v.cwiseSqrt();
@@ -178,7 +178,7 @@ Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, cons
 Estimate estimate(const Gram& gram, const Parts& parts, const Prior& prior, double noise) {
   const Index count = prior.mean.size();
   const double least = std::log(std::max(least_noise * gram.yy / static_cast<double>(gram.n), no_noise));
-  Estimate result{Variances(count + 1), {}, 1};
+  Estimate result{LogVariances(count + 1), {}, 1};
   result.at << prior.mean, std::max(std::log(noise), least);
   result.evidence = evidence(gram, parts, prior, result.at);
   if (!std::isfinite(result.evidence.value))

@@ -34,7 +34,7 @@ struct Gram {
 };
 
 /// Hyperparameters, and the logarithm of the noise variance behind them.
-using Variances = Eigen::VectorXd;
+using LogVariances = Eigen::VectorXd;
 
 /// Which columns readings connect. A grid that is symmetric about a plane, as goniometers measure, has no product of a
 /// mirror-even and a mirror-odd column; calibration columns, which are last, border all parts.
@@ -59,10 +59,10 @@ struct Evidence {
   Eigen::VectorXd mean;         ///< μ
   Inverse inverse;
 };
-Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, const Variances& at);
+Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, const LogVariances& at);
 
 struct Estimate {
-  Variances at;
+  LogVariances at;
   Evidence evidence;
   int evaluations = 0;
 };

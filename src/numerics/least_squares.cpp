@@ -49,16 +49,17 @@ void require_finite(std::span<const double> numbers, const char* what) {
 }
 
 /// A combination of a singular vector of the factors and one of the triangle.
-struct Pair {
+struct SingularPair {
   Index factor, unknown;
   double value;  // singular value: the product of both
 };
 
-std::vector<Pair> pairs_by_falling_value(const VectorXd& of_factors, const VectorXd& of_unknowns) {
-  std::vector<Pair> pairs;
+std::vector<SingularPair> pairs_by_falling_value(const VectorXd& of_factors, const VectorXd& of_unknowns) {
+  std::vector<SingularPair> pairs;
   for (Index f = 0; f < of_factors.size(); ++f)
     for (Index u = 0; u < of_unknowns.size(); ++u) pairs.push_back({f, u, of_factors(f) * of_unknowns(u)});
-  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.value > b.value; });
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const SingularPair& a, const SingularPair& b) { return a.value > b.value; });
   return pairs;
 }
 
@@ -362,7 +363,7 @@ Solution LeastSquares::solve_over(std::span<const double> factors, long rows, do
   const dense::Svd& inner = (known ? *known : none).of(triangle.topLeftCorner(n, n));
   const MatrixXd projected = inner.u.transpose() * columns.leftCols(powers) * outer.u;
 
-  const std::vector<Pair> pairs = pairs_by_falling_value(outer.s, inner.s);
+  const std::vector<SingularPair> pairs = pairs_by_falling_value(outer.s, inner.s);
   const Index size = index(pairs.size());
   MatrixXd v(size, size);
   VectorXd values(size), right(size);

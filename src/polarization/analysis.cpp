@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "polarization/bounded.hpp"
 #include "polarization/kernel/analysis_kernels.hpp"
 #include "text/numbers.hpp"
 
@@ -22,8 +23,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Matrix4c = Eigen::Matrix4cd;
-
-constexpr double largest_double = std::numeric_limits<double>::max();
 
 struct Scaled {
   Mueller m;
@@ -53,8 +52,6 @@ Mueller scaled_with_intensity(const Mueller& m) {
   result(0, 0) = std::max(result(0, 0), std::numeric_limits<double>::min());
   return result;
 }
-
-double bounded(double x) { return std::clamp(x, -largest_double, largest_double); }
 
 /// a / b for b > 0.
 double ratio(double a, double b) { return bounded(a / b); }

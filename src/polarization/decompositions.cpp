@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mmbrdf/polarization/analysis.hpp"
+#include "polarization/bounded.hpp"
 #include "polarization/kernel/analysis_kernels.hpp"
 #include "text/numbers.hpp"
 
@@ -31,7 +32,6 @@ using Matrix16d = Eigen::Matrix<double, 16, 16>;
 using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 using Svd = Eigen::JacobiSVD<Matrix3d>;
 
-constexpr double largest_double = std::numeric_limits<double>::max();
 constexpr double rounding = 1e-13;       // of elements of n
 constexpr double sufficient = 5e-15;     // of a product of factors
 constexpr double largest_d0 = 1e8;       // relative to M11; it grows without bound where there is no diagonal form
@@ -39,7 +39,7 @@ constexpr double largest_d = 1 - 1e-14;  // of a diattenuator that can be invert
 
 Matrix4d matrix(const Mueller& m) { return Eigen::Map<const RowMajor>(m.elements.data()); }
 
-Mueller mueller(const Matrix4d& matrix) {
+Mueller as_mueller(const Matrix4d& matrix) {
   Mueller result;
   Eigen::Map<RowMajor>(result.elements.data()) = matrix;
   return result;
@@ -248,10 +248,10 @@ SymmetricDecomposition unfolded(double m11, const Sandwich& s) {
       side->col(2) *= -1;
       sigma[2] *= -1;
     }
-  const auto times_m11 = [m11](double x) { return std::clamp(m11 * x, -largest_double, largest_double); };
-  return {mueller(diattenuator(s.d2)), mueller(retarder(u)),
+  const auto times_m11 = [m11](double x) { return bounded(m11 * x); };
+  return {as_mueller(diattenuator(s.d2)), as_mueller(retarder(u)),
           diagonal(times_m11(s.middle(0, 0)), times_m11(sigma[0]), times_m11(sigma[1]), times_m11(sigma[2])),
-          mueller(retarder(v)), mueller(diattenuator(s.d1))};
+          as_mueller(retarder(v)), as_mueller(diattenuator(s.d1))};
 }
 
 }  // namespace
@@ -279,8 +279,8 @@ LuChipman lu_chipman(const Mueller& m) {
   const Vector3d d = n.row(0).tail<3>(), p = n.col(0).tail<3>();
   if (is_complete(d) && is_product(n)) {
     const double length = p.norm();
-    return {diagonal(1, length, length, length), mueller(retarder(smallest_rotation(d, p))),
-            m(0, 0) * mueller(diattenuator(d.normalized()))};
+    return {diagonal(1, length, length, length), as_mueller(retarder(smallest_rotation(d, p))),
+            m(0, 0) * as_mueller(diattenuator(d.normalized()))};
   }
   const Vector3d inner = shortened(d);
   Matrix4d x = without_diattenuator(n, inner);
@@ -288,7 +288,7 @@ LuChipman lu_chipman(const Mueller& m) {
   const Matrix3d product = x.bottomRightCorner<3, 3>() * rotation.transpose();
   x.row(0) << 1, 0, 0, 0;
   x.bottomRightCorner<3, 3>() = (product + product.transpose()) / 2;
-  return {mueller(x), mueller(retarder(rotation)), m(0, 0) * mueller(diattenuator(inner))};
+  return {as_mueller(x), as_mueller(retarder(rotation)), m(0, 0) * as_mueller(diattenuator(inner))};
 }
 
 double retardance(const Mueller& m) {

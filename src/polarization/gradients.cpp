@@ -8,6 +8,7 @@
 #include <string>
 
 #include "mmbrdf/polarization/analysis.hpp"
+#include "polarization/bounded.hpp"
 #include "text/numbers.hpp"
 
 //   m       M / M11
@@ -17,10 +18,6 @@
 
 namespace mmbrdf {
 namespace {
-
-constexpr double largest_double = std::numeric_limits<double>::max();
-
-double bounded(double x) { return std::clamp(x, -largest_double, largest_double); }
 
 /// m for M11 > 0, no element beyond the largest double.
 Mueller relative_to_m11(const Mueller& m) {

@@ -9,14 +9,13 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
 #include "mmbrdf/quantities/trust.hpp"
+#include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-constexpr double folded = 1.5;     // times the rms of the other elements: beyond it the mirror-odd ones are mixed up
-constexpr int coarser = 2;         // than the steps of a report
-constexpr double rounding = 1e-9;  // rms of simulated data without noise
+constexpr double folded = 1.5;  // times the rms of the other elements: beyond it the mirror-odd ones are mixed up
 
 /// Of the elements that change sign where the sample is seen in a mirror, or of the others but 11.
 double rms_of_elements(const FitResult& result, bool odd) {
@@ -34,7 +33,7 @@ std::string sides_warning(const FitResult& result) {
   return "all samples lie on one side of the plane of incidence (phi_r - phi_i " +
          std::string(result.sides & positive_side ? "0 to 180" : "-180 to 0") +
          " degrees): whether the sample is handed cannot be told" +
-         (odd > std::max(folded * even, rounding)
+         (odd > std::max(folded * even, exact_rms)
               ? "; were azimuths of the other side folded onto it? Elements 13, 14, 23, 24, 31, 32, 41, "
                 "42 change their sign with the side, and fit " +
                     rounded(odd / even, 2) + " times as badly as the others"

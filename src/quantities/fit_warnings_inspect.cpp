@@ -12,15 +12,14 @@
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "quantities/angle_unit.hpp"
+#include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
 
-constexpr int coarser = 2;  // than the steps of a report
 constexpr long enough_samples = 60;
 constexpr double beyond_doubt = 2;
-constexpr double rounding = 1e-9;  // rms of simulated data without noise
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 const char* const scale = "scale of f11";
@@ -81,7 +80,7 @@ std::string too_few(const Looked& at, bool f11) {
   return counted(rows, "sample") + ", and a fit of low order has " + std::to_string(unknowns) + " coefficients";
 }
 
-bool is_better(double as_is, double other) { return as_is > better_convention * std::max(other, rounding); }
+bool is_better(double as_is, double other) { return as_is > better_convention * std::max(other, exact_rms); }
 
 /// Why a fit of low order says little of a reflectance; empty if it says enough.
 std::string no_reflectance(const Inspection& seen, const Looked& at) {
@@ -137,8 +136,8 @@ void look_at_cosine(Inspection& result, const Looked& at) {
   const double as_is = left_with_cosine(at.samples, 0), divided = left_with_cosine(at.samples, -1),
                multiplied = left_with_cosine(at.samples, 1);
   const bool too_many = divided <= multiplied;
-  const double other = std::max(std::min(divided, multiplied), rounding);
-  const auto percent = [](double part) { return rounded(100 * std::max(part, rounding), 2) + " %"; };
+  const double other = std::max(std::min(divided, multiplied), exact_rms);
+  const auto percent = [](double part) { return rounded(100 * std::max(part, exact_rms), 2) + " %"; };
   if (is_better(as_is, other))
     result.findings.push_back({cosine,
                                "a reciprocal f11 leaves " + percent(as_is) + ", but " + percent(other) +
@@ -304,7 +303,7 @@ std::vector<InspectionRow> inspection_rows(const Inspection& seen, std::span<con
       {"covered",
        rounded(std::round(100 * (1 - seen.unsupported)), 3) + " % of the pairs of directions within these angles"}};
   if (!seen.hole.empty()) rows.push_back({"", seen.hole});
-  if (seen.f11_residual > rounding)
+  if (seen.f11_residual > exact_rms)
     rows.push_back(
         {"residual", rounded(100 * seen.f11_residual, 2) + " % of f11: noise, and what a fit of low order misses"});
   return rows;

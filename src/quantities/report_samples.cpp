@@ -48,7 +48,7 @@ Json residuals_json(const Comparison& comparison) {
   return rows;
 }
 
-Field conventions(const Model& model, std::span<const Sample> samples) {
+Field conventions_field(const Model& model, std::span<const Sample> samples) {
   const std::vector<ConventionFit> fits = convention_fits(samples, orders(model), model.mapping);
   Field field;
   for (const auto& [read_as, rms] : fits) field.value.push_back({{"read_as", read_as}, {"rms", rms}});
@@ -194,7 +194,7 @@ void add_samples(Json& report, const Model& model, const ReportedSamples& data) 
   const FitResult unweighted = refitted(model, data.samples, Weights::none);
   const bool weighs = std::ranges::all_of(data.samples, knows_all_uncertainties);
   add(report, "chi_squared", chi_squared(weighs ? refitted(model, data.samples, Weights::data) : unweighted));
-  add(report, "conventions", conventions(model, data.samples));
+  add(report, "conventions", conventions_field(model, data.samples));
   const SymmetryTests tests = symmetry_tests(data.samples, orders(model), model.mapping);
   add(report, "reciprocity", symmetry(tests.reciprocity, "reciprocity"));
   add(report, "mirror_symmetry", symmetry(tests.mirror, "mirror symmetry"));

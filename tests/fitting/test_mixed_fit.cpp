@@ -131,7 +131,7 @@ TEST(MixedFit, AgreesWithTheReferenceAtFixedVariances) {
     const OfBlock& block = blocks[b];
     const Prior prior = prior_of(block.columns);
     const Parts parts = parts_of(block.gram.g, block.columns.calibration_count());
-    Variances variances(prior.mean.size() + 1);
+    LogVariances variances(prior.mean.size() + 1);
     variances << prior.mean, std::log(3e-5);
     const Evidence found = evidence(block.gram, parts, prior, variances);
     SCOPED_TRACE(named[b].name);
@@ -227,7 +227,7 @@ TEST(MixedFit, OfWhatIsNoNumberIsRefused) {
   Parts together{{std::vector<Index>(static_cast<std::size_t>(columns.size()))}, {}};
   std::iota(together.columns[0].begin(), together.columns[0].end(), Index{0});
   const Prior prior = prior_of(columns);
-  Variances variances(prior.mean.size() + 1);
+  LogVariances variances(prior.mean.size() + 1);
   variances << prior.mean, 0;
   EXPECT_FALSE(std::isfinite(evidence(gram, together, prior, variances).value));
   EXPECT_THROW(estimate(gram, together, prior, 1), std::invalid_argument);

@@ -10,7 +10,7 @@
 namespace mmbrdf {
 namespace {
 
-using L = Germer2017Layout;
+using G = Germer2017Layout;
 
 /// K_n^k = norm × radial(t) × C_k or S_|k|.
 struct Factor {
@@ -108,25 +108,25 @@ std::optional<Shares> germer2017_shares(const Mode& mode) {
   switch (mode.function) {
     case Function::m11:  // I_nm^k of Eq. 9 is weight × Σ K_n^±k(i) K_m^±k(r) and exchanged
       return symmetric_shares(
-          L::f11, 7, (weight * i.norm * r.norm) * (symmetric_product(i.radial, r.radial) * real_power(mode.k)));
+          G::f11, 7, (weight * i.norm * r.norm) * (symmetric_product(i.radial, r.radial) * real_power(mode.k)));
     case Function::m22:
-      return diagonal_shares(L::m22, diagonal_22_33, weight, i, r);
+      return diagonal_shares(G::m22, diagonal_22_33, weight, i, r);
     case Function::m33:
-      return diagonal_shares(L::m33, diagonal_22_33, weight, i, r);
+      return diagonal_shares(G::m33, diagonal_22_33, weight, i, r);
     case Function::m44:
-      return diagonal_shares(L::m44, diagonal_44, weight, i, r);
+      return diagonal_shares(G::m44, diagonal_44, weight, i, r);
     case Function::m12:
-      return cosine_shares(L::m12, i, r);
+      return cosine_shares(G::m12, i, r);
     case Function::m34:
-      return cosine_shares(L::m34, i, r);
+      return cosine_shares(G::m34, i, r);
     case Function::m14:
-      return sine_shares(L::m14, sines_14, i, r);
+      return sine_shares(G::m14, sines_14, i, r);
     case Function::m13:
-      return sine_shares(L::m13, sines_13_24, i, r);
+      return sine_shares(G::m13, sines_13_24, i, r);
     case Function::m24:
-      return sine_shares(L::m24, sines_13_24, i, r);
+      return sine_shares(G::m24, sines_13_24, i, r);
     default:
-      return sine_shares(L::m23, sines_23, i, r);
+      return sine_shares(G::m23, sines_23, i, r);
   }
 }
 
