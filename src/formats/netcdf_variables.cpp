@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <mutex>
 
 #include "formats/netcdf_header.hpp"
 #include "text/numbers.hpp"
@@ -42,8 +43,10 @@ class Library {
   };
   Symbol found(const char* name) const {
     const Symbol result{handle_ == nullptr ? nullptr : ::dlsym(handle_, name)};
-    if (result.address == nullptr) throw std::runtime_error("NetCDF library: " + std::string(::dlerror()));
-    return result;
+    if (result.address != nullptr) return result;
+    const char* const why = ::dlerror();
+    throw std::runtime_error(std::string("a NetCDF file, but " MMBRDF_NETCDF ", which reads it, cannot be loaded: ") +
+                             (why == nullptr ? "not there" : why) + "; install netCDF-C (Debian: libnetcdf19)");
   }
 
  public:
@@ -62,41 +65,73 @@ class Library {
   decltype(&::nc_inq_varid) inq_varid = found("nc_inq_varid");
   decltype(&::nc_open) open = found("nc_open");
   decltype(&::nc_strerror) strerror = found("nc_strerror");
+
+  /// HDF5 writes pages about errors that netCDF-C expects, in each thread that has not forbidden it.
+  void hush() const {
+    thread_local bool hushed = false;
+    if (hushed) return;
+    hushed = true;
+    using SetAuto = int(std::int64_t stack, void* function, void* data);
+    if (void* const set_auto = ::dlsym(handle_, "H5Eset_auto2"))
+      reinterpret_cast<SetAuto*>(set_auto)(0, nullptr, nullptr);
+  }
 };
 
-const Library& library() {
+/// The library, for one thread at a time: neither it nor HDF5 below it can be used by more.
+class Locked {
+ public:
+  const Library* operator->() const { return &library_; }
+
+ private:
+  friend Locked library();
+  explicit Locked(const Library& library) : library_(library) { library_.hush(); }
+  static std::recursive_mutex& mutex() {
+    static std::recursive_mutex result;
+    return result;
+  }
+  std::unique_lock<std::recursive_mutex> lock_{mutex()};
+  const Library& library_;
+};
+
+/// Locked until the end of the expression that this is in.
+Locked library() {
   static const Library result;
-  return result;
+  return Locked(result);
 }
 
 }  // namespace
 
 NetcdfFile::NetcdfFile(const std::string& path) : path_(path) {
   require_classic_header(path);
+  try {
+    library();
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(path + ": " + e.what());
+  }
   // Absolute, so that no name of a file is taken for an address.
-  if (const int status = library().open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
-    throw std::runtime_error(path + ": not to be opened as NetCDF: " + library().strerror(status) + "; cut off?");
+  if (const int status = library()->open(std::filesystem::absolute(path).c_str(), NC_NOWRITE, &id_); status != NC_NOERR)
+    throw std::runtime_error(path + ": not to be opened as NetCDF: " + library()->strerror(status) + "; cut off?");
 }
 
-NetcdfFile::~NetcdfFile() { library().close(id_); }
+NetcdfFile::~NetcdfFile() { library()->close(id_); }
 
 void NetcdfFile::require(int status, const std::string& what) const {
-  if (status != NC_NOERR) throw std::runtime_error(path_ + ": " + what + ": " + library().strerror(status));
+  if (status != NC_NOERR) throw std::runtime_error(path_ + ": " + what + ": " + library()->strerror(status));
 }
 
 std::optional<NetcdfVariable> NetcdfFile::variable(const std::string& name) const {
   NetcdfVariable result{name, 0, {}, {}};
-  const int status = library().inq_varid(id_, name.c_str(), &result.id);
+  const int status = library()->inq_varid(id_, name.c_str(), &result.id);
   if (status == NC_ENOTVAR) return {};
   require(status, name);
   nc_type type = NC_NAT;
   int count = 0;
-  require(library().inq_var(id_, result.id, nullptr, &type, &count, nullptr, nullptr), name);
+  require(library()->inq_var(id_, result.id, nullptr, &type, &count, nullptr, nullptr), name);
   result.dimensions.resize(static_cast<std::size_t>(count));
-  require(library().inq_vardimid(id_, result.id, result.dimensions.data()), name);
+  require(library()->inq_vardimid(id_, result.id, result.dimensions.data()), name);
   if (type == NC_CHAR || type == NC_STRING || type > NC_STRING) throw error(name, "holds no numbers");
   for (const char* packed : {"scale_factor", "add_offset"})
-    if (library().inq_att(id_, result.id, packed, nullptr, nullptr) == NC_NOERR)
+    if (library()->inq_att(id_, result.id, packed, nullptr, nullptr) == NC_NOERR)
       throw error(name, std::string(packed) + ": packed numbers cannot be read; write them unpacked");
   result.missing = missing_values(name, result.id, type);
   return result;
@@ -109,10 +144,10 @@ std::vector<double> NetcdfFile::missing_values(const std::string& name, int id, 
   bool filled = false;
   for (const char* attribute : {"_FillValue", "missing_value"}) {
     std::size_t length = 0;
-    if (library().inq_attlen(id_, id, attribute, &length) != NC_NOERR || length == 0) continue;
+    if (library()->inq_attlen(id_, id, attribute, &length) != NC_NOERR || length == 0) continue;
     if (length > most) throw error(name, std::string(attribute) + " has " + std::to_string(length) + " values");
     std::vector<double> values(length);
-    require(library().get_att_double(id_, id, attribute, values.data()), name + ": " + attribute);
+    require(library()->get_att_double(id_, id, attribute, values.data()), name + ": " + attribute);
     filled = filled || attribute[0] == '_';
     result.insert(result.end(), values.begin(), values.end());
   }
@@ -126,13 +161,13 @@ std::vector<double> NetcdfFile::missing_values(const std::string& name, int id, 
 
 std::size_t NetcdfFile::length(int dimension) const {
   std::size_t result = 0;
-  require(library().inq_dimlen(id_, dimension, &result), "a dimension");
+  require(library()->inq_dimlen(id_, dimension, &result), "a dimension");
   return result;
 }
 
 std::string NetcdfFile::dimension_name(int dimension) const {
   std::array<char, NC_MAX_NAME + 1> name{};
-  require(library().inq_dimname(id_, dimension, name.data()), "a dimension");
+  require(library()->inq_dimname(id_, dimension, name.data()), "a dimension");
   return name.data();
 }
 
@@ -141,17 +176,17 @@ std::string NetcdfFile::text(const NetcdfVariable& variable, const std::string& 
   for (const int where : {variable.id, NC_GLOBAL}) {
     nc_type type = NC_NAT;
     std::size_t length = 0;
-    if (library().inq_att(id_, where, attribute.c_str(), &type, &length) != NC_NOERR) continue;
+    if (library()->inq_att(id_, where, attribute.c_str(), &type, &length) != NC_NOERR) continue;
     if (type == NC_CHAR && length <= longest) {
       std::string result(length, '\0');
-      require(library().get_att_text(id_, where, attribute.c_str(), result.data()), attribute);
+      require(library()->get_att_text(id_, where, attribute.c_str(), result.data()), attribute);
       return result.substr(0, result.find('\0'));
     }
     if (type == NC_STRING && length == 1) {
       char* one = nullptr;
-      require(library().get_att_string(id_, where, attribute.c_str(), &one), attribute);
+      require(library()->get_att_string(id_, where, attribute.c_str(), &one), attribute);
       const std::string result = one == nullptr ? "" : one;
-      library().free_string(1, &one);
+      library()->free_string(1, &one);
       return result;
     }
     throw error(variable.name, "attribute " + attribute + " is no text");
@@ -161,9 +196,9 @@ std::string NetcdfFile::text(const NetcdfVariable& variable, const std::string& 
 
 void NetcdfFile::read(const NetcdfVariable& variable, const std::vector<std::size_t>& start,
                       const std::vector<std::size_t>& count, std::span<double> values) const {
-  const int status = library().get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
+  const int status = library()->get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
   if (status != NC_NOERR && status != NC_ERANGE)
-    throw error(variable.name, std::string(library().strerror(status)) + ": cut off?");
+    throw error(variable.name, std::string(library()->strerror(status)) + ": cut off?");
   for (double& value : values)
     if (std::ranges::find(variable.missing, value) != variable.missing.end())
       value = std::numeric_limits<double>::quiet_NaN();

@@ -133,6 +133,11 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
   return how("pthread_create") == How::well ? next(thread, attributes, run, argument) : EAGAIN;
 }
 
+void* dlopen(const char* name, int mode) {
+  static const auto next = real<void* (*)(const char*, int)>("dlopen");
+  return how("dlopen") == How::well ? next(name, mode) : nullptr;
+}
+
 void* malloc(std::size_t size) { return has_memory() ? __libc_malloc(size) : nullptr; }
 
 void* calloc(std::size_t count, std::size_t size) { return has_memory() ? __libc_calloc(count, size) : nullptr; }

@@ -2,6 +2,7 @@
 """Files that Python tools of the field write, made samples by the program."""
 import os
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -71,3 +72,39 @@ def test_what_a_file_does_not_say_is_asked_for(tmp_path):
         mmbrdf.load(tmp_path / "x.astm")
     with pytest.raises(FileNotFoundError):
         mmbrdf.read_foreign(tmp_path / "nowhere")
+
+
+@pytest.fixture
+def netcdf(tmp_path):
+    pytest.importorskip("netCDF4")
+    array = mmbrdf.material("ptfe").evaluate(532, [10.0, 20, 30], 0, [[0.0], [20], [40]], 180, as_xarray=True)
+    array.to_netcdf(tmp_path / "x.nc")
+    return tmp_path / "x.nc"
+
+
+def test_many_threads_read_netcdf_at_once_and_in_turn(netcdf, tmp_path):
+    # In a process of its own: what goes wrong ends it, or fills its standard error.
+    code = (
+        "import sys, mmbrdf\n"
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "mmbrdf.read_foreign(sys.argv[1])\n"
+        "with ThreadPoolExecutor(8) as pool:\n"
+        "    print(sum(len(data) for data in pool.map(mmbrdf.read_foreign, [sys.argv[1]] * 400)))\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code, netcdf], capture_output=True, text=True)
+    assert (run.returncode, run.stdout, run.stderr) == (0, "3600\n", "")
+
+
+def test_without_the_library_a_netcdf_file_is_refused_with_what_to_install(netcdf, tmp_path):
+    program = os.environ["MMBRDF_PROGRAM"]
+    failing = os.path.join(os.path.dirname(program), "tests", "libfailing.so")
+    if not os.path.exists(failing):
+        pytest.skip("no library that makes calls fail: tests are not built")
+    environment = dict(os.environ, LD_PRELOAD=failing, FAIL="dlopen:1:error")
+    run = subprocess.run(
+        [program, "convert", netcdf, tmp_path / "x.csv"], env=environment, capture_output=True, text=True
+    )
+    assert run.returncode == 1
+    assert run.stderr.startswith(f"mmbrdf: {netcdf}: a NetCDF file, but libnetcdf")
+    assert run.stderr.endswith("install netCDF-C (Debian: libnetcdf19)\n")
+    assert not (tmp_path / "x.csv").exists()
