@@ -59,6 +59,7 @@ void register_evaluation();
 void register_batches();
 void register_analysis();
 void register_reduction();
+void register_sampling();
 void register_uncertainty();
 
 }  // namespace mmbrdf::bench

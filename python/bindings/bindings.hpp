@@ -116,5 +116,6 @@ void bind_radiometry(py::module_& m);
 void bind_polarimeter(py::module_& m);
 void bind_measuring(py::module_& m);
 void bind_report(py::module_& m);
+void bind_sampling(py::module_& m);
 
 }  // namespace mmbrdf::python

@@ -42,4 +42,5 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_plan(m);
   bind_diagnostics(m);
   bind_report(m);
+  bind_sampling(m);
 }

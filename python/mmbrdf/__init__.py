@@ -60,6 +60,15 @@ class Geometry(_NamedTuple):
     phi_r_deg: _Array
 
 
+class SampledDirections(_NamedTuple):
+    """Scattered directions that were drawn: what DirectionSampler.sample() gives. Arrays of one shape."""
+
+    theta_r_deg: _Array
+    phi_r_deg: _Array
+    pdf: _Array
+    """Per solid angle, sr^-1."""
+
+
 class PolarizedBrdf(_NamedTuple):
     """BRDFs between linear polarizations; the first letter is the incident one. Arrays of one shape."""
 

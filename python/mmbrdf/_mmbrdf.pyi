@@ -28,6 +28,25 @@ class Block:
     @property
     def condition(self) -> float: ...
 
+class DirectionSampler:
+    def __init__(self, model: Model, wavelength_nm: float | None = None) -> None: ...
+    def sample(
+        self, theta_i_deg: ArrayLike, phi_i_deg: ArrayLike, u1: ArrayLike, u2: ArrayLike
+    ) -> mmbrdf.SampledDirections: ...
+    def pdf(
+        self, theta_i_deg: ArrayLike, phi_i_deg: ArrayLike, theta_r_deg: ArrayLike, phi_r_deg: ArrayLike
+    ) -> float | NDArray[np.float64]: ...
+    def weight(
+        self,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        pdf: ArrayLike,
+        *,
+        frame: str = ...,
+    ) -> NDArray[np.float64]: ...
+
 class Model:
     @property
     def name(self) -> str: ...

@@ -11,6 +11,7 @@
 
 #include "mmbrdf/model/batch.hpp"
 #include "model/kernel/plan.hpp"
+#include "model/unit_vectors.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -21,10 +22,8 @@ constexpr double largest_at_a_wavelength = 1e100;  // largest_coefficient × (1 
 
 /// A vector of length 1 to 1e-6 with exactly that length.
 Vector3 normalized(const Vector3& v) {
+  require_unit_vector(v);
   const double length = std::hypot(v[0], v[1], v[2]);
-  if (!(std::abs(length - 1) < 1e-6) || v[2] < 0)
-    throw std::invalid_argument("(" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) +
-                                ") is not a unit vector with z >= 0");
   return {v[0] / length, v[1] / length, v[2] / length};
 }
 
@@ -41,6 +40,7 @@ PreparedModel prepare(const Model& model, double wavelength) {
   pattern->reflectance = model.reflectance;
   pattern->validity = model.validity;
   pattern->unknown = unknown_elements(model);
+  pattern->isotropic_f11 = model.family == Family::isotropic || turns(model);
   for (const FittedBlock& fitted : model.blocks)
     for (const Mode& mode : fitted.block.modes) {
       for (const Term& term : terms(mode, model.family)) pattern->terms.push_back(term);

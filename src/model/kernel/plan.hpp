@@ -48,7 +48,8 @@ struct PreparedPattern {
   DiscMapping mapping;
   ReflectanceTable reflectance;
   Validity validity;
-  Elements unknown;  ///< in the frame xy
+  Elements unknown;            ///< in the frame xy
+  bool isotropic_f11 = false;  ///< it depends on phi_r − phi_i alone, and not on its sign
 
   std::size_t modes() const { return terms_end.size() - 1; }
 };
