@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "numerics/gram.hpp"
 
+#include "numerics/best_kernel.hpp"
+
 namespace mmbrdf {
 
 #ifdef MMBRDF_X86
@@ -13,12 +15,13 @@ extern const GramKernel gram;
 }
 
 const GramKernel& gram_kernel() {
+  static constexpr const GramKernel* list[] = {
 #ifdef MMBRDF_X86
-  static const GramKernel& best = avx2::gram.runs_here() ? avx2::gram : baseline::gram;
-  return best;
-#else
-  return baseline::gram;
+      &avx2::gram,
 #endif
+      &baseline::gram};
+  static const GramKernel& best = first_that_runs<GramKernel>(list);
+  return best;
 }
 
 }  // namespace mmbrdf

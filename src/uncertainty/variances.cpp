@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/kernel/plan.hpp"
+#include "numerics/best_kernel.hpp"
 #include "numerics/eigen_index.hpp"
 #include "uncertainty/variances_some.hpp"
 
@@ -30,15 +31,18 @@ namespace baseline {
 extern const VariancesKernel variances_kernel;
 }
 
-const VariancesKernel& variances_kernel() {
+std::span<const VariancesKernel* const> variances_kernels() {
+  static constexpr const VariancesKernel* list[] = {
 #ifdef MMBRDF_X86
-  static const VariancesKernel& best = avx512::variances_kernel.runs_here() ? avx512::variances_kernel
-                                       : avx2::variances_kernel.runs_here() ? avx2::variances_kernel
-                                                                            : baseline::variances_kernel;
-  return best;
-#else
-  return baseline::variances_kernel;
+      &avx512::variances_kernel, &avx2::variances_kernel,
 #endif
+      &baseline::variances_kernel};
+  return list;
+}
+
+const VariancesKernel& best_variances_kernel() {
+  static const VariancesKernel& best = first_that_runs(variances_kernels());
+  return best;
 }
 
 namespace {

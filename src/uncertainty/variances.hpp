@@ -12,8 +12,11 @@
 
 namespace mmbrdf {
 
-/// The best that runs here.
-const VariancesKernel& variances_kernel();
+/// Every one of this build, the fastest first; not all of them need run here. For tests.
+std::span<const VariancesKernel* const> variances_kernels();
+
+/// The first that runs here.
+const VariancesKernel& best_variances_kernel();
 
 /// A symmetric matrix as the kernel reads it.
 class Packed {

@@ -48,7 +48,7 @@ inline constexpr std::array<std::array<std::size_t, 2>, 4> left_pairs{{{4, 8}, {
 /// Some geometries, and what is known of them. Number e of geometry g is at [e × stride + g]. Rows of elements stand side
 /// by side: column j of the element at place p is at [j × row_stride + p × count + g].
 struct Variances::Some {
-  const VariancesKernel& kernel = variances_kernel();
+  const VariancesKernel& kernel = best_variances_kernel();
   long count = 0, stride = 0;  // the latter a whole number of registers
   long row_stride = 0, row_count = 0;
   bool mixes = false;  // a turn of the axes

@@ -22,6 +22,7 @@
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/expanded.hpp"
+#include "uncertainty/variances.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -237,6 +238,88 @@ TEST(Variances, OfWhatIsZeroBySymmetryAreZero) {
     EXPECT_GT(u(0, 0), 0);
     for (const auto& [row, column] : {std::pair(0, 3), {3, 0}, {0, 2}, {2, 0}, {1, 2}})
       EXPECT_LT(u(row, column), 1e-15);
+  }
+}
+
+std::vector<double> random_numbers(std::size_t count, unsigned long seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> any(-1, 1);
+  std::vector<double> result(count);
+  for (double& x : result) x = any(engine);
+  return result;
+}
+
+/// A sum of products, and of their sizes, in extended precision.
+struct Sum {
+  long double value = 0, size = 0;
+  void add(long double term) { value += term, size += std::abs(term); }
+};
+
+TEST(VariancesKernel, OfEveryInstructionSetAgreesWithSumsInExtendedPrecision) {
+  constexpr long most = 40;  // columns; a whole number of registers of geometries, tiles and what is left of them
+  for (const VariancesKernel* kernel : variances_kernels()) {
+    if (!kernel->runs_here()) continue;
+    for (const long columns : {4L, 12L, most})
+      for (const long count : {1 * kernel->width, 3 * kernel->width, 24L}) {
+        const std::vector<double> h = random_numbers(static_cast<std::size_t>(columns * count), 3);
+        const auto n = static_cast<Eigen::Index>(columns);
+        const std::vector<double> entries = random_numbers(static_cast<std::size_t>(n * n), 4);
+        const Eigen::MatrixXd any = Eigen::Map<const Eigen::MatrixXd>(entries.data(), n, n), v = any + any.transpose();
+        const Packed packed(v);
+        std::vector<double> found(static_cast<std::size_t>(count)), products(h.size()), dots(found.size());
+        kernel->variances(found.data(), h.data(), packed.view(), count, count);
+        kernel->products(products.data(), h.data(), packed.view(), count, count);
+        kernel->dots(dots.data(), h.data(), products.data(), columns, count, count);
+        for (long g = 0; g < count; ++g) {
+          Sum all;
+          for (long j = 0; j < columns; ++j) {
+            Sum row;
+            for (long k = 0; k < columns; ++k)
+              row.add(static_cast<long double>(v(j, k)) * h[static_cast<std::size_t>(k * count + g)]);
+            const auto at = static_cast<std::size_t>(j * count + g);
+            EXPECT_LE(std::abs(products[at] - row.value), static_cast<long double>(columns) * 0x1p-52L * row.size);
+            all.add(row.value * h[at]);
+            all.size += row.size * std::abs(h[at]);
+          }
+          const auto at = static_cast<std::size_t>(g);
+          const long double rounding = static_cast<long double>(2 * columns) * 0x1p-52L * all.size;
+          EXPECT_LE(std::abs(found[at] - all.value), rounding) << columns << ' ' << count;
+          EXPECT_LE(std::abs(dots[at] - all.value), rounding) << columns << ' ' << count;
+        }
+      }
+  }
+}
+
+TEST(VariancesKernel, OfEveryInstructionSetHasTheFunctionsAndAnglesOfTheLibrary) {
+  constexpr int order = 7;
+  constexpr long count = 24;
+  const std::vector<double> numbers = random_numbers(3 * count, 5);
+  std::vector<double> theta, phi;
+  for (long g = 0; g < count; ++g) {
+    theta.push_back(std::abs(numbers[static_cast<std::size_t>(g)]) * std::numbers::pi / 2);
+    phi.push_back(10 * numbers[static_cast<std::size_t>(count + g)]);
+  }
+  for (const VariancesKernel* kernel : variances_kernels()) {
+    if (!kernel->runs_here()) continue;
+    for (const DiscMapping mapping : {DiscMapping::lambert, DiscMapping::projected}) {
+      std::vector<double> k(static_cast<std::size_t>(zernike_count(order) * count));
+      kernel->functions(k.data(), order, mapping == DiscMapping::projected, theta.data(), phi.data(), count, count);
+      for (long g = 0; g < count; ++g)
+        for (int n = 0; n <= order; ++n)
+          for (int m = -n; m <= n; m += 2) {
+            const auto at = static_cast<std::size_t>(g);
+            const double norm = std::sqrt((n + 1) / std::numbers::pi / (m == 0 ? 2 : 1));
+            EXPECT_NEAR(norm * k[static_cast<std::size_t>(zernike_index(n, m) * count + g)],
+                        zernike(n, m, {theta[at], phi[at]}, mapping), 2 * table_error * norm)
+                << n << ' ' << m;
+          }
+    }
+    std::vector<double> cosine(count), sine(count);
+    kernel->double_angles(cosine.data(), sine.data(), phi.data(), count);
+    for (std::size_t g = 0; g < count; ++g) {
+      EXPECT_NEAR(cosine[g], std::cos(2 * phi[g]), 1e-15);
+      EXPECT_NEAR(sine[g], std::sin(2 * phi[g]), 1e-15);
+    }
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/kernel/kernels.hpp"
 
-#include <algorithm>
+#include "numerics/best_kernel.hpp"
 
 namespace mmbrdf {
 
@@ -27,8 +27,7 @@ std::span<const Kernel* const> kernels() {
 }
 
 const Kernel& best_kernel() {
-  static const Kernel& best =
-      **std::find_if(kernels().begin(), kernels().end(), [](const Kernel* kernel) { return kernel->runs_here(); });
+  static const Kernel& best = first_that_runs(kernels());
   return best;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "polarimetry/kernel/reduction_kernels.hpp"
 
-#include <algorithm>
+#include "numerics/best_kernel.hpp"
 
 namespace mmbrdf {
 
@@ -27,8 +27,7 @@ std::span<const ReductionKernel* const> reduction_kernels() {
 }
 
 const ReductionKernel& best_reduction_kernel() {
-  static const ReductionKernel& best =
-      **std::ranges::find_if(reduction_kernels(), [](const ReductionKernel* kernel) { return kernel->runs_here(); });
+  static const ReductionKernel& best = first_that_runs(reduction_kernels());
   return best;
 }
 

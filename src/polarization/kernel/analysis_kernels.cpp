@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "polarization/kernel/analysis_kernels.hpp"
 
-#include <algorithm>
+#include "numerics/best_kernel.hpp"
 
 namespace mmbrdf {
 
@@ -27,8 +27,7 @@ std::span<const AnalysisKernel* const> analysis_kernels() {
 }
 
 const AnalysisKernel& best_analysis_kernel() {
-  static const AnalysisKernel& best =
-      **std::ranges::find_if(analysis_kernels(), [](const AnalysisKernel* kernel) { return kernel->runs_here(); });
+  static const AnalysisKernel& best = first_that_runs(analysis_kernels());
   return best;
 }
 
