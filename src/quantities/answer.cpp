@@ -91,8 +91,8 @@ Answered in_first_order(const Quantity& quantity, const Mueller& m_sp, const Sto
     const double value = quantity.value(m, light);
     if (error) {
       const Mueller gradient = quantity.gradient(m, light);
+      answered.uncertainty = standard_uncertainty(gradient, error->total);
       if (error->budget) answered.parts = parts(gradient, *error->budget);
-      answered.uncertainty = error->budget ? answered.parts.back() : standard_uncertainty(gradient, error->total);
     }
     answered.value = value;
   } catch (const std::invalid_argument&) {
@@ -233,20 +233,17 @@ class PreparedAnswers::Block {
   void find_errors() {
     if (!prepared_.uncertainty) return;
     const AnswerOptions& options = prepared_.asked->options;
-    std::vector<MuellerCovariance> of_fit;
-    if (!options.parts) of_fit = covariances(geometries_, Frame::sp);
+    const std::vector<MuellerCovariance> of_fit = covariances(geometries_, Frame::sp);
     for (std::size_t g = 0; g < geometries_.size(); ++g) {
       const Geometry& geometry = geometries_[g];
       if (!has_limit(options.terms, geometry)) continue;
       Error& error = errors_[g].emplace();
-      if (!options.parts || !prepared_.draws.empty()) error.effects = effects_of_terms(geometry, Frame::sp);
-      if (options.parts) {
-        error.budget = budget(prepared_.model, *prepared_.uncertainty, options.terms, geometry, Frame::sp);
-        error.total = error.budget->total;
-        continue;
-      }
+      error.effects = effects_of_terms(geometry, Frame::sp);
       error.total = of_fit[g];
       for (const Mueller& effect : error.effects) add(error.total, effect);
+      if (!options.parts) continue;
+      error.budget = budget(prepared_.model, *prepared_.uncertainty, options.terms, geometry, Frame::sp);
+      error.budget->total = error.total;  // the bits of an answer without parts
     }
   }
 

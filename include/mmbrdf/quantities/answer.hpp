@@ -28,7 +28,7 @@ struct AnswerOptions {
   std::optional<Stokes> light = {};  ///< incident; with it come the quantities that take light
   int draws = 0;                     ///< 0: uncertainties in first order
   unsigned long seed = 0;
-  bool parts = true;  ///< false: no budgets and no parts of uncertainties, only what all of it gives
+  bool parts = true;  ///< false: no budgets and no parts of uncertainties, only what all of it gives, in the same bits
 };
 
 /// A quantity: no value where it has no meaning or an element that it needs was not measured, no uncertainty where it is not known.
@@ -58,7 +58,7 @@ class PreparedAnswers {
   /// Throws std::invalid_argument for an invalid geometry, and as budget() does.
   Answer at(const Geometry& geometry) const;
 
-  /// Of many geometries, the same to rounding: variances to batch_error (prediction.hpp).
+  /// Of many geometries, with the same bits.
   std::vector<Answer> at(std::span<const Geometry> geometries) const;
 
  private:
