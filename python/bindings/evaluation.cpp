@@ -158,15 +158,15 @@ py::object estimable(const Question& question, int threads) {
 }
 
 py::object evaluate_draws(const Question& question, Frame frame, int count, unsigned long seed, int threads) {
+  const Draws draws = without_gil([&] { return Draws(question.model(), count, seed); });  // refuses a count
   std::vector<py::ssize_t> shape = question.broadcast().shape();
-  shape.insert(shape.begin(), count > 0 ? count : 0);
+  shape.insert(shape.begin(), count);
   shape.insert(shape.end(), {4, 4});
   py::array_t<double> result(shape);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());
   const std::size_t size = question.broadcast().size();
   Range range(question.object());
   without_gil([&] {
-    const Draws draws(question.model(), count, seed);
     question.each(
         threads, 16, [&](double wavelength) { return draws.at(wavelength); },
         [&](const std::vector<PreparedModel>& models, const Some& some) {

@@ -247,9 +247,10 @@ void bind_instrument(py::module_& m) {
            "by\n"
            "least squares, in the frame scattering_plane. Readings are dark-subtracted and divided by monitor and "
            "gain.\n"
-           "NaN: the readings do not determine that element. An array of float32 gives one of float32, of the same "
-           "numbers\n"
-           "rounded. invalid='nan' makes NaN of matrices with a reading that is not finite, instead of an error.")
+           "NaN: the readings do not determine that element. An array of float32, in the bytes' order of the "
+           "machine, gives\n"
+           "one of float32, of the same numbers rounded. invalid='nan' makes NaN of matrices with a reading that is "
+           "not finite, instead of an error.")
       .def("covariance", reduced_covariance, py::arg("variances"),
            "Of the sixteen elements, from independent readings with these variances: array (..., 16, 16), NaN as "
            "reduce()")
