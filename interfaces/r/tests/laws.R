@@ -42,7 +42,7 @@ stopifnot(all(reflectance$dhr > 0.9), all(reflectance$u_dhr > 0))
 
 # Of a model without a covariance no uncertainty is known: NA, not NaN.
 published <- tempfile(fileext = ".csv")
-writeLines(c("i,j,n,k,m,l,p,a", "1,1,0,0,0,0,0,1"), published)
+writeLines("1,1,0,0,0,0,0,1", published)
 plain <- load_model(published)
 u <- evaluate_uncertainty(plain, 532, 45, 0, theta, 180)
 stopifnot(all(is.na(u)), !any(is.nan(u)))
