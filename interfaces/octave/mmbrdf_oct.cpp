@@ -86,7 +86,9 @@ octave_value_list analyze(const octave_value_list& args) {
   const NDArray geometries = args(2).array_value();
   const string_vector names = args(3).xstring_vector_value("mmbrdf: names must be texts");
   std::vector<const char*> pointers;
-  for (octave_idx_type k = 0; k < names.numel(); ++k) pointers.push_back(names.elem(k).c_str());
+  std::vector<std::string> texts;
+  for (octave_idx_type k = 0; k < names.numel(); ++k) texts.push_back(names(k));
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
   const octave_idx_type n = geometries.columns();
   Matrix values(n, names.numel()), u(n, names.numel());
   mmbrdf_error e;
@@ -113,8 +115,8 @@ octave_value_list outside(const octave_value_list& args) {
   int32NDArray result(dim_vector(1, geometries.columns()));
   mmbrdf_error e;
   const Prepared at = prepared(args(0), args(1).double_value());
-  check(mmbrdf_outside(at.get(), geometries.columns(), geometries.data(),
-                       reinterpret_cast<int*>(result.fortran_vec()), &e),
+  check(mmbrdf_outside(at.get(), geometries.columns(), geometries.data(), reinterpret_cast<int*>(result.fortran_vec()),
+                       &e),
         e);
   return ovl(result);
 }

@@ -3,8 +3,8 @@
 #include <mmbrdf.h>
 #define R_NO_REMAP
 #include <R.h>
-#include <Rinternals.h>
 #include <R_ext/Rdynload.h>
+#include <Rinternals.h>
 
 static void check(int code, const mmbrdf_error* error) {
   if (code != MMBRDF_OK) Rf_error("%s", error->message);
@@ -123,8 +123,8 @@ static SEXP evaluate(SEXP model, SEXP wavelength_nm, SEXP ti, SEXP pi, SEXP tr, 
   return matrices(mmbrdf_evaluate, model, wavelength_nm, degrees, frame, convention, threads);
 }
 
-static SEXP uncertainty(SEXP model, SEXP wavelength_nm, SEXP ti, SEXP pi, SEXP tr, SEXP pr, SEXP frame,
-                        SEXP convention, SEXP threads) {
+static SEXP uncertainty(SEXP model, SEXP wavelength_nm, SEXP ti, SEXP pi, SEXP tr, SEXP pr, SEXP frame, SEXP convention,
+                        SEXP threads) {
   const SEXP degrees[4] = {ti, pi, tr, pr};
   return matrices(mmbrdf_standard_uncertainty, model, wavelength_nm, degrees, frame, convention, threads);
 }
@@ -239,19 +239,12 @@ static SEXP known_elements(SEXP model, SEXP frame) {
   return result;
 }
 
-#define ENTRY(name, arguments) {#name, (DL_FUNC)(void (*)(void))&name, arguments}
-static const R_CallMethodDef entries[] = {ENTRY(materials, 0),
-                                          ENTRY(material, 1),
-                                          ENTRY(load_model, 1),
-                                          ENTRY(describe, 1),
-                                          ENTRY(known_elements, 2),
-                                          ENTRY(quantities, 0),
-                                          ENTRY(evaluate, 9),
-                                          ENTRY(uncertainty, 9),
-                                          ENTRY(analyze, 8),
-                                          ENTRY(outside, 6),
-                                          ENTRY(dhr, 4),
-                                          {NULL, NULL, 0}};
+#define ENTRY(name, arguments) \
+  { #name, (DL_FUNC)(void (*)(void)) & name, arguments }
+static const R_CallMethodDef entries[] = {
+    ENTRY(materials, 0),      ENTRY(material, 1),   ENTRY(load_model, 1), ENTRY(describe, 1),
+    ENTRY(known_elements, 2), ENTRY(quantities, 0), ENTRY(evaluate, 9),   ENTRY(uncertainty, 9),
+    ENTRY(analyze, 8),        ENTRY(outside, 6),    ENTRY(dhr, 4),        {NULL, NULL, 0}};
 
 void R_init_mmbrdf(DllInfo* library) {
   R_registerRoutines(library, NULL, entries, NULL, NULL);
