@@ -11,8 +11,6 @@ function geometries_rad = mmbrdf_geometries (varargin)
   if (different)
     error ("mmbrdf: angles must be numbers or arrays of one size");
   endif
-  geometries_rad = zeros (nargin, numel (varargin{1}));
-  for k = 1:nargin
-    geometries_rad(k, :) = double (varargin{k}(:)) * (pi / 180);
-  endfor
+  rows = cellfun (@(angle) double (angle(:)).', varargin, "UniformOutput", false);
+  geometries_rad = vertcat (rows{:}) * (pi / 180);
 endfunction

@@ -33,7 +33,7 @@ recycled <- function(...) {
         stop(name, " has ", length(x), " values, must have 1 or ", n, call. = FALSE)
       given[[name]] <- rep(x, length.out = n)
     }
-    storage.mode(given[[name]]) <- "double"
+    if (!is.double(x)) given[[name]] <- as.double(given[[name]])
   }
   given
 }

@@ -65,15 +65,20 @@ static SEXP prepared_at(SEXP model, SEXP wavelength_nm) {
 
 /* ---- numbers in and out -------------------------------------------------------------------------------------------*/
 
-/* Vectors of one length, as the library takes them: one geometry, or direction, behind the other. */
+/* Elements first ... first + n - 1 of vectors of one length, as the library takes them: one geometry, or direction, behind
+ * the other. */
+static void convert(const SEXP* degrees, int count, R_xlen_t first, R_xlen_t n, double* radians) {
+  const double radian = 3.14159265358979323846 / 180;
+  for (int c = 0; c < count; ++c) {
+    const double* from = REAL(degrees[c]) + first;
+    for (R_xlen_t q = 0; q < n; ++q) radians[count * q + c] = from[q] * radian;
+  }
+}
+
 static double* radians(const SEXP* degrees, int count) {
   const R_xlen_t n = XLENGTH(degrees[0]);
-  const double radian = 3.14159265358979323846 / 180;
   double* result = (double*)R_alloc((size_t)n * (size_t)count, sizeof(double));
-  for (int c = 0; c < count; ++c) {
-    const double* from = REAL(degrees[c]);
-    for (R_xlen_t q = 0; q < n; ++q) result[count * q + c] = from[q] * radian;
-  }
+  convert(degrees, count, 0, n, result);
   return result;
 }
 
@@ -106,8 +111,16 @@ static SEXP matrices(of_matrices ask, SEXP model, SEXP wavelength_nm, const SEXP
   SEXP dim = PROTECT(Rf_allocVector(INTSXP, 3));
   INTEGER(dim)[0] = INTEGER(dim)[1] = 4;
   INTEGER(dim)[2] = (int)n;
-  check(ask(R_ExternalPtrAddr(prepared), n, radians(degrees, 4), &layout, Rf_asInteger(threads), REAL(result), &error),
-        &error);
+  /* In pieces that stay in the cache: new memory for all would take longer than to compute. */
+  enum { most = 65536 };
+  double* some = (double*)R_alloc(4 * (size_t)(n < most ? n : most), sizeof(double));
+  for (R_xlen_t first = 0; first < n; first += most) {
+    const R_xlen_t count = n - first < most ? n - first : most;
+    convert(degrees, 4, first, count, some);
+    if (ask(R_ExternalPtrAddr(prepared), count, some, &layout, Rf_asInteger(threads), REAL(result) + 16 * first,
+            &error))
+      check(ask(R_ExternalPtrAddr(prepared), n, radians(degrees, 4), &layout, 1, REAL(result), &error), &error);
+  }
   int known[16], all = 1;
   check(mmbrdf_known_elements(model_of(model), &layout, known, &error), &error);
   for (int e = 0; e < 16; ++e) all &= known[e];

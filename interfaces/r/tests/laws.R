@@ -14,6 +14,9 @@ stopifnot(identical(dim(f), c(4L, 4L, 4L)), !anyNA(f))
 # A vector is its elements, one by one.
 for (q in 1:4) stopifnot(identical(f[, , q], evaluate(ptfe, 532, 45, 0, theta[q], 180, frame = "sp")[, , 1]))
 
+many <- seq(0, 80, length.out = 70000)   # in pieces, on all cores
+stopifnot(identical(evaluate(ptfe, 532, 45, 0, many, 180)[, , 69999], evaluate(ptfe, 532, 45, 0, many[69999], 180)[, , 1]))
+
 # Reciprocity: source and detector exchanged transpose the matrix and turn the sign of 13, 23, 34 and their transposes.
 signs <- outer(c(1, 1, -1, 1), c(1, 1, -1, 1))
 exchanged <- evaluate(ptfe, 532, 60, 180, 45, 0, frame = "sp")[, , 1]
@@ -51,6 +54,7 @@ stopifnot(identical(dim(evaluate(ptfe, 532, numeric(), 0, 30, 180)), c(4L, 4L, 0
 refused(material("nowhere"), "'nowhere' is not one of ptfe")
 refused(load_model("nowhere.json"), "No such file")
 refused(evaluate(ptfe, 532, 95, 0, 30, 180), "geometry 1: theta_i = 95")
+refused(evaluate(ptfe, 532, c(rep(5, 70000), 95), 0, 30, 180), "geometry 70001: theta_i = 95")   # in the second piece
 refused(evaluate(ptfe, 532, c(1, NA), 0, 30, 180), "theta_i_deg[2] is NA")
 refused(evaluate(ptfe, 532, 1:2, 0, 1:3, 180), "theta_i_deg has 2 values, must have 1 or 3")
 refused(evaluate(ptfe, 532, "45", 0, 30, 180), "theta_i_deg must be numeric")
