@@ -92,7 +92,10 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 template <class Handle, class Make>
 int made(Handle** handle, const char* name, mmbrdf_error* error, Make make) noexcept {
   if (handle) *handle = nullptr;
-  return guarded(error, [&] { required(handle, name) = make().release(); });
+  return guarded(error, [&] {
+    Handle*& to = required(handle, name);
+    to = make().release();
+  });
 }
 
 const std::vector<std::string>& material_names() {

@@ -4,6 +4,7 @@
 #include <octave/interpreter.h>
 #include <octave/oct.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -65,19 +66,36 @@ octave_value_list load(bool built_in, const octave_value& name) {
   return ovl(octave_value(new octave_mmbrdf_model(model)));
 }
 
-/// matrices (model, wavelength_um, geometries_rad (4, n), frame, convention, threads)
+/// matrices (model, wavelength_um, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, frame, convention, threads), of angles of
+/// one size. In pieces that stay in the cache: new memory for all would take longer than to compute.
 octave_value_list matrices(decltype(&mmbrdf_evaluate) ask, const octave_value_list& args) {
-  const NDArray geometries = args(2).array_value();
   mmbrdf_layout layout;
   mmbrdf_error e;
-  check(mmbrdf_layout_from(args(3).xstring_value("mmbrdf: frame must be a text").c_str(),
-                           args(4).xstring_value("mmbrdf: convention must be a text").c_str(), MMBRDF_COLUMN_MAJOR,
+  check(mmbrdf_layout_from(args(6).xstring_value("mmbrdf: frame must be a text").c_str(),
+                           args(7).xstring_value("mmbrdf: convention must be a text").c_str(), MMBRDF_COLUMN_MAJOR,
                            &layout, &e),
         e);
-  const octave_idx_type n = geometries.columns();
+  const NDArray degrees[4] = {args(2).array_value(), args(3).array_value(), args(4).array_value(),
+                              args(5).array_value()};
+  const octave_idx_type n = degrees[0].numel();
+  const auto radians = [&](octave_idx_type first, octave_idx_type count, std::vector<double>& out) {
+    constexpr double radian = 3.14159265358979323846 / 180;
+    out.resize(4 * static_cast<std::size_t>(count));
+    double* to = out.data();
+    for (octave_idx_type q = first; q < first + count; ++q)
+      for (const NDArray& angle : degrees) *to++ = angle.data()[q] * radian;
+    return out.data();
+  };
   NDArray result(dim_vector(4, 4, n));
   const Prepared at = prepared(args(0), args(1).double_value());
-  check(ask(at.get(), n, geometries.data(), &layout, args(5).int_value(), result.fortran_vec(), &e), e);
+  std::vector<double> some;
+  constexpr octave_idx_type most = 65536;
+  double* const out = result.fortran_vec();
+  for (octave_idx_type first = 0; first < n; first += most) {
+    const octave_idx_type count = std::min(most, n - first);
+    if (ask(at.get(), count, radians(first, count, some), &layout, args(8).int_value(), out + 16 * first, &e))
+      check(ask(at.get(), n, radians(0, n, some), &layout, 1, out, &e), e);  // which of all is wrong
+  }
   return ovl(result);
 }
 
@@ -147,8 +165,8 @@ DEFUN_DLD(mmbrdf_oct, args, , "Calls of mmbrdf.h; see mmbrdf_evaluate.") {
   const auto is = [&](const char* name, octave_idx_type count) { return call == name && rest.length() == count; };
   if (is("material", 1)) return load(true, rest(0));
   if (is("load_model", 1)) return load(false, rest(0));
-  if (is("evaluate", 6)) return matrices(mmbrdf_evaluate, rest);
-  if (is("uncertainty", 6)) return matrices(mmbrdf_standard_uncertainty, rest);
+  if (is("evaluate", 9)) return matrices(mmbrdf_evaluate, rest);
+  if (is("uncertainty", 9)) return matrices(mmbrdf_standard_uncertainty, rest);
   if (is("analyze", 5)) return analyze(rest);
   if (is("dhr", 3)) return dhr(rest);
   if (is("outside", 3)) return outside(rest);

@@ -27,6 +27,7 @@ endfunction
 refused (@() mmbrdf_material ("nowhere"), "'nowhere' is not one of ptfe");
 refused (@() mmbrdf_load_model ("nowhere.json"), "nowhere.json");
 refused (@() mmbrdf_evaluate (ptfe, 532, 95, 0, 30, 180), "geometry 1: theta_i = 95");
+refused (@() mmbrdf_evaluate (ptfe, 532, [5 * ones(1, 70000), 95], 0, 30, 180), "geometry 70001: theta_i = 95");
 refused (@() mmbrdf_evaluate (ptfe, 532, [1, 2], 0, [1, 2, 3], 180), "arrays of one size");
 refused (@() mmbrdf_evaluate (ptfe, 532, 45, 0, 30, 180, "ps"), "ps");
 refused (@() mmbrdf_evaluate (5, 532, 45, 0, 30, 180), "model must be one of");
