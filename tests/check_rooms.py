@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Every #include points to a room above its own: check_rooms.py ROOT prints those that do not, and fails.
 
-The library's rooms, from the top; rooms on one line do not know each other. Programs, Python, tests and examples
-include what they like of include/, and nothing includes them.
+The library's rooms, from the top; rooms on one line do not know each other. Interfaces, programs, Python, tests and
+examples include what they like of include/, and nothing includes them.
 """
 import pathlib
 import re
@@ -36,6 +36,9 @@ def upward_arrows(root):
                 yield f"{file.relative_to(root)}: in no room that {pathlib.Path(__file__).name} knows"
                 continue
             for line, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+                if re.match(r"\s*#\s*include\s*[<\"](mmbrdf\.h|interfaces/.*)[>\"]", text):
+                    yield f"{file.relative_to(root)}:{line}: {room} includes the interface for C, which is over all rooms"
+                    continue
                 found = re.match(r"\s*#\s*include\s*[<\"](mmbrdf/)?(\w+|\.\.?)/", text)
                 if not found or found[2] == room or (found[2] not in LEVEL and not found[1] and found[2][0] != "."):
                     continue  # a library's header: <Eigen/Core>

@@ -32,6 +32,12 @@ class Rooms(unittest.TestCase):
             self.assertEqual(len(found), 1, line)
             self.assertIn("src/geometry/x.hpp:1: geometry includes", found[0])
 
+    def test_the_interface_for_c_is_over_all_rooms(self):
+        for header in ["<mmbrdf.h>", '"mmbrdf.h"', '"interfaces/c/calls.hpp"']:
+            found = self.faults({"src/files/x.hpp": f"#include {header}\n"})
+            self.assertEqual(len(found), 1, header)
+            self.assertIn("over all rooms", found[0])
+
     def test_arrows_down_and_libraries_are_not(self):
         text = '#include <vector>\n#include <Eigen/Core>\n#include "mmbrdf/geometry/geometry.hpp"\n#include "model/x.hpp"\n'
         self.assertEqual(self.faults({"src/model/y.hpp": text}), [])
