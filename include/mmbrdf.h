@@ -2,16 +2,19 @@
 /* mmbrdf from C, and from all that calls C: evaluates models of Mueller-matrix BRDFs. C99.
  *
  *   mmbrdf_error error;
- *   mmbrdf_model* model;
- *   mmbrdf_prepared* at_532;
+ *   mmbrdf_model* model = NULL;
+ *   mmbrdf_prepared* at_532 = NULL;
  *   const double geometry_rad[4] = {0.785, 0, 0.524, 3.1416};
  *   double matrix[16];
  *   if (mmbrdf_material("ptfe", &model, &error) || mmbrdf_prepare(model, 0.532, &at_532, &error) ||
  *       mmbrdf_evaluate(at_532, 1, geometry_rad, NULL, 1, matrix, &error))
  *     fprintf(stderr, "%s\n", error.message);
+ *   mmbrdf_free_prepared(at_532);
+ *   mmbrdf_free_model(model);
  *
- * Units: angles in radians, wavelengths in micrometres, BRDFs in sr^-1; each name says it. What a geometry, a frame and a
- * convention are is in docs/conventions.md: directions point away from the sample, to the source and to the detector.
+ * Units: angles in radians, wavelengths in micrometres, BRDFs in sr^-1; each name says it. A wavelength of 532 is one of
+ * 532 000 nm and no error: mmbrdf_outside tells. Directions point away from the sample, to the source and to the detector;
+ * phi is counted from x towards y, and forward is phi_r - phi_i = pi. More is in docs/conventions.md.
  *
  * A geometry is four numbers: theta_i, phi_i (to the source), theta_r, phi_r (to the detector); thetas in [0, pi/2]. n of
  * them stand one behind the other, and so do their results. n = 0 asks for nothing, and pointers may be null then.
@@ -97,16 +100,19 @@ typedef struct mmbrdf_layout {
   int order;
 } mmbrdf_layout;
 
+/* Axes of Stokes vectors, by z, the normal, and k, the way the light goes. xy: (y, x) at the normal, carried along the
+ * meridian to the beam. sp: s = z x k / |z x k|, p = k x s; at theta = 0 s follows the phi that was given.
+ * scattering_plane: across, k_in x k_out / |k_in x k_out| of both beams (s where that is 0), and along, k x across. */
 enum { MMBRDF_XY = 0, MMBRDF_SP = 1, MMBRDF_SCATTERING_PLANE = 2 };
 
 /* Stokes vectors: which axis comes first, and the sign of the fourth component. */
 enum {
-  MMBRDF_GERMER2017 = 0,                     /* s first, left - right */
-  MMBRDF_S_FIRST_RIGHT = 1,                  /* s first, right - left */
-  MMBRDF_P_FIRST_LEFT = 2,                   /* axes (p, -s), left - right */
-  MMBRDF_P_FIRST_RIGHT = 3,                  /* axes (p, -s), right - left */
-  MMBRDF_P_FIRST_LEFT_HANDED_AXES_LEFT = 4,  /* axes (p, s), a left-handed pair; avoid */
-  MMBRDF_P_FIRST_LEFT_HANDED_AXES_RIGHT = 5, /* axes (p, s), a left-handed pair; avoid */
+  MMBRDF_GERMER2017 = 0,                    /* s first, left - right */
+  MMBRDF_S_FIRST_RIGHT = 1,                 /* s first, right - left */
+  MMBRDF_P_FIRST_LEFT = 2,                  /* axes (p, -s), left - right */
+  MMBRDF_P_FIRST_RIGHT = 3,                 /* axes (p, -s), right - left */
+  MMBRDF_P_FIRST_LEFT_HANDED_AXES_LEFT = 4, /* axes (p, s), a left-handed pair; avoid */
+  MMBRDF_P_FIRST_LEFT_HANDED_AXES_RIGHT = 5 /* axes (p, s), a left-handed pair; avoid */
 };
 
 /* Element in row i (scattered) and column j (incident light), from 0, of matrix q is */
@@ -160,7 +166,8 @@ int mmbrdf_quantity_at(int number, mmbrdf_quantity* quantity, mmbrdf_error* erro
 
 /* `count` quantities by name, or all of the table if names is null, with their standard uncertainties in first order:
  * count x n numbers each, values[n k + q] of quantity k at geometry q. uncertainties may be null. NaN also where a
- * quantity has no meaning, as a ratio where f11 is not positive. */
+ * quantity has no meaning, as a ratio where f11 is not positive. All quantities and their uncertainties are computed whatever
+ * is asked for, in about 0.1 ms a geometry, so ask once for all; the first call prepares for seconds. */
 int mmbrdf_analyze(const mmbrdf_prepared* prepared, int count, const char* const* names, int64_t n,
                    const double* geometries_rad, int threads, double* values, double* uncertainties,
                    mmbrdf_error* error);

@@ -56,12 +56,6 @@ module mmbrdf
          type(c_ptr), intent(out) :: model
          type(mmbrdf_error), intent(out) :: error
       end function
-      integer(c_int) function c_load_model(path, model, error) bind(c, name="mmbrdf_load_model")
-         import :: c_int, c_char, c_ptr, mmbrdf_error
-         character(kind=c_char), intent(in) :: path(*)
-         type(c_ptr), intent(out) :: model
-         type(mmbrdf_error), intent(out) :: error
-      end function
       integer(c_int) function c_prepare(model, wavelength_um, prepared, error) bind(c, name="mmbrdf_prepare")
          import :: c_int, c_double, c_ptr, mmbrdf_error
          type(c_ptr), value :: model
@@ -102,17 +96,6 @@ module mmbrdf
          real(c_double), intent(inout) :: matrices(*)
          type(mmbrdf_error), intent(out) :: error
       end function
-      integer(c_int) function c_uncertainty(prepared, n, geometries_rad, layout, threads, uncertainties, error) &
-         bind(c, name="mmbrdf_standard_uncertainty")
-         import :: c_int, c_int64_t, c_double, c_ptr, layout_t, mmbrdf_error
-         type(c_ptr), value :: prepared
-         integer(c_int64_t), value :: n
-         real(c_double), intent(in) :: geometries_rad(*)
-         type(layout_t), intent(in) :: layout
-         integer(c_int), value :: threads
-         real(c_double), intent(inout) :: uncertainties(*)
-         type(mmbrdf_error), intent(out) :: error
-      end function
       integer(c_int) function c_f11(prepared, n, geometries_rad, threads, f11, error) bind(c, name="mmbrdf_f11")
          import :: c_int, c_int64_t, c_double, c_ptr, mmbrdf_error
          type(c_ptr), value :: prepared
@@ -151,6 +134,8 @@ module mmbrdf
          type(mmbrdf_error), intent(out) :: error
       end function
    end interface
+   procedure(c_material), bind(c, name="mmbrdf_load_model") :: c_load_model
+   procedure(c_evaluate), bind(c, name="mmbrdf_standard_uncertainty") :: c_uncertainty
 
 contains
 
@@ -276,7 +261,8 @@ contains
       type(mmbrdf_error), intent(out), optional :: error
       type(mmbrdf_error) :: told
       integer(c_int) :: code
-      call require(told, "geometries_rad", shape(geometries_rad), [4, size(f11)])
+      call require(told, "geometries_rad", shape(geometries_rad), [4, size(geometries_rad, 2)])
+      call require(told, "f11", shape(f11), [size(geometries_rad, 2)])
       if (told%code == 0) &
          code = c_f11(prepared%handle, size(f11, kind=c_int64_t), geometries_rad, or_one(threads), f11, told)
       call tell(told, error)
@@ -290,7 +276,8 @@ contains
       type(mmbrdf_error), intent(out), optional :: error
       type(mmbrdf_error) :: told
       integer(c_int) :: code
-      call require(told, "geometries_rad", shape(geometries_rad), [4, size(outside)])
+      call require(told, "geometries_rad", shape(geometries_rad), [4, size(geometries_rad, 2)])
+      call require(told, "outside", shape(outside), [size(geometries_rad, 2)])
       if (told%code == 0) code = c_outside(prepared%handle, size(outside, kind=c_int64_t), geometries_rad, outside, told)
       call tell(told, error)
    end subroutine
@@ -307,7 +294,8 @@ contains
       integer(c_int) :: code
       character(kind=c_char), target :: letters(len(name) + 1)
       letters = text(name)
-      call require(told, "geometries_rad", shape(geometries_rad), [4, size(values)])
+      call require(told, "geometries_rad", shape(geometries_rad), [4, size(geometries_rad, 2)])
+      call require(told, "values", shape(values), [size(geometries_rad, 2)])
       call require(told, "uncertainties", shape(uncertainties), shape(values))
       if (told%code == 0) code = c_analyze(prepared%handle, 1_c_int, [c_loc(letters)], size(values, kind=c_int64_t), &
                                                 geometries_rad, or_one(threads), values, uncertainties, told)
@@ -322,7 +310,8 @@ contains
       type(mmbrdf_error), intent(out), optional :: error
       type(mmbrdf_error) :: told
       integer(c_int) :: code
-      call require(told, "directions_rad", shape(directions_rad), [2, size(dhr)])
+      call require(told, "directions_rad", shape(directions_rad), [2, size(directions_rad, 2)])
+      call require(told, "dhr", shape(dhr), [size(directions_rad, 2)])
       call require(told, "uncertainties", shape(uncertainties), shape(dhr))
       if (told%code == 0) code = c_dhr(prepared%handle, size(dhr, kind=c_int64_t), directions_rad, dhr, uncertainties, told)
       call tell(told, error)

@@ -5,7 +5,7 @@
 function s = mmbrdf_analyze (model, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,
                              names = mmbrdf_oct ("quantities"), threads = 0)
   names = cellstr (names);
-  [values, u] = mmbrdf_oct ("analyze", model, wavelength_nm / 1000,
+  [values, u] = mmbrdf_oct ("analyze", model, wavelength_nm,
                             mmbrdf_geometries (theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg), names, threads);
   for k = 1:numel (names)
     s.(names{k}) = values(:, k)';

@@ -2,5 +2,5 @@
 ## [dhr, u] = mmbrdf_dhr (model, wavelength_nm, theta_i_deg, phi_i_deg = 0): directional-hemispherical reflectance for
 ## unpolarized light, and its standard uncertainty.
 function [dhr, u] = mmbrdf_dhr (model, wavelength_nm, theta_i_deg, phi_i_deg = 0)
-  [dhr, u] = mmbrdf_oct ("dhr", model, wavelength_nm / 1000, mmbrdf_geometries (theta_i_deg, phi_i_deg));
+  [dhr, u] = mmbrdf_oct ("dhr", model, wavelength_nm, mmbrdf_geometries (theta_i_deg, phi_i_deg));
 endfunction

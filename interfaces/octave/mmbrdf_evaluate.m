@@ -7,5 +7,5 @@
 function m = mmbrdf_evaluate (model, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, frame = "xy",
                               convention = "germer2017", threads = 0)
   angles_deg = mmbrdf_angles (theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg);
-  m = mmbrdf_oct ("evaluate", model, wavelength_nm / 1000, angles_deg{:}, frame, convention, threads);
+  m = mmbrdf_oct ("evaluate", model, wavelength_nm, angles_deg{:}, frame, convention, threads);
 endfunction

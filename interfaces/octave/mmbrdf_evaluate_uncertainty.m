@@ -5,5 +5,5 @@
 function u = mmbrdf_evaluate_uncertainty (model, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,
                                           frame = "xy", threads = 0)
   angles_deg = mmbrdf_angles (theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg);
-  u = mmbrdf_oct ("uncertainty", model, wavelength_nm / 1000, angles_deg{:}, frame, "germer2017", threads);
+  u = mmbrdf_oct ("uncertainty", model, wavelength_nm, angles_deg{:}, frame, "germer2017", threads);
 endfunction

@@ -5,6 +5,8 @@
 #include <octave/oct.h>
 
 #include <algorithm>
+#include <climits>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,7 +53,21 @@ const mmbrdf_model* model_of(const octave_value& given) {
 
 using Prepared = std::unique_ptr<mmbrdf_prepared, decltype(&mmbrdf_free_prepared)>;
 
-Prepared prepared(const octave_value& model, double wavelength_um) {
+/// Octave would take the first of many numbers, and the code of a letter, for the number.
+double one_number(const octave_value& given, const char* name) {
+  if (!given.isnumeric() || !given.isreal() || given.numel() != 1) ::error("mmbrdf: %s must be one real number", name);
+  return given.double_value();
+}
+
+int threads_of(const octave_value& given) {
+  const double threads = one_number(given, "threads");
+  if (!(threads >= 0 && threads <= INT_MAX && threads == std::floor(threads)))
+    ::error("mmbrdf: threads = %g, must be a whole number, 0 or more", threads);
+  return static_cast<int>(threads);
+}
+
+Prepared prepared(const octave_value& model, const octave_value& wavelength_nm) {
+  const double wavelength_um = one_number(wavelength_nm, "wavelength_nm") / 1000;
   mmbrdf_prepared* result = nullptr;
   mmbrdf_error e;
   check(mmbrdf_prepare(model_of(model), wavelength_um, &result, &e), e);
@@ -66,7 +82,7 @@ octave_value_list load(bool built_in, const octave_value& name) {
   return ovl(octave_value(new octave_mmbrdf_model(model)));
 }
 
-/// matrices (model, wavelength_um, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, frame, convention, threads), of angles of
+/// matrices (model, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, frame, convention, threads), of angles of
 /// one size. In pieces that stay in the cache: new memory for all would take longer than to compute.
 octave_value_list matrices(decltype(&mmbrdf_evaluate) ask, const octave_value_list& args) {
   mmbrdf_layout layout;
@@ -87,19 +103,20 @@ octave_value_list matrices(decltype(&mmbrdf_evaluate) ask, const octave_value_li
     return out.data();
   };
   NDArray result(dim_vector(4, 4, n));
-  const Prepared at = prepared(args(0), args(1).double_value());
+  const Prepared at = prepared(args(0), args(1));
+  const int threads = threads_of(args(8));
   std::vector<double> some;
   constexpr octave_idx_type most = 65536;
   double* const out = result.fortran_vec();
   for (octave_idx_type first = 0; first < n; first += most) {
     const octave_idx_type count = std::min(most, n - first);
-    if (ask(at.get(), count, radians(first, count, some), &layout, args(8).int_value(), out + 16 * first, &e))
-      check(ask(at.get(), n, radians(0, n, some), &layout, 1, out, &e), e);  // which of all is wrong
+    if (ask(at.get(), count, radians(first, count, some), &layout, threads, out + 16 * first, &e))
+      check(ask(at.get(), n, radians(0, n, some), &layout, threads, out, &e), e);  // which of all is wrong
   }
   return ovl(result);
 }
 
-/// [values, u] (n, count) = analyze (model, wavelength_um, geometries_rad (4, n), cell of names, threads)
+/// [values, u] (n, count) = analyze (model, wavelength_nm, geometries_rad (4, n), cell of names, threads)
 octave_value_list analyze(const octave_value_list& args) {
   const NDArray geometries = args(2).array_value();
   const string_vector names = args(3).xstring_vector_value("mmbrdf: names must be texts");
@@ -110,20 +127,20 @@ octave_value_list analyze(const octave_value_list& args) {
   const octave_idx_type n = geometries.columns();
   Matrix values(n, names.numel()), u(n, names.numel());
   mmbrdf_error e;
-  const Prepared at = prepared(args(0), args(1).double_value());
+  const Prepared at = prepared(args(0), args(1));
   check(mmbrdf_analyze(at.get(), static_cast<int>(pointers.size()), pointers.data(), n, geometries.data(),
-                       args(4).int_value(), values.fortran_vec(), u.fortran_vec(), &e),
+                       threads_of(args(4)), values.fortran_vec(), u.fortran_vec(), &e),
         e);
   return ovl(values, u);
 }
 
-/// [dhr, u] = dhr (model, wavelength_um, directions_rad (2, n))
+/// [dhr, u] = dhr (model, wavelength_nm, directions_rad (2, n))
 octave_value_list dhr(const octave_value_list& args) {
   const NDArray directions = args(2).array_value();
   const octave_idx_type n = directions.columns();
   RowVector result(n), u(n);
   mmbrdf_error e;
-  const Prepared at = prepared(args(0), args(1).double_value());
+  const Prepared at = prepared(args(0), args(1));
   check(mmbrdf_dhr(at.get(), n, directions.data(), result.fortran_vec(), u.fortran_vec(), &e), e);
   return ovl(result, u);
 }
@@ -132,7 +149,7 @@ octave_value_list outside(const octave_value_list& args) {
   const NDArray geometries = args(2).array_value();
   int32NDArray result(dim_vector(1, geometries.columns()));
   mmbrdf_error e;
-  const Prepared at = prepared(args(0), args(1).double_value());
+  const Prepared at = prepared(args(0), args(1));
   check(mmbrdf_outside(at.get(), geometries.columns(), geometries.data(), reinterpret_cast<int*>(result.fortran_vec()),
                        &e),
         e);

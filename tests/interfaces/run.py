@@ -5,7 +5,8 @@
     run.py install BUILD PREFIX             installs what is built into an empty folder
     run.py LANGUAGE BUILD PREFIX SOURCE     c, fortran, r or octave; exit status 77 where there is no toolchain
 
-Of each language the example of docs/interfaces.md is run, and must print what the page says; then test.* beside this file,
+R and Octave are built by the page's own command, which must leave the prefix as it is. Of each language the example of
+docs/interfaces.md is run, and must print what the page says; then test.* beside this file,
 which prints numbers with 17 digits: those of expected.cpp, which asks the C++ library the same.
 """
 import os
@@ -69,43 +70,59 @@ def octave(program, folder, prefix, env):
     return ["octave-cli", "--quiet", "--no-init-file", "--path", env["OCTAVE_FOLDER"], program]
 
 
-def build_r(prefix, folder, env):
-    """R CMD check without a complaint, then the package in a library of its own."""
+def as_the_page_says(source, heading, prefix, folder, env):
+    """The first command of a section, for one who may not write into the prefix."""
+    before = sorted(prefix.rglob("*"))
+    command = re.search(r"^ {4}(.*)", section(source / "docs/interfaces.md", heading), re.MULTILINE)[1]
+    run("sh", "-c", command.replace("INTERFACES", str(prefix / "share/mmbrdf")), env=env, folder=folder)
+    if sorted(prefix.rglob("*")) != before:
+        sys.exit(f"{command}: writes into the prefix")
+
+
+def header_alone(prefix, folder, env, source):
+    """In C and C++ of any age: no comma at the end of a list, and the like."""
+    pedantic = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"]
+    for compiler in ("cc -std=c90 -xc", "c++ -std=c++98 -xc++"):
+        run(*compiler.split(), *pedantic, "-include", prefix / "include/mmbrdf.h", "/dev/null", env=env)
+
+
+def build_r(prefix, folder, env, source):
+    """The package in a library of its own, and R CMD check without a complaint."""
     profile = folder / "profile.R"  # the network has no part in this
     (folder / "none/src/contrib").mkdir(parents=True)
     (folder / "none/src/contrib/PACKAGES").touch()
     profile.write_text(f'options(repos = c(CRAN = "file://{folder}/none"))\n')
     env.update(R_PROFILE=str(profile), R_LIBS=str(folder / "library"), _R_CHECK_FORCE_SUGGESTS_="false")
     (folder / "library").mkdir()
-    run("R", "CMD", "build", "--no-manual", prefix / "share/mmbrdf/r", env=env, folder=folder)
+    as_the_page_says(source, "R", prefix, folder, env)
     (archive,) = folder.glob("mmbrdf_*.tar.gz")
     said = run("R", "CMD", "check", "--no-manual", archive, env=env, folder=folder)
     complaints = [line for line in said.splitlines() if re.search(r"\b(ERROR|WARNING|NOTE)s?$", line)]
     if complaints or "Status: OK" not in said:
         sys.exit(f"R CMD check: {said}")
-    run("R", "CMD", "INSTALL", f"--library={folder / 'library'}", archive, env=env, folder=folder)
 
 
-def build_octave(prefix, folder, env):
-    built = folder / "octave"
-    shutil.copytree(prefix / "share/mmbrdf/octave", built)
-    source = built / "mmbrdf_oct.cpp"
-    run("mkoctfile", *flags("--cflags", env), source, *flags("--libs", env), env=env, folder=built)
-    env["OCTAVE_FOLDER"] = str(built)
+def build_octave(prefix, folder, env, source):
+    as_the_page_says(source, "Octave", prefix, folder, env)
+    env["OCTAVE_FOLDER"] = str(folder / "octave")
 
 
 LANGUAGES = {  # program of a page or a test to a command, what is built before, ending, name in the page, tools
-    "c": (c, None, "c", "C", ["cc", "pkg-config"]),
+    "c": (c, header_alone, "c", "C", ["cc", "c++", "pkg-config"]),
     "fortran": (fortran, None, "f90", "Fortran", ["gfortran", "pkg-config"]),
     "r": (r, build_r, "R", "R", ["R", "cc", "pkg-config"]),
     "octave": (octave, build_octave, "m", "Octave", ["octave-cli", "mkoctfile", "pkg-config"]),
 }
 
 
+def section(page, heading):
+    text = page.read_text(encoding="utf-8")
+    return re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL)[1]
+
+
 def example(page, heading):
     """The program, and what it prints: the last two blocks of code of a section."""
-    section = re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
-    blocks = re.findall(r"^```\w*\n(.*?)^```$", section[1], re.MULTILINE | re.DOTALL)
+    blocks = re.findall(r"^```\w*\n(.*?)^```$", section(page, heading), re.MULTILINE | re.DOTALL)
     return blocks[-2], blocks[-1]
 
 
@@ -127,7 +144,7 @@ def test(language, build, prefix, source):
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if prepare:
-            prepare(prefix, folder, env)
+            prepare(prefix, folder, env, source)
         program, printed = example(source / "docs/interfaces.md", heading)
         (folder / f"page_example.{ending}").write_text(program)
         told = run(*to_command(folder / f"page_example.{ending}", folder, prefix, env), env=env, folder=folder)

@@ -30,4 +30,17 @@ refused (@() mmbrdf_evaluate (ptfe, 532, 95, 0, 30, 180), "geometry 1: theta_i =
 refused (@() mmbrdf_evaluate (ptfe, 532, [5 * ones(1, 70000), 95], 0, 30, 180), "geometry 70001: theta_i = 95");
 refused (@() mmbrdf_evaluate (ptfe, 532, [1, 2], 0, [1, 2, 3], 180), "arrays of one size");
 refused (@() mmbrdf_evaluate (ptfe, 532, 45, 0, 30, 180, "ps"), "ps");
+for wrong = {[532, 633], "532", [], true, 532i, {532}}
+  refused (@() mmbrdf_evaluate (ptfe, wrong{1}, 45, 0, 30, 180), "wavelength_nm must be one real number");
+  refused (@() mmbrdf_evaluate_uncertainty (ptfe, wrong{1}, 45, 0, 30, 180), "wavelength_nm must be one real number");
+  refused (@() mmbrdf_analyze (ptfe, wrong{1}, 45, 0, 30, 180), "wavelength_nm must be one real number");
+  refused (@() mmbrdf_outside (ptfe, wrong{1}, 45, 0, 30, 180), "wavelength_nm must be one real number");
+  refused (@() mmbrdf_dhr (ptfe, wrong{1}, 45), "wavelength_nm must be one real number");
+endfor
+assert (mmbrdf_evaluate (ptfe, int32 (532), 45, 0, 30, 180), mmbrdf_evaluate (ptfe, 532, 45, 0, 30, 180));
+for wrong = {-1, 1.5, NaN, Inf, [], [1, 2], "2"}
+  refused (@() mmbrdf_evaluate (ptfe, 532, 45, 0, 30, 180, "xy", "germer2017", wrong{1}), "threads");
+  refused (@() mmbrdf_evaluate_uncertainty (ptfe, 532, 45, 0, 30, 180, "xy", wrong{1}), "threads");
+  refused (@() mmbrdf_analyze (ptfe, 532, 45, 0, 30, 180, "f_ss", wrong{1}), "threads");
+endfor
 refused (@() mmbrdf_evaluate (5, 532, 45, 0, 30, 180), "model must be one of");

@@ -245,6 +245,18 @@ void expect_refused(int code, const mmbrdf_error& error, int expected, const std
   EXPECT_EQ(std::string(error.message).find('\n'), std::string::npos) << error.message;
 }
 
+TEST(CInterface, TakesNanometresForMicrometresAndSaysThatTheyAreOutside) {
+  const Handles ptfe("ptfe");
+  const double geometry[4] = {0.1, 0, 0.2, 3};
+  mmbrdf_error e;
+  mmbrdf_prepared* prepared = nullptr;
+  int outside = 0;
+  ASSERT_EQ(mmbrdf_prepare(ptfe.model, 532, &prepared, &e), MMBRDF_OK) << e.message;
+  EXPECT_EQ(mmbrdf_outside(prepared, 1, geometry, &outside, &e), MMBRDF_OK) << e.message;
+  EXPECT_EQ(outside, MMBRDF_OUTSIDE_WAVELENGTH);
+  mmbrdf_free_prepared(prepared);
+}
+
 TEST(CInterface, AnswersMistakesWithACodeAndALine) {
   const Handles ptfe("ptfe");
   const double good[4] = {0.1, 0, 0.2, 3}, bad[8] = {0.1, 0, 0.2, 3, 0.1, 0, 2, 0};

@@ -38,9 +38,17 @@ recycled <- function(...) {
   given
 }
 
+threads_of <- function(threads) {
+  if (!is.numeric(threads) || length(threads) != 1 || is.na(threads) || threads < 0 ||
+      threads > .Machine$integer.max || threads != trunc(threads))
+    stop("threads must be one whole number, 0 or more", call. = FALSE)
+  as.integer(threads)
+}
+
 # call(wavelength_nm, theta_i, phi_i, theta_r, phi_r) for each wavelength, and its results put together by
 # place(result, part, positions). With one wavelength nothing is copied.
 by_wavelength <- function(wavelength_nm, angles, call, place) {
+  recycled(wavelength_nm = wavelength_nm)
   if (length(wavelength_nm) == 1) return(do.call(call, c(wavelength_nm, unname(do.call(recycled, angles)))))
   given <- do.call(recycled, c(list(wavelength_nm = wavelength_nm), angles))
   result <- NULL
@@ -68,10 +76,12 @@ place_rows <- function(result, part, at, n) {
   result
 }
 
-matrices <- function(what, model, wavelength_nm, angles, frame, convention, threads)
+matrices <- function(what, model, wavelength_nm, angles, frame, convention, threads) {
+  threads <- threads_of(threads)
   by_wavelength(wavelength_nm, angles,
-    function(w, ti, pi, tr, pr) .Call(what, model, w, ti, pi, tr, pr, frame, convention, as.integer(threads)),
+    function(w, ti, pi, tr, pr) .Call(what, model, w, ti, pi, tr, pr, frame, convention, threads),
     place_matrices)
+}
 
 evaluate <- function(model, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, frame = "xy",
                      convention = "germer2017", threads = 0)
@@ -85,8 +95,9 @@ evaluate_uncertainty <- function(model, wavelength_nm, theta_i_deg, phi_i_deg, t
 
 analyze <- function(model, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg,
                     names = quantities()$name, threads = 0) {
+  threads <- threads_of(threads)
   columns <- by_wavelength(wavelength_nm, angles_of(theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg),
-    function(w, ti, pi, tr, pr) .Call(C_analyze, model, w, ti, pi, tr, pr, names, as.integer(threads)), place_rows)
+    function(w, ti, pi, tr, pr) .Call(C_analyze, model, w, ti, pi, tr, pr, names, threads), place_rows)
   as.data.frame(columns)
 }
 
@@ -102,6 +113,7 @@ dhr <- function(model, wavelength_nm, theta_i_deg, phi_i_deg = 0) {
 
 predict.mmbrdf_model <- function(object, newdata, frame = "xy", convention = "germer2017", threads = 0, ...) {
   needed <- c("wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg")
+  if (!is.data.frame(newdata)) stop("newdata must be a data frame", call. = FALSE)
   missing <- setdiff(needed, names(newdata))
   if (length(missing) > 0) stop("newdata has no column ", missing[1], call. = FALSE)
   angles <- as.list(newdata[needed[-1]])

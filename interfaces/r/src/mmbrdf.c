@@ -111,15 +111,16 @@ static SEXP matrices(of_matrices ask, SEXP model, SEXP wavelength_nm, const SEXP
   SEXP dim = PROTECT(Rf_allocVector(INTSXP, 3));
   INTEGER(dim)[0] = INTEGER(dim)[1] = 4;
   INTEGER(dim)[2] = (int)n;
+  const int asked = Rf_asInteger(threads);
   /* In pieces that stay in the cache: new memory for all would take longer than to compute. */
   enum { most = 65536 };
   double* some = (double*)R_alloc(4 * (size_t)(n < most ? n : most), sizeof(double));
   for (R_xlen_t first = 0; first < n; first += most) {
     const R_xlen_t count = n - first < most ? n - first : most;
     convert(degrees, 4, first, count, some);
-    if (ask(R_ExternalPtrAddr(prepared), count, some, &layout, Rf_asInteger(threads), REAL(result) + 16 * first,
-            &error))
-      check(ask(R_ExternalPtrAddr(prepared), n, radians(degrees, 4), &layout, 1, REAL(result), &error), &error);
+    if (ask(R_ExternalPtrAddr(prepared), count, some, &layout, asked, REAL(result) + 16 * first, &error))
+      check(ask(R_ExternalPtrAddr(prepared), n, radians(degrees, 4), &layout, asked, REAL(result), &error),
+            &error); /* which of all is wrong */
   }
   int known[16], all = 1;
   check(mmbrdf_known_elements(model_of(model), &layout, known, &error), &error);

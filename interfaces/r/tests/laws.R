@@ -59,7 +59,22 @@ refused(evaluate(ptfe, 532, c(1, NA), 0, 30, 180), "theta_i_deg[2] is NA")
 refused(evaluate(ptfe, 532, 1:2, 0, 1:3, 180), "theta_i_deg has 2 values, must have 1 or 3")
 refused(evaluate(ptfe, 532, "45", 0, 30, 180), "theta_i_deg must be numeric")
 refused(evaluate(ptfe, -5, 45, 0, 30, 180), "wavelength")
+for (wrong in list("532", TRUE, factor(532), list(532))) {
+  refused(evaluate(ptfe, wrong, 45, 0, 30, 180), "wavelength_nm must be numeric")
+  refused(evaluate_uncertainty(ptfe, wrong, 45, 0, 30, 180), "wavelength_nm must be numeric")
+  refused(analyze(ptfe, wrong, 45, 0, 30, 180), "wavelength_nm must be numeric")
+  refused(outside(ptfe, wrong, 45, 0, 30, 180), "wavelength_nm must be numeric")
+  refused(dhr(ptfe, wrong, 45), "wavelength_nm must be numeric")
+}
+refused(evaluate(ptfe, NA_real_, 45, 0, 30, 180), "wavelength_nm[1] is NA")
+for (wrong in list(-1, 1.5, NA, NaN, Inf, integer(0), 1:2, "2", 1e10)) {
+  refused(evaluate(ptfe, 532, 45, 0, 30, 180, threads = wrong), "threads must be one whole number, 0 or more")
+  refused(evaluate_uncertainty(ptfe, 532, 45, 0, 30, 180, threads = wrong), "threads must be one whole number")
+  refused(analyze(ptfe, 532, 45, 0, 30, 180, threads = wrong), "threads must be one whole number")
+  refused(predict(ptfe, newdata, threads = wrong), "threads must be one whole number")
+}
 refused(evaluate(ptfe, 532, 45, 0, 30, 180, frame = "ps"), "ps")
 refused(evaluate("ptfe", 532, 45, 0, 30, 180), "model must be one of")
 refused(analyze(ptfe, 532, 45, 0, 30, 180, names = "gloss"), "'gloss' is not known")
+refused(predict(ptfe, as.list(newdata)), "newdata must be a data frame")
 refused(predict(ptfe, newdata[-2]), "newdata has no column theta_i_deg")
