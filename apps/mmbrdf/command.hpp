@@ -48,5 +48,6 @@ Run reduce_command(CLI::App& app, const CommandLine& line);
 Run info_command(CLI::App& app, const CommandLine& line);
 Run materials_command(CLI::App& app, const CommandLine& line);
 Run convert_command(CLI::App& app, const CommandLine& line);
+Run export_command(CLI::App& app, const CommandLine& line);
 
 }  // namespace mmbrdf::program

@@ -44,6 +44,7 @@ constexpr Command commands[] = {
     {"info", "Print what a model holds and where it is valid.", info_command},
     {"materials", "List the built-in models.", materials_command},
     {"convert", "Turn a model, or a measurement of another program, into another format.", convert_command},
+    {"export", "Write a model as a table that another program reads.", export_command},
 };
 
 constexpr const char* footer =

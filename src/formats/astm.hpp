@@ -3,10 +3,13 @@
 #pragma once
 
 #include "formats/reader.hpp"
+#include "mmbrdf/formats/export.hpp"
 
 namespace mmbrdf {
 
 bool is_astm(std::string_view head, std::uint64_t size);
 std::unique_ptr<ForeignFile::Reader> open_astm(const Source& source);
+
+Export::Made make_astm(const Model& model, const ExportOptions& options);
 
 }  // namespace mmbrdf

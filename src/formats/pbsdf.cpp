@@ -2,7 +2,6 @@
 #include "formats/pbsdf.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -12,33 +11,6 @@
 
 namespace mmbrdf {
 namespace {
-
-/// A beam along k with its axis ⊥: the angle, doubled, from ⊥ to s, which is at `phi` + 90 degrees in the surface.
-Mueller to_sp(const Vector3& k, const Vector3& perpendicular, double phi) {
-  const Vector3& x = perpendicular;
-  const Vector3 y{k[1] * x[2] - k[2] * x[1], k[2] * x[0] - k[0] * x[2], k[0] * x[1] - k[1] * x[0]};
-  const double s_x = -std::sin(phi), s_y = std::cos(phi);
-  const double c = x[0] * s_x + x[1] * s_y, s = y[0] * s_x + y[1] * s_y;
-  return rotator(c * c - s * s, 2 * c * s);
-}
-
-double azimuth(const Vector3& v) { return v[0] == 0 && v[1] == 0 ? 0 : std::atan2(v[1], v[0]); }
-
-/// A node: its geometry, and what turns its matrices into the frame xy there.
-struct Node {
-  explicit Node(const HalfDifference& directions)
-      : geometry(isotropic_geometry(directions.incident, directions.reflected)) {
-    const auto& [i, o, perpendicular] = directions;
-    // Of incident light s is z × k as well, and points the other way: half a turn, which changes no Stokes vector.
-    const Mueller incident = to_sp({-i[0], -i[1], -i[2]}, perpendicular, azimuth(i));
-    const Mueller reflected = to_sp(o, perpendicular, azimuth(o));
-    const FrameAngles angles = angles_to_xy(geometry, Frame::sp);
-    left = rotator(angles.scattered) * reflected;
-    right = transpose(rotator(angles.incident) * incident);
-  }
-  Geometry geometry;
-  Mueller left, right;
-};
 
 class PbsdfReader : public ForeignFile::Reader {
  public:
@@ -82,7 +54,7 @@ class PbsdfReader : public ForeignFile::Reader {
  private:
   void add(const HalfDifference& directions, std::span<const double> values, SampleSink& sink) const {
     if (!above_horizon(directions)) return sink.below_horizon(wavelengths_.size());
-    const Node node(directions);
+    const NodeAxes node(directions);
     for (std::size_t w = 0; w < wavelengths_.size(); ++w) {
       Mueller m;
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(16 * w), 16, m.elements.begin());

@@ -4,10 +4,13 @@
 #pragma once
 
 #include "formats/reader.hpp"
+#include "mmbrdf/formats/export.hpp"
 
 namespace mmbrdf {
 
 bool is_pbsdf(std::string_view head, std::uint64_t size);
 std::unique_ptr<ForeignFile::Reader> open_pbsdf(const Source& source);
+
+Export::Made make_pbsdf(const Model& model, const ExportOptions& options);
 
 }  // namespace mmbrdf

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <iosfwd>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,6 +64,15 @@ class TensorFile {
   std::vector<TensorField> fields_;
   std::vector<char> bytes_;
 };
+
+/// A field to be written: numbers in single precision, or 16 bits of whole ones.
+struct NewTensor {
+  std::string name;
+  std::vector<std::uint64_t> shape;
+  std::span<const float> singles = {};
+  std::span<const std::uint16_t> whole = {};
+};
+void write_tensor_file(std::ostream& out, std::span<const NewTensor> fields);
 
 /// A tensor file that holds something else: throws, with the names of its fields.
 std::unique_ptr<ForeignFile::Reader> open_other_tensor(const Source& source);

@@ -2,11 +2,18 @@
 // ASTM E1392 and E2387 text as goniometers' programs write it: keywords, VARS with the names of columns, rows in radians.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <sstream>
 #include <string>
 
 #include "given/foreign.hpp"
+#include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/samples_file.hpp"
+#include "mmbrdf/formats/export.hpp"
+#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -122,6 +129,69 @@ TEST(Astm, IsNoTableOfSamplesAndSaysHowToMakeOne) {
   const std::string message = complaint([&] { read_samples(folder / "x.astm"); });
   EXPECT_TRUE(says(message, {"x.astm: is an ASTM E1392 or E2387 file, no table of samples", "mmbrdf convert"}));
   EXPECT_TRUE(holds_samples(folder / "x.astm"));
+}
+
+std::vector<Sample> exported(const Folder& folder, const Model& model, const ExportOptions& options) {
+  std::ostringstream out;
+  Export(model, export_format_of("x.astm"), options).write(out);
+  put(folder / "x", out.str());
+  return read_foreign_file(folder / "x").samples;
+}
+
+TEST(Astm, IsWrittenWithTheModelAtItsNodesUpToNinetyDegrees) {
+  const Folder folder;
+  const Model model = material("ptfe");
+  const std::vector<double> wavelengths{0.45, 0.532};
+  const std::vector<Sample> samples = exported(folder, model, {.wavelengths = wavelengths, .error = 1});
+  ASSERT_EQ(samples.size(), 9U * 9 * 36 * 2);  // steps of 10 degrees; those at the horizon are not samples
+  const std::array prepared{prepare(model, 0.45), prepare(model, 0.532)};
+  for (const Sample& s : samples)
+    ASSERT_NEAR(s.f11, prepared[s.wavelength > 0.5].f11(s.geometry), 1e-7 * s.f11);  // eight digits
+  EXPECT_EQ(std::ranges::count(contents(folder / "x"), '\n'), 2 + 10 * 10 * 36);
+  for (const Sample& s : exported(folder, model, {.wavelengths = {0.532}, .channel = "f_ss", .error = 1}))
+    ASSERT_NEAR(s.f11, quantity("f_ss").value(prepared[1].evaluate(s.geometry, Frame::sp), {}), 1e-7 * s.f11);
+}
+
+TEST(Astm, IsWrittenWithTheErrorThatItSays) {
+  const Folder folder;
+  const Model model = material("ptfe-532");
+  const Export table(model, export_format("astm"), {.error = 2e-3});
+  std::ostringstream out;
+  table.write(out);
+  put(folder / "x", out.str());
+  // In the middle of the cells of its nodes, where what is linear errs most, along one axis at a time.
+  const std::vector<Sample> samples = read_foreign_file(folder / "x").samples;
+  const PreparedModel prepared = prepare(model, 0.532);
+  const double step = samples[1].geometry.reflected.phi - samples[0].geometry.reflected.phi;
+  double squares = 0;
+  long count = 0;
+  for (const Sample& s : samples) {
+    const double theta_i = s.geometry.incident.theta, theta_r = s.geometry.reflected.theta,
+                 phi = s.geometry.reflected.phi;
+    if (std::max(theta_i, theta_r) + step > table.error().theta_max) continue;
+    const auto f = [&](double i, double r, double p) {
+      return prepared.f11({{theta_i + i, 0}, {theta_r + r, phi + p}});
+    };
+    double mean = 0;
+    for (const double i : {0.0, step})
+      for (const double r : {0.0, step})
+        for (const double p : {0.0, step}) mean += f(i, r, p) / 8;
+    const double middle = f(step / 2, step / 2, step / 2);
+    squares += (mean / middle - 1) * (mean / middle - 1);
+    ++count;
+  }
+  const double worst = std::sqrt(squares / static_cast<double>(count));
+  EXPECT_LE(table.error().rms, 2e-3);
+  EXPECT_LT(table.error().rms, 1.2 * worst);
+  EXPECT_GT(table.error().rms, 0.3 * worst);  // a parabola has half of it on average along an axis
+}
+
+TEST(Astm, IsNotWrittenOfWhatIsNoBrdf) {
+  const Model model = material("ptfe");
+  EXPECT_TRUE(says(export_refusal(model, "astm", {.channel = "depolarization"}),
+                   {"channel depolarization: must be f11, or a quantity in sr^-1"}));
+  EXPECT_TRUE(says(export_refusal(model, "astm", {.channel = "f_xx"}), {"f_xx"}));
+  EXPECT_TRUE(says(export_refusal(model, "astm", {.error = 1e-9}), {"the finest table, of steps of 2.5 degrees"}));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "given/files.hpp"
+#include "mmbrdf/formats/export.hpp"
 #include "mmbrdf/formats/foreign.hpp"
 
 namespace mmbrdf {
@@ -86,6 +87,16 @@ inline void expect_refused_where_cut(const std::string& path, const std::vector<
     EXPECT_TRUE(says(message, {path})) << part << " of 16";
   }
   put(path, whole);
+}
+
+/// What an export is refused for; empty if it is not.
+inline std::string export_refusal(const Model& model, const std::string& format, const ExportOptions& options = {}) {
+  try {
+    Export(model, export_format(format), options);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "";
 }
 
 /// The bytes of numbers as files of little-endian machines have them.

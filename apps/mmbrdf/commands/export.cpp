@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf export
+
+#include "mmbrdf/formats/export.hpp"
+
+#include <memory>
+
+#include "command.hpp"
+#include "mmbrdf/files/write_file.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string model, output, format, channel = "f11";
+  std::optional<std::vector<double>> wavelengths_nm;
+  double error_percent = 0.05;
+};
+
+/// By --as, or by the ending of the file.
+const ExportFormat& format_of(const Options& options) {
+  try {
+    return options.format.empty() ? export_format_of(options.output) : export_format(options.format);
+  } catch (const std::invalid_argument& error) {
+    throw WrongUsage(options.format.empty() ? "FILE" : "--as", error.what());
+  }
+}
+
+void export_model(const Options& options) {
+  const ExportFormat& format = format_of(options);
+  require_model_kept(options.model, options.output);
+  const Model model = open_model(options.model);
+  ExportOptions asked{.channel = options.channel, .error = options.error_percent / 100};
+  if (options.wavelengths_nm) asked.wavelengths = micrometres(*options.wavelengths_nm);
+  const Export table(model, format, asked);
+  write_file(options.output, [&](std::ostream& out) { table.write(out); });
+  note(options.output + ": " + table.understood());
+}
+
+std::string footer() {
+  std::string text = "FILE is in the format that its ending says, or --as:\n";
+  for (const ExportFormat& format : export_formats())
+    text += program::format("  %-8s %-8s %s\n", std::string(format.name).c_str(), std::string(format.ending).c_str(),
+                            std::string(format.meaning).c_str());
+  return text +
+         "A note says which table was written and what those who read it find: programs interpolate in it, and the "
+         "coarsest\n"
+         "table is taken whose rms error is at most --error. docs/formats.md says what readers make of each.\n"
+         "\n"
+         "Examples:\n"
+         "  mmbrdf export ptfe plaque.pbsdf --wavelength 450,500,550,600,650\n"
+         "  mmbrdf export ptfe-532 plaque.pbsdf --error 0.02\n"
+         "  mmbrdf export ptfe-532 plaque.astm --channel f_ss";
+}
+
+}  // namespace
+
+Run export_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_model(app, o->model);
+  add_file(app, "FILE", o->output, " ", "File to write").required();
+  add_text(app, "--as", o->format, "FORMAT", "Format, whatever the ending of FILE");
+  add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
+             "Wavelengths of the table, in nm [those of the fit]");
+  add_text(app, "--channel", o->channel, "NAME",
+           "What a format without polarization holds: f11, or a\nquantity of analyze in sr^-1, as f_ss [f11]");
+  add_option(app, "--error", o->error_percent, number, "PERCENT",
+             "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]");
+  set_footer(app, footer());
+  return [o] { export_model(*o); };
+}
+
+}  // namespace mmbrdf::program

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/formats/export.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "formats/astm.hpp"
+#include "formats/export_table.hpp"
+#include "formats/pbsdf.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/text/rounding.hpp"
+#include "mmbrdf/text/units.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+struct Writer {
+  ExportFormat format;
+  Export::Made (*make)(const Model& model, const ExportOptions& options);
+};
+
+constexpr std::array writers{
+    Writer{{"pbsdf", ".pbsdf", "Mitsuba's measured_polarized: Mueller matrices of an isotropic sample", false},
+           make_pbsdf},
+    Writer{{"astm", ".astm", "ASTM E2387 text: one number at each geometry of an isotropic sample", true}, make_astm},
+};
+
+constexpr auto formats = [] {
+  std::array<ExportFormat, writers.size()> result{};
+  for (std::size_t i = 0; i < writers.size(); ++i) result[i] = writers[i].format;
+  return result;
+}();
+
+std::string all_formats() {
+  std::string list;
+  for (const ExportFormat& format : formats)
+    list += (list.empty() ? "" : ", ") + std::string(format.name) + " (" + std::string(format.ending) + ")";
+  return list;
+}
+
+const Writer& writer_of(const ExportFormat& format) {
+  return *std::ranges::find(writers, format.name, [](const Writer& writer) { return writer.format.name; });
+}
+
+/// Options that a writer need not check again.
+ExportOptions completed(const Model& model, const ExportFormat& format, ExportOptions options) {
+  if (!(options.error > 0)) throw std::invalid_argument("error = " + shortest(options.error) + ", must be positive");
+  if (!format.takes_channel && options.channel != "f11")
+    throw std::invalid_argument("channel " + in_quotes(options.channel) + ": a " + std::string(format.ending) +
+                                " file holds whole matrices");
+  if (options.wavelengths.empty()) options.wavelengths = known_wavelengths(model);
+  if (options.wavelengths.empty()) throw std::invalid_argument("the model does not say its wavelengths: tell them");
+  std::ranges::sort(options.wavelengths);
+  const auto twice = std::ranges::adjacent_find(options.wavelengths);
+  if (twice != options.wavelengths.end())
+    throw std::invalid_argument("wavelength " + shortest(in_nanometres(*twice)) + " nm is given twice");
+  return options;
+}
+
+}  // namespace
+
+std::span<const ExportFormat> export_formats() { return formats; }
+
+const ExportFormat& export_format(std::string_view name) {
+  const auto* const found = std::ranges::find(formats, name, &ExportFormat::name);
+  if (found == formats.end())
+    throw std::invalid_argument(in_quotes(name) + ": no such format; there are " + all_formats());
+  return *found;
+}
+
+const ExportFormat& export_format_of(std::string_view path) {
+  const auto* const found =
+      std::ranges::find_if(formats, [&](const ExportFormat& format) { return path.ends_with(format.ending); });
+  if (found == formats.end())
+    throw std::invalid_argument(in_quotes(path) + ": no format has this ending; there are " + all_formats());
+  return *found;
+}
+
+Export::Export(Made made) : write_(std::move(made.write)), error_(made.error), understood_(std::move(made.understood)) {
+  understood_ += "; interpolation adds " + rounded(100 * error_.rms, 2) + " % of f11 (rms; at most " +
+                 rounded(100 * error_.largest, 2) + " %) up to " + rounded(in_degrees(error_.theta_max), 4) +
+                 " degrees";
+}
+
+Export::Export(const Model& model, const ExportFormat& format, const ExportOptions& options)
+    : Export(writer_of(format).make(model, completed(model, format, options))) {
+  if (const std::string range = fitted_range(model.validity); !range.empty())
+    understood_ += "; beyond its fitted range, " + range + ", the model is extrapolated";
+}
+
+double compared_up_to(const Model& model) {
+  return std::min({compared_theta, model.validity.theta_i_max.value_or(compared_theta),
+                   model.validity.theta_r_max.value_or(compared_theta)});
+}
+
+void require_error(const ExportError& error, const ExportOptions& options, const std::string& table) {
+  if (error.rms > options.error)
+    throw std::invalid_argument("the finest table, of " + table + ", has an rms error of " +
+                                rounded(100 * error.rms, 2) + " % of f11, more than the " +
+                                rounded(100 * options.error, 2) + " % asked for");
+}
+
+void require_isotropic(const Model& model, const std::string& format) {
+  if (model.family == Family::anisotropic || model.rotation == Rotation::as_printed)
+    throw std::invalid_argument(format + " file is of an isotropic sample, and this model depends on the " +
+                                "azimuth of the source: `convert --basis isotropic` makes one that does not");
+}
+
+}  // namespace mmbrdf

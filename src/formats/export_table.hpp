@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What writers of foreign formats share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "mmbrdf/formats/export.hpp"
+#include "mmbrdf/polarization/mueller.hpp"
+
+namespace mmbrdf {
+
+/// Directions of a table are compared up to this polar angle.
+double compared_up_to(const Model& model);
+
+/// Throws std::invalid_argument unless a turn of the sample changes nothing.
+void require_isotropic(const Model& model, const std::string& format);
+
+/// Throws std::invalid_argument if the finest `table` is too coarse.
+void require_error(const ExportError& error, const ExportOptions& options, const std::string& table);
+
+/// Of what a reader finds, beside what the model gives.
+class Deviation {
+ public:
+  void add(double found, double expected, double f11) {
+    const double part = (found - expected) / f11;
+    squares_ += part * part;
+    largest_ = std::max(largest_, std::abs(part));
+    ++count_;
+  }
+  ExportError error(double theta_max) const {
+    return {std::sqrt(squares_ / static_cast<double>(count_)), largest_, theta_max};
+  }
+
+ private:
+  double squares_ = 0, largest_ = 0;
+  long count_ = 0;
+};
+
+}  // namespace mmbrdf
