@@ -4,16 +4,16 @@
 ///
 /// The caller owns the random numbers. A point (u1, u2) of the unit square is mapped to a direction: theta_r rises with u1, and
 /// phi_r − phi_i from −π to π with u2, both continuously, so that stratified and quasi-random points stay so. The density is
-/// close to f11 cos theta_r; the pdf is exactly that of what is drawn (theory 5.3), so
+/// close to |f11| cos theta_r; the pdf is exactly that of what is drawn (theory 5.3), so
 ///     the mean of weight() over uniform points is ∫ M cos theta_r dΩ_r
 /// whatever the model, without bias. No point is rejected, and each costs the same.
 ///
 /// **Polarized light** is drawn by f11, whatever its Stokes vector, and weight() is the whole matrix: the mean of its product
 /// with any Stokes vector is right, too.
 ///
-/// Where f11 is negative, which fits can be, and where it is 0, it is drawn as at least sampling_floor of its mean: no weight
-/// is without bound. All functions throw std::invalid_argument for numbers outside [0, 1), for invalid directions
-/// and for sizes that differ, in batches before anything is written. They may run in many threads at once.
+/// Where f11 is negative, which fits can be, it is drawn by |f11|, and the weight is negative; where it is 0, as often as
+/// sampling_floor says: no weight is without bound. All functions throw std::invalid_argument for numbers outside [0, 1), for
+/// invalid directions and for sizes that differ, in batches before anything is written. They may run in many threads at once.
 #pragma once
 
 #include <array>
