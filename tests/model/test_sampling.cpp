@@ -362,3 +362,14 @@ TEST(Sampling, RefusesModelsThatReflectNothing) {
     EXPECT_EQ(message_of([&] { DirectionSampler(prepare(diffuser({f11}), 0.5)); }),
               "f11 is positive nowhere: no directions can be drawn by it");
 }
+TEST(Sampling, LeavesUnknownElementsNaNAndTheFirstOneNever) {
+  Model model = random_model(Family::isotropic, {2, 2}, 0, 1);
+  model.not_measured.set().reset(0);
+  std::erase_if(model.blocks, [](const FittedBlock& fitted) { return !feeds_f11(fitted.block); });
+  const DirectionSampler sampler(prepare(model, 0.5));
+  const Direction incident{0.5, 0.2};
+  const Mueller weight = sampler.weight(incident, sampler.sample(incident, {0.3, 0.8}), Frame::sp);
+  EXPECT_TRUE(std::isfinite(weight(0, 0)));
+  for (std::size_t element = 1; element < 16; ++element) EXPECT_TRUE(std::isnan(weight.elements[element])) << element;
+}
+

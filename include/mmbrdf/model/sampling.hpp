@@ -9,7 +9,8 @@
 /// whatever the model, without bias. No point is rejected, and each costs the same.
 ///
 /// **Polarized light** is drawn by f11, whatever its Stokes vector, and weight() is the whole matrix: the mean of its product
-/// with any Stokes vector is right, too.
+/// with any Stokes vector is right, too. Elements that the model does not know are NaN in it, as in evaluate(), and they make
+/// components of M S NaN: a code without polarization takes element (0, 0), which is never unknown.
 ///
 /// Where f11 is negative, which fits can be, it is drawn by |f11|, and the weight is negative; where it is 0, as often as
 /// sampling_floor says: no weight is without bound. All functions throw std::invalid_argument for numbers outside [0, 1), for
@@ -58,6 +59,7 @@ class DirectionSampler {
 
   /// M cos theta_r / pdf, what Stokes vectors are multiplied with on the way: dimensionless, its mean is the reflectance.
   Mueller weight(const Direction& incident, const SampledDirection& drawn, Frame frame = Frame::xy) const;
+  /// NaN in unknown elements.
 
   /// Many at once, the same to the last bit as one by one: an incident direction for each point, or one for all.
   /// threads 0: one for each core.
