@@ -74,9 +74,10 @@ struct Polar {
 
 Polar polar(const Vector3& vector) {
   const double across = vector[0] * vector[0] + vector[1] * vector[1];
-  const double v = across / (across + vector[2] * vector[2]), length = std::sqrt(across);
+  const double squared = across + vector[2] * vector[2], length = std::sqrt(across);
   if (length == 0) return {0, 1, 1, 0};
-  return {v, std::sqrt(1 - v), vector[0] / length, vector[1] / length};
+  // Not √(1 − v), which next to the horizon is what rounding left.
+  return {across / squared, vector[2] / std::sqrt(squared), vector[0] / length, vector[1] / length};
 }
 
 SamplingMap::Incidence incidence(const SamplingMap& map, const Polar& incident) {
@@ -130,7 +131,9 @@ SampledVector DirectionSampler::sample(const Vector3& incident, const UnitPoint&
 }
 
 double DirectionSampler::pdf(const Direction& incident, const Direction& reflected) const {
-  mmbrdf::require_valid(Geometry{incident, reflected});
+  const bool below = reflected.theta > radians(90) && reflected.theta <= radians(180);
+  mmbrdf::require_valid(Geometry{incident, {below ? 0 : reflected.theta, reflected.phi}});
+  if (below) return 0;
   const double cos_theta = std::max(0.0, std::cos(reflected.theta)), sin_theta = std::sin(reflected.theta);
   const double azimuth = between_minus_pi_and_pi(reflected.phi - incident.phi);
   return per_solid_angle(map_->density(incidence(*map_, incident), {sin_theta * sin_theta, azimuth}), cos_theta);
@@ -138,6 +141,7 @@ double DirectionSampler::pdf(const Direction& incident, const Direction& reflect
 
 double DirectionSampler::pdf(const Vector3& incident, const Vector3& reflected) const {
   require_valid(incident);
+  if (reflected[2] < 0 && is_unit_vector({reflected[0], reflected[1], -reflected[2]})) return 0;
   require_unit_vector(reflected, "reflected vector");
   const Polar from = polar(incident), to = polar(reflected);
   const double azimuth = std::atan2(to.sin_phi * from.cos_phi - to.cos_phi * from.sin_phi,

@@ -192,6 +192,39 @@ RC_GTEST_PROP(Sampling, AnswersWithThePdfOfWhatItDrew, ()) {
   }
 }
 
+// Half of what is drawn here is within 1e-4 rad of the horizon, where cos theta_r is not in sin² theta_r any more.
+RC_GTEST_PROP(Sampling, AnswersWithThePdfOfVectorsNextToTheHorizon, ()) {
+  static const DirectionSampler isotropic(prepare(material("ptfe-532"), 0.532)),
+      anisotropic(any_model(Family::anisotropic));
+  for (const DirectionSampler* sampler : {&isotropic, &anisotropic}) {
+    const Vector3 incident = unit_vector({between(0, pi / 2), between(-7, 7)});
+    const UnitPoint u{1 - std::pow(10, between(-14, -3)), between(1e-9, 1 - 1e-9)};
+    RC_PRE(std::abs(64 * u[1] - std::round(64 * u[1])) > 1e-7);
+    const SampledVector drawn = sampler->sample(incident, u);
+    RC_ASSERT(std::abs(sampler->pdf(incident, drawn.reflected) / drawn.pdf - 1) < sampling_error);
+  }
+}
+
+TEST(Sampling, HasAPdfThatGoesAsTheZOfAVectorDownToTheHorizon) {
+  const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
+  const Vector3 incident{0.6, 0, 0.8};
+  const double pdf = sampler.pdf(incident, {1, 0, 1e-6});
+  EXPECT_GT(pdf, 0);
+  for (const double z : {1e-9, 1e-12, 1e-200})
+    EXPECT_NEAR(sampler.pdf(incident, {1, 0, z}) / pdf, z / 1e-6, 1e-9 * z / 1e-6);
+  EXPECT_EQ(sampler.pdf(incident, {1, 0, 0}), 0);
+}
+
+TEST(Sampling, NeverDrawsDirectionsBelowTheHorizon) {
+  const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
+  const Direction incident{0.5, 0.2};
+  for (const double theta : {radians(91), 2.0, pi}) {
+    EXPECT_EQ(sampler.pdf(incident, Direction{theta, 1}), 0) << theta;
+    EXPECT_EQ(sampler.pdf(unit_vector(incident), unit_vector({theta, 1})), 0) << theta;
+  }
+  EXPECT_EQ(sampler.pdf(unit_vector(incident), Vector3{1, 0, -1e-9}), 0);
+}
+
 RC_GTEST_PROP(Sampling, RisesContinuouslyWithBothNumbers, ()) {
   static const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
   const Direction incident{between(0, pi / 2), between(-7, 7)};
@@ -278,6 +311,17 @@ TEST(Sampling, HasABoundOnEveryWeightWhereF11IsNegative) {
   EXPECT_GT(negative, 1000);
 }
 
+// By |f11| without a floor it would be (∫|f11|)² − (∫f11)², never more than π∫f11² − (∫f11)².
+TEST(Sampling, VariesLessThanCosineSamplingWhereF11IsNegative) {
+  const DirectionSampler sampler(negative_in_places());
+  const std::vector<UnitPoint> points = lattice(128);
+  for (int i = 0; i < 20; ++i) {
+    const auto ours = weights(sampler, incidence(i), sampled(sampler, incidence(i), points));
+    const auto cosine = weights(sampler, incidence(i), by_cosine(points));
+    EXPECT_LT(moments(ours).variance, moments(cosine).variance) << i;
+  }
+}
+
 TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
   const DirectionSampler sampler(any_model(Family::isotropic));
   const std::vector<UnitPoint> points = random_points(20000, 9);
@@ -311,17 +355,6 @@ TEST(Sampling, HoldsAtTheEdgesOfTheSquareAndOfTheHemisphere) {
       const Direction incident{theta, 0};
       const SampledDirection drawn = sampler.sample(incident, u);
       EXPECT_TRUE(drawn.pdf > 0 && std::isfinite(drawn.pdf));
-// By |f11| without a floor it would be (∫|f11|)² − (∫f11)², never more than π∫f11² − (∫f11)².
-TEST(Sampling, VariesLessThanCosineSamplingWhereF11IsNegative) {
-  const DirectionSampler sampler(negative_in_places());
-  const std::vector<UnitPoint> points = lattice(128);
-  for (int i = 0; i < 20; ++i) {
-    const auto ours = weights(sampler, incidence(i), sampled(sampler, incidence(i), points));
-    const auto cosine = weights(sampler, incidence(i), by_cosine(points));
-    EXPECT_LT(moments(ours).variance, moments(cosine).variance) << i;
-  }
-}
-
       const double weight = sampler.weight(incident, drawn)(0, 0);
       EXPECT_TRUE(weight > 0.5 && weight < 2) << weight;
       EXPECT_TRUE(sampler.sample(unit_vector(incident), u).pdf > 0);
@@ -336,7 +369,10 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
   EXPECT_EQ(of([&] { sampler.sample(up, {1, 0.5}); }), "u = (1, 0.5): both must be in [0, 1)");
   EXPECT_EQ(of([&] { sampler.sample(up, {0.5, nan}); }), "u = (0.5, nan): both must be in [0, 1)");
   EXPECT_TRUE(says(of([&] { sampler.sample(below, {0, 0}); }), {"degrees, must be in 0...90"}));
-  EXPECT_TRUE(says(of([&] { sampler.pdf(up, below); }), {"degrees, must be in 0...90"}));
+  EXPECT_TRUE(says(of([&] { sampler.pdf(below, up); }), {"degrees, must be in 0...90"}));
+  for (const Direction& odd : {Direction{-0.1, 0}, Direction{3.2, 0}, Direction{nan, 0}, Direction{2, nan}})
+    EXPECT_TRUE(says(of([&] { sampler.pdf(up, odd); }), {odd.theta == 2 ? "phi_r" : "theta_r"})) << odd.theta;
+  EXPECT_TRUE(says(of([&] { sampler.weight(up, {below, 0.1}); }), {"degrees, must be in 0...90"}));
   EXPECT_TRUE(says(of([&] { sampler.sample(Direction{0, nan}, {0, 0}); }), {"finite"}));
   EXPECT_EQ(of([&] {
               sampler.sample(Vector3{0, 0.6, -0.8}, {0, 0});
@@ -357,11 +393,6 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(says(of([&] { sampler.sample(std::vector{up}, points, out); }), {"3 directions", "room for 2"}));
 }
 
-TEST(Sampling, RefusesModelsThatReflectNothing) {
-  for (const double f11 : {0.0, -0.1})
-    EXPECT_EQ(message_of([&] { DirectionSampler(prepare(diffuser({f11}), 0.5)); }),
-              "f11 is positive nowhere: no directions can be drawn by it");
-}
 TEST(Sampling, LeavesUnknownElementsNaNAndTheFirstOneNever) {
   Model model = random_model(Family::isotropic, {2, 2}, 0, 1);
   model.not_measured.set().reset(0);
@@ -373,3 +404,8 @@ TEST(Sampling, LeavesUnknownElementsNaNAndTheFirstOneNever) {
   for (std::size_t element = 1; element < 16; ++element) EXPECT_TRUE(std::isnan(weight.elements[element])) << element;
 }
 
+TEST(Sampling, RefusesModelsThatReflectNothing) {
+  for (const double f11 : {0.0, -0.1})
+    EXPECT_EQ(message_of([&] { DirectionSampler(prepare(diffuser({f11}), 0.5)); }),
+              "f11 is positive nowhere: no directions can be drawn by it");
+}

@@ -53,13 +53,14 @@ class DirectionSampler {
   /// Of unit vectors (z ≥ 0, length 1 to 1e-6).
   SampledVector sample(const Vector3& incident, const UnitPoint& u) const;
 
-  /// Per solid angle, sr⁻¹: with it sample() comes upon a direction, for instance one that was drawn in another way.
+  /// Per solid angle, sr⁻¹: with it sample() comes upon a direction, for instance one that was drawn in another way. 0 for
+  /// reflected directions below the horizon (theta_r in (π/2, π], z < 0), which it never draws.
   double pdf(const Direction& incident, const Direction& reflected) const;
   double pdf(const Vector3& incident, const Vector3& reflected) const;
 
   /// M cos theta_r / pdf, what Stokes vectors are multiplied with on the way: dimensionless, its mean is the reflectance.
-  Mueller weight(const Direction& incident, const SampledDirection& drawn, Frame frame = Frame::xy) const;
   /// NaN in unknown elements.
+  Mueller weight(const Direction& incident, const SampledDirection& drawn, Frame frame = Frame::xy) const;
 
   /// Many at once, the same to the last bit as one by one: an incident direction for each point, or one for all.
   /// threads 0: one for each core.
@@ -79,11 +80,12 @@ class DirectionSampler {
 };
 
 /// Directions are drawn at least this often, as a share of the mean over all azimuths at a theta_r, and all azimuths at a
-/// theta_r as a share of the mean over the hemisphere: pdf ≥ (sampling_floor / (1 + sampling_floor))² cos theta_r / π.
+/// theta_r as a share of the mean over the hemisphere: above the horizon pdf ≥ (sampling_floor / (1 + sampling_floor))² cos theta_r / π.
 inline constexpr double sampling_floor = 0.01;
 
 /// Bound on the relative difference of pdf() from the pdf that sample() gave for the same direction, but for 1e-12 of the
-/// directions at steps of the tables and for those within 1e-6 rad of the horizon, where cos theta_r is lost.
+/// directions at steps of the tables and, of angles but not of vectors, those within 1e-6 rad of the horizon, where cos theta_r
+/// is lost.
 inline constexpr double sampling_error = 1e-8;
 
 }  // namespace mmbrdf
