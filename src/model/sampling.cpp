@@ -2,6 +2,7 @@
 #include "mmbrdf/model/sampling.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -100,6 +101,13 @@ SampledVector drawn(const SamplingMap& map, const Vector3& incident, const UnitP
           per_solid_angle(density, cos_theta)};
 }
 
+template <class Sampled>
+void require_pdfs(std::span<const Sampled> drawn) {
+  for (const Sampled& one : drawn)
+    if (!(one.pdf > 0 && std::isfinite(one.pdf)))
+      throw std::invalid_argument("pdf = " + shortest(one.pdf) + ", must be positive: was the direction drawn?");
+}
+
 /// sample() of many.
 template <class Incident, class Sampled>
 void draw(const SamplingMap& map, std::span<const Incident> incident, std::span<const UnitPoint> u,
@@ -155,6 +163,12 @@ Mueller DirectionSampler::weight(const Direction& incident, const SampledDirecti
   return m;
 }
 
+Mueller DirectionSampler::weight(const Vector3& incident, const SampledVector& drawn, Frame frame) const {
+  Mueller m;
+  weights(std::span(&incident, 1), std::span(&drawn, 1), frame, std::span(&m, 1));
+  return m;
+}
+
 void DirectionSampler::sample(std::span<const Direction> incident, std::span<const UnitPoint> u,
                               std::span<SampledDirection> out, int threads) const {
   draw(*map_, incident, u, out, threads);
@@ -168,14 +182,27 @@ void DirectionSampler::sample(std::span<const Vector3> incident, std::span<const
 void DirectionSampler::weights(std::span<const Direction> incident, std::span<const SampledDirection> drawn,
                                Frame frame, std::span<Mueller> out, int threads) const {
   require_sizes(incident.size(), drawn.size(), out.size());
+  require_pdfs(drawn);
   std::vector<Geometry> geometries(drawn.size());
-  for (std::size_t q = 0; q < drawn.size(); ++q) {
-    if (!(drawn[q].pdf > 0 && std::isfinite(drawn[q].pdf)))
-      throw std::invalid_argument("pdf = " + shortest(drawn[q].pdf) + ", must be positive: was the direction drawn?");
+  for (std::size_t q = 0; q < drawn.size(); ++q)
     geometries[q] = {incident[incident.size() == 1 ? 0 : q], drawn[q].reflected};
-  }
   evaluate(model_, geometries, out, {.frame = frame, .threads = threads});
   for (std::size_t q = 0; q < drawn.size(); ++q) out[q] = std::cos(drawn[q].reflected.theta) / drawn[q].pdf * out[q];
+}
+
+void DirectionSampler::weights(std::span<const Vector3> incident, std::span<const SampledVector> drawn, Frame frame,
+                               std::span<Mueller> out, int threads) const {
+  require_sizes(incident.size(), drawn.size(), out.size());
+  require_pdfs(drawn);
+  const std::size_t count = drawn.size();
+  std::array<std::vector<double>, 3> from, to;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t q = 0; q < count; ++q) from[c].push_back(incident[incident.size() == 1 ? 0 : q][c]);
+    for (std::size_t q = 0; q < count; ++q) to[c].push_back(drawn[q].reflected[c]);
+  }
+  evaluate(model_, VectorGeometries<double>{{from[0], from[1], from[2]}, {to[0], to[1], to[2]}}, out,
+           {.frame = frame, .threads = threads});
+  for (std::size_t q = 0; q < count; ++q) out[q] = polar(drawn[q].reflected).cos_theta / drawn[q].pdf * out[q];
 }
 
 }  // namespace mmbrdf

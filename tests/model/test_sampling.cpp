@@ -347,6 +347,29 @@ TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
   }
 }
 
+TEST(Sampling, WeightsVectorsAsItWeightsTheirDirections) {
+  for (const Family family : {Family::isotropic, Family::anisotropic}) {
+    const DirectionSampler sampler(any_model(family));
+    const std::vector<UnitPoint> points = random_points(1000, 11);
+    const Direction incident{1.1, 0.4};
+    const Vector3 vector = unit_vector(incident);
+    std::vector<SampledVector> drawn(points.size());
+    sampler.sample(std::span(&vector, 1), points, drawn);
+    std::vector<Mueller> found(points.size()), in_threads(points.size());
+    sampler.weights(std::span(&vector, 1), drawn, Frame::sp, found);
+    sampler.weights(std::vector(points.size(), vector), drawn, Frame::sp, in_threads, 3);
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const SampledDirection same{direction(drawn[q].reflected), drawn[q].pdf};
+      const Mueller expected = sampler.weight(incident, same, Frame::sp);
+      const Mueller one = sampler.weight(vector, drawn[q], Frame::sp);
+      ASSERT_EQ(found[q].elements, one.elements);
+      ASSERT_EQ(found[q].elements, in_threads[q].elements);
+      // The least cos theta_r here is above 1e-3, good to 1e-13 from an angle; matrices agree to evaluation_error.
+      for (std::size_t e = 0; e < 16; ++e) ASSERT_NEAR(one.elements[e], expected.elements[e], 1e-9) << q << ' ' << e;
+    }
+  }
+}
+
 TEST(Sampling, HoldsAtTheEdgesOfTheSquareAndOfTheHemisphere) {
   const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
   const double last = 1 - 0x1p-53;
@@ -383,6 +406,8 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
             }),
             "reflected vector (0, 0, nan) is not a unit vector with z >= 0");
   EXPECT_TRUE(says(of([&] { sampler.weight(up, {{0.1, 0}, 0}); }), {"pdf = 0", "positive"}));
+  EXPECT_TRUE(says(of([&] { sampler.weight(Vector3{0, 0, 1}, {{0, 0, 1}, nan}); }), {"pdf = nan", "positive"}));
+  EXPECT_TRUE(says(of([&] { sampler.weight(Vector3{0, 0, 1}, {{0, 0.6, -0.8}, 1}); }), {"reflected", "unit vector"}));
   std::vector<UnitPoint> points(3, {0.5, 0.5});
   points[2][0] = -0.5;
   std::vector<SampledDirection> out(3);

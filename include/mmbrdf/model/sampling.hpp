@@ -61,6 +61,7 @@ class DirectionSampler {
   /// M cos theta_r / pdf, what Stokes vectors are multiplied with on the way: dimensionless, its mean is the reflectance.
   /// NaN in unknown elements.
   Mueller weight(const Direction& incident, const SampledDirection& drawn, Frame frame = Frame::xy) const;
+  Mueller weight(const Vector3& incident, const SampledVector& drawn, Frame frame = Frame::xy) const;
 
   /// Many at once, the same to the last bit as one by one: an incident direction for each point, or one for all.
   /// threads 0: one for each core.
@@ -69,6 +70,8 @@ class DirectionSampler {
   void sample(std::span<const Vector3> incident, std::span<const UnitPoint> u, std::span<SampledVector> out,
               int threads = 1) const;
   void weights(std::span<const Direction> incident, std::span<const SampledDirection> drawn, Frame frame,
+               std::span<Mueller> out, int threads = 1) const;
+  void weights(std::span<const Vector3> incident, std::span<const SampledVector> drawn, Frame frame,
                std::span<Mueller> out, int threads = 1) const;
 
   /// That this was made of.
