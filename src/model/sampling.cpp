@@ -2,6 +2,7 @@
 #include "mmbrdf/model/sampling.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -74,9 +75,10 @@ struct Polar {
 
 Polar polar(const Vector3& vector) {
   const double across = vector[0] * vector[0] + vector[1] * vector[1];
-  const double v = across / (across + vector[2] * vector[2]), length = std::sqrt(across);
+  const double squared = across + vector[2] * vector[2], length = std::sqrt(across);
   if (length == 0) return {0, 1, 1, 0};
-  return {v, std::sqrt(1 - v), vector[0] / length, vector[1] / length};
+  // Not √(1 − v), which next to the horizon is what rounding left.
+  return {across / squared, vector[2] / std::sqrt(squared), vector[0] / length, vector[1] / length};
 }
 
 SamplingMap::Incidence incidence(const SamplingMap& map, const Polar& incident) {
@@ -97,6 +99,13 @@ SampledVector drawn(const SamplingMap& map, const Vector3& incident, const UnitP
   const double c = sin_theta * std::cos(place.azimuth), s = sin_theta * std::sin(place.azimuth);
   return {{c * from.cos_phi - s * from.sin_phi, s * from.cos_phi + c * from.sin_phi, cos_theta},
           per_solid_angle(density, cos_theta)};
+}
+
+template <class Sampled>
+void require_pdfs(std::span<const Sampled> drawn) {
+  for (const Sampled& one : drawn)
+    if (!(one.pdf > 0 && std::isfinite(one.pdf)))
+      throw std::invalid_argument("pdf = " + shortest(one.pdf) + ", must be positive: was the direction drawn?");
 }
 
 /// sample() of many.
@@ -130,7 +139,9 @@ SampledVector DirectionSampler::sample(const Vector3& incident, const UnitPoint&
 }
 
 double DirectionSampler::pdf(const Direction& incident, const Direction& reflected) const {
-  mmbrdf::require_valid(Geometry{incident, reflected});
+  const bool below = reflected.theta > radians(90) && reflected.theta <= radians(180);
+  mmbrdf::require_valid(Geometry{incident, {below ? 0 : reflected.theta, reflected.phi}});
+  if (below) return 0;
   const double cos_theta = std::max(0.0, std::cos(reflected.theta)), sin_theta = std::sin(reflected.theta);
   const double azimuth = between_minus_pi_and_pi(reflected.phi - incident.phi);
   return per_solid_angle(map_->density(incidence(*map_, incident), {sin_theta * sin_theta, azimuth}), cos_theta);
@@ -138,6 +149,7 @@ double DirectionSampler::pdf(const Direction& incident, const Direction& reflect
 
 double DirectionSampler::pdf(const Vector3& incident, const Vector3& reflected) const {
   require_valid(incident);
+  if (reflected[2] < 0 && is_unit_vector({reflected[0], reflected[1], -reflected[2]})) return 0;
   require_unit_vector(reflected, "reflected vector");
   const Polar from = polar(incident), to = polar(reflected);
   const double azimuth = std::atan2(to.sin_phi * from.cos_phi - to.cos_phi * from.sin_phi,
@@ -146,6 +158,12 @@ double DirectionSampler::pdf(const Vector3& incident, const Vector3& reflected) 
 }
 
 Mueller DirectionSampler::weight(const Direction& incident, const SampledDirection& drawn, Frame frame) const {
+  Mueller m;
+  weights(std::span(&incident, 1), std::span(&drawn, 1), frame, std::span(&m, 1));
+  return m;
+}
+
+Mueller DirectionSampler::weight(const Vector3& incident, const SampledVector& drawn, Frame frame) const {
   Mueller m;
   weights(std::span(&incident, 1), std::span(&drawn, 1), frame, std::span(&m, 1));
   return m;
@@ -164,14 +182,27 @@ void DirectionSampler::sample(std::span<const Vector3> incident, std::span<const
 void DirectionSampler::weights(std::span<const Direction> incident, std::span<const SampledDirection> drawn,
                                Frame frame, std::span<Mueller> out, int threads) const {
   require_sizes(incident.size(), drawn.size(), out.size());
+  require_pdfs(drawn);
   std::vector<Geometry> geometries(drawn.size());
-  for (std::size_t q = 0; q < drawn.size(); ++q) {
-    if (!(drawn[q].pdf > 0 && std::isfinite(drawn[q].pdf)))
-      throw std::invalid_argument("pdf = " + shortest(drawn[q].pdf) + ", must be positive: was the direction drawn?");
+  for (std::size_t q = 0; q < drawn.size(); ++q)
     geometries[q] = {incident[incident.size() == 1 ? 0 : q], drawn[q].reflected};
-  }
   evaluate(model_, geometries, out, {.frame = frame, .threads = threads});
   for (std::size_t q = 0; q < drawn.size(); ++q) out[q] = std::cos(drawn[q].reflected.theta) / drawn[q].pdf * out[q];
+}
+
+void DirectionSampler::weights(std::span<const Vector3> incident, std::span<const SampledVector> drawn, Frame frame,
+                               std::span<Mueller> out, int threads) const {
+  require_sizes(incident.size(), drawn.size(), out.size());
+  require_pdfs(drawn);
+  const std::size_t count = drawn.size();
+  std::array<std::vector<double>, 3> from, to;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t q = 0; q < count; ++q) from[c].push_back(incident[incident.size() == 1 ? 0 : q][c]);
+    for (std::size_t q = 0; q < count; ++q) to[c].push_back(drawn[q].reflected[c]);
+  }
+  evaluate(model_, VectorGeometries<double>{{from[0], from[1], from[2]}, {to[0], to[1], to[2]}}, out,
+           {.frame = frame, .threads = threads});
+  for (std::size_t q = 0; q < count; ++q) out[q] = polar(drawn[q].reflected).cos_theta / drawn[q].pdf * out[q];
 }
 
 }  // namespace mmbrdf

@@ -57,17 +57,21 @@ void raise(std::span<const double> x, std::vector<double>& density) {
   for (double& d : density) d = average > 0 ? d / average + sampling_floor : 1;
 }
 
-/// f11 at polar angles times azimuths from the incident one, where it is positive.
-std::vector<double> positive_f11(const PreparedIncidence& model, std::span<const double> theta,
-                                 std::span<const double> azimuth) {
+/// f11 at polar angles times azimuths from the incident one.
+std::vector<double> f11_of(const PreparedIncidence& model, std::span<const double> theta,
+                           std::span<const double> azimuth) {
   std::vector<Direction> directions;
   for (const double t : theta)
     for (const double a : azimuth) directions.push_back({t, model.incident().phi + a});
   std::vector<Mueller> matrices(directions.size());
   model.evaluate(directions, Frame::xy, matrices);
   std::vector<double> values;
-  for (const Mueller& m : matrices) values.push_back(std::max(0.0, m(0, 0)));
+  for (const Mueller& m : matrices) values.push_back(m(0, 0));
   return values;
+}
+
+void make_positive(std::vector<double>& values) {
+  for (double& value : values) value = std::abs(value);
 }
 
 /// begin … end in equal steps.
@@ -89,17 +93,19 @@ SamplingMap::Made SamplingMap::table(const PreparedModel& model, const Direction
   const std::vector<double> shares = axis(0, 1, azimuths.size() - 1);
   const std::vector<double> thetas = axis(0, pi / 2, theta_steps);
   std::vector<double> v, marginal;
-  const std::vector<double> all = positive_f11(at, thetas, azimuths);
+  std::vector<double> all = f11_of(at, thetas, azimuths);
+  Made made{{}, *std::max_element(all.begin(), all.end())};
+  make_positive(all);
   for (std::size_t i = 0; i < thetas.size(); ++i) {
     v.push_back(std::pow(std::sin(thetas[i]), 2));
     marginal.push_back(mean(shares, std::span(all).subspan(i * shares.size(), shares.size())));
   }
-  Made made{{}, mean(v, marginal)};
   raise(v, marginal);
   const auto cuts = equal_shares<steps>(v, marginal);
   std::vector<double> angles;
   for (const double cut : cuts) angles.push_back(polar_angle(cut));
-  const std::vector<double> rows = positive_f11(at, angles, azimuths);
+  std::vector<double> rows = f11_of(at, angles, azimuths);
+  make_positive(rows);
   for (std::size_t j = 0; j <= steps; ++j) {
     const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(j * shares.size());
     std::vector<double> conditional(begin, begin + static_cast<std::ptrdiff_t>(shares.size()));
@@ -112,15 +118,15 @@ SamplingMap::Made SamplingMap::table(const PreparedModel& model, const Direction
 SamplingMap::SamplingMap(const PreparedModel& model)
     : turns_(Evaluation::pattern(model).isotropic_f11 ? 1 : incident_azimuths) {
   tables_.resize((incident_steps + 1) * turns_);
-  std::vector<double> mean_f11(tables_.size());
+  std::vector<double> largest_f11(tables_.size());
   in_any_order(tables_.size(), [&](std::size_t i) {
     const double rho = static_cast<double>(i / turns_) / static_cast<double>(incident_steps);
     const double turn = static_cast<double>(i % turns_) / static_cast<double>(turns_);
     const Made made = table(model, {std::acos(1 - rho * rho), 2 * pi * turn});
     tables_[i] = made.table;
-    mean_f11[i] = made.mean_f11;
+    largest_f11[i] = made.largest_f11;
   });
-  if (*std::max_element(mean_f11.begin(), mean_f11.end()) <= 0)
+  if (*std::max_element(largest_f11.begin(), largest_f11.end()) <= 0)
     throw std::invalid_argument("f11 is positive nowhere: no directions can be drawn by it");
 }
 

@@ -53,10 +53,10 @@ class SamplingMap {
   template <std::size_t corners>
   class Blend;
 
-  /// With the mean over the hemisphere of what it is made of.
+  /// With the largest f11, not |f11|, that was met.
   struct Made {
     Table table;
-    double mean_f11;
+    double largest_f11;
   };
   Made table(const PreparedModel& model, const Direction& incident) const;
   template <class Ask>

@@ -49,6 +49,15 @@ PreparedModel any_model(Family family, Rotation rotation = Rotation::covariant) 
   return prepare(model, 0.5);
 }
 
+// f11 of these coefficients is negative in places.
+PreparedModel negative_in_places() {
+  Model model = random_model(Family::isotropic, {6, 2}, 0, 4);
+  for (FittedBlock& fitted : model.blocks)
+    if (feeds_f11(fitted.block))
+      for (std::size_t q = 1; q < fitted.coefficients.size(); ++q) fitted.coefficients[q] = q % 2 ? 0.3 : -0.3;
+  return prepare(model, 0.5);
+}
+
 std::vector<SampledDirection> sampled(const DirectionSampler& sampler, const Direction& incident,
                                       const std::vector<UnitPoint>& points) {
   std::vector<SampledDirection> drawn(points.size());
@@ -183,6 +192,39 @@ RC_GTEST_PROP(Sampling, AnswersWithThePdfOfWhatItDrew, ()) {
   }
 }
 
+// Half of what is drawn here is within 1e-4 rad of the horizon, where cos theta_r is not in sin² theta_r any more.
+RC_GTEST_PROP(Sampling, AnswersWithThePdfOfVectorsNextToTheHorizon, ()) {
+  static const DirectionSampler isotropic(prepare(material("ptfe-532"), 0.532)),
+      anisotropic(any_model(Family::anisotropic));
+  for (const DirectionSampler* sampler : {&isotropic, &anisotropic}) {
+    const Vector3 incident = unit_vector({between(0, pi / 2), between(-7, 7)});
+    const UnitPoint u{1 - std::pow(10, between(-14, -3)), between(1e-9, 1 - 1e-9)};
+    RC_PRE(std::abs(64 * u[1] - std::round(64 * u[1])) > 1e-7);
+    const SampledVector drawn = sampler->sample(incident, u);
+    RC_ASSERT(std::abs(sampler->pdf(incident, drawn.reflected) / drawn.pdf - 1) < sampling_error);
+  }
+}
+
+TEST(Sampling, HasAPdfThatGoesAsTheZOfAVectorDownToTheHorizon) {
+  const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
+  const Vector3 incident{0.6, 0, 0.8};
+  const double pdf = sampler.pdf(incident, {1, 0, 1e-6});
+  EXPECT_GT(pdf, 0);
+  for (const double z : {1e-9, 1e-12, 1e-200})
+    EXPECT_NEAR(sampler.pdf(incident, {1, 0, z}) / pdf, z / 1e-6, 1e-9 * z / 1e-6);
+  EXPECT_EQ(sampler.pdf(incident, {1, 0, 0}), 0);
+}
+
+TEST(Sampling, NeverDrawsDirectionsBelowTheHorizon) {
+  const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
+  const Direction incident{0.5, 0.2};
+  for (const double theta : {radians(91), 2.0, pi}) {
+    EXPECT_EQ(sampler.pdf(incident, Direction{theta, 1}), 0) << theta;
+    EXPECT_EQ(sampler.pdf(unit_vector(incident), unit_vector({theta, 1})), 0) << theta;
+  }
+  EXPECT_EQ(sampler.pdf(unit_vector(incident), Vector3{1, 0, -1e-9}), 0);
+}
+
 RC_GTEST_PROP(Sampling, RisesContinuouslyWithBothNumbers, ()) {
   static const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
   const Direction incident{between(0, pi / 2), between(-7, 7)};
@@ -256,13 +298,8 @@ TEST(Sampling, OfThePerfectDiffuserIsCosineSampling) {
   }
 }
 
-// f11 of random coefficients of every mode is negative in places.
 TEST(Sampling, HasABoundOnEveryWeightWhereF11IsNegative) {
-  Model model = random_model(Family::isotropic, {6, 2}, 0, 4);
-  for (FittedBlock& fitted : model.blocks)
-    if (feeds_f11(fitted.block))
-      for (std::size_t q = 1; q < fitted.coefficients.size(); ++q) fitted.coefficients[q] = q % 2 ? 0.3 : -0.3;
-  const PreparedModel prepared = prepare(model, 0.5);
+  const PreparedModel prepared = negative_in_places();
   const DirectionSampler sampler(prepared);
   const double least = std::pow(sampling_floor / (1 + sampling_floor), 2);
   int negative = 0;
@@ -272,6 +309,17 @@ TEST(Sampling, HasABoundOnEveryWeightWhereF11IsNegative) {
       EXPECT_GE(sampler.pdf(incidence(i), c.reflected), least * c.pdf);
     }
   EXPECT_GT(negative, 1000);
+}
+
+// By |f11| without a floor it would be (∫|f11|)² − (∫f11)², never more than π∫f11² − (∫f11)².
+TEST(Sampling, VariesLessThanCosineSamplingWhereF11IsNegative) {
+  const DirectionSampler sampler(negative_in_places());
+  const std::vector<UnitPoint> points = lattice(128);
+  for (int i = 0; i < 20; ++i) {
+    const auto ours = weights(sampler, incidence(i), sampled(sampler, incidence(i), points));
+    const auto cosine = weights(sampler, incidence(i), by_cosine(points));
+    EXPECT_LT(moments(ours).variance, moments(cosine).variance) << i;
+  }
 }
 
 TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
@@ -299,6 +347,29 @@ TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
   }
 }
 
+TEST(Sampling, WeightsVectorsAsItWeightsTheirDirections) {
+  for (const Family family : {Family::isotropic, Family::anisotropic}) {
+    const DirectionSampler sampler(any_model(family));
+    const std::vector<UnitPoint> points = random_points(1000, 11);
+    const Direction incident{1.1, 0.4};
+    const Vector3 vector = unit_vector(incident);
+    std::vector<SampledVector> drawn(points.size());
+    sampler.sample(std::span(&vector, 1), points, drawn);
+    std::vector<Mueller> found(points.size()), in_threads(points.size());
+    sampler.weights(std::span(&vector, 1), drawn, Frame::sp, found);
+    sampler.weights(std::vector(points.size(), vector), drawn, Frame::sp, in_threads, 3);
+    for (std::size_t q = 0; q < points.size(); ++q) {
+      const SampledDirection same{direction(drawn[q].reflected), drawn[q].pdf};
+      const Mueller expected = sampler.weight(incident, same, Frame::sp);
+      const Mueller one = sampler.weight(vector, drawn[q], Frame::sp);
+      ASSERT_EQ(found[q].elements, one.elements);
+      ASSERT_EQ(found[q].elements, in_threads[q].elements);
+      // The least cos theta_r here is above 1e-3, good to 1e-13 from an angle; matrices agree to evaluation_error.
+      for (std::size_t e = 0; e < 16; ++e) ASSERT_NEAR(one.elements[e], expected.elements[e], 1e-9) << q << ' ' << e;
+    }
+  }
+}
+
 TEST(Sampling, HoldsAtTheEdgesOfTheSquareAndOfTheHemisphere) {
   const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
   const double last = 1 - 0x1p-53;
@@ -321,7 +392,10 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
   EXPECT_EQ(of([&] { sampler.sample(up, {1, 0.5}); }), "u = (1, 0.5): both must be in [0, 1)");
   EXPECT_EQ(of([&] { sampler.sample(up, {0.5, nan}); }), "u = (0.5, nan): both must be in [0, 1)");
   EXPECT_TRUE(says(of([&] { sampler.sample(below, {0, 0}); }), {"degrees, must be in 0...90"}));
-  EXPECT_TRUE(says(of([&] { sampler.pdf(up, below); }), {"degrees, must be in 0...90"}));
+  EXPECT_TRUE(says(of([&] { sampler.pdf(below, up); }), {"degrees, must be in 0...90"}));
+  for (const Direction& odd : {Direction{-0.1, 0}, Direction{3.2, 0}, Direction{nan, 0}, Direction{2, nan}})
+    EXPECT_TRUE(says(of([&] { sampler.pdf(up, odd); }), {odd.theta == 2 ? "phi_r" : "theta_r"})) << odd.theta;
+  EXPECT_TRUE(says(of([&] { sampler.weight(up, {below, 0.1}); }), {"degrees, must be in 0...90"}));
   EXPECT_TRUE(says(of([&] { sampler.sample(Direction{0, nan}, {0, 0}); }), {"finite"}));
   EXPECT_EQ(of([&] {
               sampler.sample(Vector3{0, 0.6, -0.8}, {0, 0});
@@ -332,6 +406,8 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
             }),
             "reflected vector (0, 0, nan) is not a unit vector with z >= 0");
   EXPECT_TRUE(says(of([&] { sampler.weight(up, {{0.1, 0}, 0}); }), {"pdf = 0", "positive"}));
+  EXPECT_TRUE(says(of([&] { sampler.weight(Vector3{0, 0, 1}, {{0, 0, 1}, nan}); }), {"pdf = nan", "positive"}));
+  EXPECT_TRUE(says(of([&] { sampler.weight(Vector3{0, 0, 1}, {{0, 0.6, -0.8}, 1}); }), {"reflected", "unit vector"}));
   std::vector<UnitPoint> points(3, {0.5, 0.5});
   points[2][0] = -0.5;
   std::vector<SampledDirection> out(3);
@@ -340,6 +416,17 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(says(of([&] { sampler.sample(std::vector{up, up}, points, out); }), {"2 incident", "3"}));
   out.pop_back();
   EXPECT_TRUE(says(of([&] { sampler.sample(std::vector{up}, points, out); }), {"3 directions", "room for 2"}));
+}
+
+TEST(Sampling, LeavesUnknownElementsNaNAndTheFirstOneNever) {
+  Model model = random_model(Family::isotropic, {2, 2}, 0, 1);
+  model.not_measured.set().reset(0);
+  std::erase_if(model.blocks, [](const FittedBlock& fitted) { return !feeds_f11(fitted.block); });
+  const DirectionSampler sampler(prepare(model, 0.5));
+  const Direction incident{0.5, 0.2};
+  const Mueller weight = sampler.weight(incident, sampler.sample(incident, {0.3, 0.8}), Frame::sp);
+  EXPECT_TRUE(std::isfinite(weight(0, 0)));
+  for (std::size_t element = 1; element < 16; ++element) EXPECT_TRUE(std::isnan(weight.elements[element])) << element;
 }
 
 TEST(Sampling, RefusesModelsThatReflectNothing) {

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Directions that are drawn, over arrays."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -53,3 +55,39 @@ def test_what_makes_no_sense_is_refused_with_its_place(sampler, ptfe):
         sampler.weight(30, 0, 10, 0, 0.3, frame="lab")
     with pytest.raises(ValueError, match="wavelength"):
         mmbrdf.DirectionSampler(ptfe, -1)
+    with pytest.raises(TypeError):
+        mmbrdf.DirectionSampler(None, 532)
+    with pytest.raises(ValueError, match=r"pdf = -1.*at \[600\]"):
+        sampler.weight(30, 0, 10, 0, np.where(np.arange(1000) == 600, -1, 0.3))
+    with pytest.raises(ValueError, match=r"phi_r_deg is not finite, at \[600\]"):
+        sampler.weight(30, 0, 10, np.where(np.arange(1000) == 600, np.nan, 0), 0.3)
+    with pytest.raises(ValueError, match=r"200.*at \[1\]"):
+        sampler.pdf(30, 0, [120, 200], 0)
+    with pytest.raises(ValueError, match="120"):
+        sampler.pdf(120, 0, 30, 0)
+    with pytest.raises(ValueError, match="phi_r"):
+        sampler.pdf(30, 0, 120, np.nan)
+
+
+def test_directions_below_the_horizon_are_never_drawn(sampler):
+    np.testing.assert_array_equal(sampler.pdf(30, 0, [-180, -91, 90.5, 180], 20), 0)
+    assert sampler.pdf(30, 0, 89.9, 20) > 0
+
+
+def test_weights_warn_of_what_lies_outside_the_fitted_range(ptfe, sampler):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sampler.weight([60, 74], 0, 30, 0, 0.3)
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match=r"ptfe: 2 of 3 questions lie outside .*\(theta_i\)"):
+        sampler.weight([60, 80, -85], 0, 30, 0, 0.3)
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match="wavelength"):
+        mmbrdf.DirectionSampler(ptfe, 2000).weight(60, 0, 30, 0, 0.3)
+
+
+def test_weights_of_arrays_have_the_bits_of_one_at_a_time(sampler):
+    theta_i, pdf = np.linspace(0, 70, 700)[:, None], np.array([0.1, 0.3])
+    many = sampler.weight(theta_i, 10, 30, 50, pdf, frame="sp")
+    assert many.shape == (700, 2, 4, 4)
+    for i in range(0, 700, 23):
+        np.testing.assert_array_equal(many[i, 1], sampler.weight(theta_i[i, 0], 10, 30, 50, 0.3, frame="sp"))
+    assert sampler.weight(np.empty(0), 0, 0, 0, 1).shape == (0, 4, 4)
