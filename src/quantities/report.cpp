@@ -113,8 +113,8 @@ Warnings unphysical(const ModelDiagnostics& d, const std::string& wavelength) {
   return warnings;
 }
 
-Field realizability(const Reported& reported) {
-  Field field;
+ReportField realizability(const Reported& reported) {
+  ReportField field;
   for (const double wavelength : reported.wavelengths)
     for (const double theta_max : polar_limits(reported.model.validity)) {
       const ModelDiagnostics d = model_diagnostics(reported.model, wavelength, theta_max);

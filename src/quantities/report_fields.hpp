@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 using Warnings = std::vector<std::string>;
 
 /// A field of the report, and what there is to warn of in it.
-struct Field {
+struct ReportField {
   Json value = Json::array();
   Warnings warnings{};
 };
@@ -30,7 +30,7 @@ inline std::string count_of(std::size_t count, const std::string& what) {
 
 inline std::string nm(double wavelength) { return nanometre_list(std::array{wavelength}); }
 
-inline void add(Json& report, const std::string& name, Field field) {
+inline void add(Json& report, const std::string& name, ReportField field) {
   report[name] = std::move(field.value);
   for (std::string& warning : field.warnings) report["warnings"].push_back(std::move(warning));
 }

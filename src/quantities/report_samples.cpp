@@ -18,14 +18,14 @@
 namespace mmbrdf {
 namespace {
 
-Field data_field(const Model& model, const ReportedSamples& data) {
-  Field field{{{"name", data.name},
-               {"samples", data.samples.size()},
-               {"wavelengths", nanometre_list(wavelengths(data.samples))},
-               {"residuals and noise", "of the model as it is"},
-               {"chi_squared", "of fits of its basis to these samples, weighted by their uncertainties"},
-               {"conventions, symmetries, repeats, leverage and outliers",
-                "of fits of its basis to these samples, without weights"}}};
+ReportField data_field(const Model& model, const ReportedSamples& data) {
+  ReportField field{{{"name", data.name},
+                     {"samples", data.samples.size()},
+                     {"wavelengths", nanometre_list(wavelengths(data.samples))},
+                     {"residuals and noise", "of the model as it is"},
+                     {"chi_squared", "of fits of its basis to these samples, weighted by their uncertainties"},
+                     {"conventions, symmetries, repeats, leverage and outliers",
+                      "of fits of its basis to these samples, without weights"}}};
   RangeCount range;
   for (const Sample& s : data.samples) range.add(outside(model.validity, s.wavelength, s.geometry));
   if (range.outside > 0) field.warnings.push_back(range.line("sample") + ": residuals there are of extrapolations");
@@ -48,17 +48,17 @@ Json residuals_json(const Comparison& comparison) {
   return rows;
 }
 
-Field conventions_field(const Model& model, std::span<const Sample> samples) {
+ReportField conventions_field(const Model& model, std::span<const Sample> samples) {
   const std::vector<ConventionFit> fits = convention_fits(samples, orders(model), model.mapping);
-  Field field;
+  ReportField field;
   for (const auto& [read_as, rms] : fits) field.value.push_back({{"read_as", read_as}, {"rms", rms}});
   if (std::string line = convention_warning(fits); !line.empty()) field.warnings.push_back(line);
   return field;
 }
 
 /// The tests of a symmetry; `what` is what the data are said to break.
-Field symmetry(const std::vector<FTest>& tests, const std::string& what) {
-  Field field;
+ReportField symmetry(const std::vector<FTest>& tests, const std::string& what) {
+  ReportField field;
   for (const FTest& test : tests) {
     field.value.push_back({{"block", test.block},
                            {"rows", test.rows},
@@ -75,8 +75,8 @@ Field symmetry(const std::vector<FTest>& tests, const std::string& what) {
   return field;
 }
 
-Field noise(const Model& model, std::span<const Sample> samples) {
-  Field field;
+ReportField noise(const Model& model, std::span<const Sample> samples) {
+  ReportField field;
   for (const double wavelength : wavelengths(samples)) {
     const std::vector<Sample> here = at_wavelengths(samples, std::array{wavelength});
     try {
@@ -112,9 +112,10 @@ bool knows_all_uncertainties(const Sample& sample) {
 }
 
 /// And what the samples say against themselves.
-Field chi_squared(const FitResult& fitted) {
-  Field field{"the samples do not state the uncertainties of all their elements: what chi^2 would be is not known",
-              data_warnings(fitted)};
+ReportField chi_squared(const FitResult& fitted) {
+  ReportField field{
+      "the samples do not state the uncertainties of all their elements: what chi^2 would be is not known",
+      data_warnings(fitted)};
   if (fitted.weights != Weights::data) return field;
   field.value = Json::array();
   long freedom = 0;
@@ -131,8 +132,8 @@ Field chi_squared(const FitResult& fitted) {
   return field;
 }
 
-Field leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
-  Field field;
+ReportField leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
+  ReportField field;
   for (const SampleDiagnostics::Leverage& block : diagnostics.leverage) {
     const double largest = block.values[block.largest];
     field.value.push_back({{"block", block.block},
@@ -147,9 +148,9 @@ Field leverage(const SampleDiagnostics& diagnostics, std::span<const Sample> sam
   return field;
 }
 
-Field outlier_field(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
+ReportField outlier_field(const SampleDiagnostics& diagnostics, std::span<const Sample> samples) {
   const std::vector<Outlier> found = outliers(diagnostics, outlier_threshold);
-  Field field;
+  ReportField field;
   for (const Outlier& outlier : std::span(found).first(std::min(found.size(), listed_outliers))) {
     const Sample& sample = samples[outlier.sample];
     field.value.push_back({{"sample", outlier.sample + 1},
@@ -165,8 +166,8 @@ Field outlier_field(const SampleDiagnostics& diagnostics, std::span<const Sample
 }
 
 /// What repeats say of the misfit: a table, or the sentence that there are none.
-Field repeats(std::span<const Sample> samples, const FitResult& fitted) {
-  Field field;
+ReportField repeats(std::span<const Sample> samples, const FitResult& fitted) {
+  ReportField field;
   for (const LackOfFit& test : lack_of_fit(samples, fitted)) {
     if (test.repeats == 0) return {"no geometry was measured twice: repeats would tell noise from misfit"};
     field.value.push_back({{"block", test.block},
@@ -188,7 +189,7 @@ Field repeats(std::span<const Sample> samples, const FitResult& fitted) {
 void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
   add(report, "data", data_field(model, data));
   const Comparison compared = compare(model, data.samples);
-  Field differences{residuals_json(compared)};
+  ReportField differences{residuals_json(compared)};
   if (compared.dark > 0) differences.warnings.push_back(dark_line(compared));
   add(report, "residuals", std::move(differences));
   const FitResult unweighted = refitted(model, data.samples, Weights::none);

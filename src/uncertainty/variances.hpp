@@ -46,10 +46,10 @@ class Variances {
   struct Row {
     std::size_t element;
     std::vector<RowTerm> terms;
-    std::vector<int> column, with;  // as in ElementColumns
+    std::vector<int> column, with;  // as in TermColumns
     std::vector<double> coefficients;
     Row(const BlockAt& block, std::size_t of_element);
-    ElementColumns view() const {
+    TermColumns view() const {
       return {terms.data(), column.data(), coefficients.data(), with.data(), static_cast<int>(with.size()) - 1};
     }
   };

@@ -80,7 +80,7 @@ struct RowAt {
 
 constexpr int any_number = -1;
 template <int known, int packs>
-MMBRDF_INLINE void add_columns_of(RowAt<packs>& at, ElementColumns& next, int terms) {
+MMBRDF_INLINE void add_columns_of(RowAt<packs>& at, TermColumns& next, int terms) {
   const int each = known == any_number ? terms : known;
   for (int c = 0; c < next.with[terms]; ++c, next.terms += each)
     at.add(next.terms, each, next.column[c], next.coefficients[c]);
@@ -89,7 +89,7 @@ MMBRDF_INLINE void add_columns_of(RowAt<packs>& at, ElementColumns& next, int te
 }
 
 template <int packs>
-void rows_of(RowAt<packs> at, double* value, ElementColumns columns) {
+void rows_of(RowAt<packs> at, double* value, TermColumns columns) {
   at.value = zeros<packs>();
   for (int terms = 0; terms <= columns.most; ++terms) switch (terms) {
       case 1:
@@ -107,7 +107,7 @@ void rows_of(RowAt<packs> at, double* value, ElementColumns columns) {
   for (int p = 0; p < packs; ++p) store(at.value[p], value + p * width);
 }
 
-void rows(double* row, long stride, double* value, const ElementColumns& columns, const double* k_i, const double* k_r,
+void rows(double* row, long stride, double* value, const TermColumns& columns, const double* k_i, const double* k_r,
           long of_k, long count) {
   in_tiles(count, [&]<int packs>(long first) {
     rows_of<packs>({row + first, stride, k_i + first, k_r + first, of_k, {}}, value + first, columns);

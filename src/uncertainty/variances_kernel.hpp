@@ -15,7 +15,7 @@ struct RowTerm {
 
 /// Columns of an element, sorted by their numbers of terms: with[t] columns that have t of them, t ≤ most. Each has its
 /// number in the row and its coefficient.
-struct ElementColumns {
+struct TermColumns {
   const RowTerm* terms;
   const int* column;
   const double* coefficients;
@@ -41,7 +41,7 @@ struct VariancesKernel {
   void (*functions)(double* k, int order, bool projected, const double* theta, const double* phi, long count,
                     long stride);
   /// The row of an element, from tables of K of stride `of_k`, and Σ coefficient × column.
-  void (*rows)(double* row, long stride, double* value, const ElementColumns& columns, const double* k_incident,
+  void (*rows)(double* row, long stride, double* value, const TermColumns& columns, const double* k_incident,
                const double* k_reflected, long of_k, long count);
   /// hᵀ V h
   void (*variances)(double* out, const double* h, const PackedSymmetric& v, long count, long stride);
