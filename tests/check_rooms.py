@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every #include points to a room above its own: check_rooms.py ROOT prints those that do not, and fails.
+"""Every #include points to a room above its own, and no two types have one name: check_rooms.py ROOT prints those that
+do not, and fails.
 
 The library's rooms, from the top; rooms on one line do not know each other. Interfaces, programs, Python, tests and
 examples include what they like of include/, and nothing includes them.
@@ -65,9 +66,22 @@ def misfits(root):
             yield f"{source.relative_to(root)}: no header has its name"
 
 
+def twins(root):
+    """Types of one name in two headers: the linker takes the functions of one for both."""
+    where = {}
+    for base in ["include/mmbrdf", "src"]:
+        for file in sorted((root / base).rglob("*.hpp")):
+            shared = re.split(r"(?m)^namespace \{", file.read_text(encoding="utf-8"))[0]  # kernels have their own
+            for found in re.finditer(r"(?m)^(?:class|struct|enum class) (?:alignas\(\w+\) )?([\w:]+)[^;\n]*\{", shared):
+                where.setdefault(found[1], []).append(str(file.relative_to(root)))
+    for name, files in where.items():
+        if len(files) > 1:
+            yield f"{name}: defined in {' and in '.join(files)}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
-    faults = [*upward_arrows(root), *misfits(root)]
+    faults = [*upward_arrows(root), *misfits(root), *twins(root)]
     for fault in faults:
         print(fault)
     return 1 if faults else 0

@@ -18,7 +18,7 @@ class Rooms(unittest.TestCase):
             for name, text in files.items():
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text)
-            return [*check_rooms.upward_arrows(root), *check_rooms.misfits(root)]
+            return [*check_rooms.upward_arrows(root), *check_rooms.misfits(root), *check_rooms.twins(root)]
 
     def test_arrows_up_are_found_however_they_are_written(self):
         for line in [
@@ -48,6 +48,12 @@ class Rooms(unittest.TestCase):
         self.assertEqual(
             len(self.faults({"src/model/x.cpp": "", "src/model/y.hpp": "", "src/model/y_part.cpp": ""})), 1
         )
+
+    def test_two_types_of_one_name_are_found(self):
+        one, other = "struct Field {\n};\n", "class Field : public Base {\n};\nstruct Field;\n"
+        self.assertEqual(len(self.faults({"src/files/x.hpp": one, "src/quantities/y.hpp": other})), 1)
+        self.assertEqual(self.faults({"src/files/x.hpp": one, "src/files/y.hpp": "namespace {\n" + other}), [])
+        self.assertEqual(self.faults({"src/files/x.hpp": one, "src/files/y.hpp": "struct Field;\n"}), [])
 
 
 if __name__ == "__main__":
