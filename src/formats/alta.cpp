@@ -15,8 +15,6 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double half_pi = std::numbers::pi / 2;
-
 using Numbers = std::span<const double>;
 using Geometries = std::optional<Geometry> (*)(Numbers);  // nothing: below the horizon
 

@@ -19,7 +19,6 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double half_pi = std::numbers::pi / 2;
 constexpr std::array steps{10.0, 5.0, 2.5};  // degrees
 
 /// Of matrices in the frame sp.

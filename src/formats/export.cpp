@@ -28,7 +28,7 @@ constexpr std::array writers{
     Writer{{"astm", ".astm", "ASTM E2387 text: one number at each geometry of an isotropic sample", true}, make_astm},
 };
 
-constexpr auto formats = [] {
+constexpr auto written_formats = [] {
   std::array<ExportFormat, writers.size()> result{};
   for (std::size_t i = 0; i < writers.size(); ++i) result[i] = writers[i].format;
   return result;
@@ -36,7 +36,7 @@ constexpr auto formats = [] {
 
 std::string all_formats() {
   std::string list;
-  for (const ExportFormat& format : formats)
+  for (const ExportFormat& format : written_formats)
     list += (list.empty() ? "" : ", ") + std::string(format.name) + " (" + std::string(format.ending) + ")";
   return list;
 }
@@ -62,19 +62,19 @@ ExportOptions completed(const Model& model, const ExportFormat& format, ExportOp
 
 }  // namespace
 
-std::span<const ExportFormat> export_formats() { return formats; }
+std::span<const ExportFormat> export_formats() { return written_formats; }
 
 const ExportFormat& export_format(std::string_view name) {
-  const auto* const found = std::ranges::find(formats, name, &ExportFormat::name);
-  if (found == formats.end())
+  const auto* const found = std::ranges::find(written_formats, name, &ExportFormat::name);
+  if (found == written_formats.end())
     throw std::invalid_argument(in_quotes(name) + ": no such format; there are " + all_formats());
   return *found;
 }
 
 const ExportFormat& export_format_of(std::string_view path) {
   const auto* const found =
-      std::ranges::find_if(formats, [&](const ExportFormat& format) { return path.ends_with(format.ending); });
-  if (found == formats.end())
+      std::ranges::find_if(written_formats, [&](const ExportFormat& format) { return path.ends_with(format.ending); });
+  if (found == written_formats.end())
     throw std::invalid_argument(in_quotes(path) + ": no format has this ending; there are " + all_formats());
   return *found;
 }

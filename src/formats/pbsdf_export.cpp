@@ -20,13 +20,11 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double half_pi = std::numbers::pi / 2;
-
 /// Nodes of phi_d, both ends of the circle among them, of theta_d and theta_h.
-using Grid = std::array<std::size_t, 3>;
-constexpr std::array<Grid, 3> grids{{{37, 19, 19}, {73, 46, 46}, {121, 61, 61}}};
+using NodeCounts = std::array<std::size_t, 3>;
+constexpr std::array<NodeCounts, 3> grids{{{37, 19, 19}, {73, 46, 46}, {121, 61, 61}}};
 
-std::string to_string(const Grid& grid) {
+std::string to_string(const NodeCounts& grid) {
   return std::to_string(grid[0]) + " phi_d, " + std::to_string(grid[1]) + " theta_d, " + std::to_string(grid[2]) +
          " theta_h";
 }
@@ -67,7 +65,7 @@ Mueller as_stored(const Mueller& m_xy, const NodeAxes& axes) {
 
 class Table {
  public:
-  Table(const std::vector<PreparedModel>& models, const Grid& grid)
+  Table(const std::vector<PreparedModel>& models, const NodeCounts& grid)
       : grid_(grid),
         wavelengths_(models.size()),
         phi_d_(axis(-std::numbers::pi, std::numbers::pi, grid[0])),
@@ -149,7 +147,7 @@ class Table {
     return {below, x - static_cast<double>(below)};
   }
 
-  Grid grid_;
+  NodeCounts grid_;
   std::size_t wavelengths_, dark_ = 0;
   std::vector<float> phi_d_, theta_d_, theta_h_, m_;
 };
@@ -181,7 +179,7 @@ Export::Made make_pbsdf(const Model& model, const ExportOptions& options) {
   const double theta_max = compared_up_to(model);
   std::shared_ptr<const Table> table;
   ExportError error;
-  const Grid* grid = grids.data();
+  const NodeCounts* grid = grids.data();
   for (;; ++grid) {
     table = std::make_shared<const Table>(models, *grid);
     error = table->error(models, theta_max);

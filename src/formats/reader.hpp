@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,6 +73,8 @@ class ForeignFile::Reader {
 
 /// A sample of f11 alone.
 Sample scalar_sample(double wavelength, const Geometry& geometry, double f11);
+
+inline constexpr double half_pi = std::numbers::pi / 2;
 
 /// Directions nearer to the horizon than this (radians) count as lying on it: single precision has π/2 to 5e-8.
 inline constexpr double horizon = 1e-6;
