@@ -164,7 +164,8 @@ class WaitingFile {
   void write(const std::function<void(std::ostream&)>& write) {
     struct stat old {};
     const bool exists = ::fstatat(folder_, name_.c_str(), &old, 0) == 0;
-    if (exists && ::faccessat(folder_, name_.c_str(), W_OK, 0) != 0) throw failure(path_, errno);
+    if (exists && ::faccessat(folder_, name_.c_str(), W_OK, 0) != 0 && errno != ENOENT)  // set aside by another writer
+      throw failure(path_, errno);
     Descriptor file(create());
     if (exists && ::fchmod(file.number(), old.st_mode & 07777) != 0) throw failure(path_, errno);
     write_all(file, path_, write, true);
@@ -251,6 +252,12 @@ std::optional<fs::path> replaced(const std::string& path) {
   return end;
 }
 
+/// One for all names of a place. The file itself is not looked for: another writer may replace it at this moment.
+fs::path place_of(const fs::path& file) {
+  std::error_code ignored;  // of a folder that is not there it is said when it is opened
+  return fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : ".", ignored) / file.filename();
+}
+
 void write_directly(const NewFile& file) {
   Descriptor out(::open(file.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
   if (out.number() < 0) throw failure(file.path, errno);
@@ -281,7 +288,7 @@ void write_files(const std::vector<NewFile>& files) {
   for (const NewFile& file : files) {
     if (file.path.empty()) throw failure("output file", "it has no name");
     if (const std::optional<fs::path> target = replaced(file.path)) {
-      if (!targets.insert(fs::weakly_canonical(*target)).second)
+      if (!targets.insert(place_of(*target)).second)
         throw failure(file.path, "another of the files to be written has this place");
       waiting.push_back(std::make_unique<WaitingFile>(*target, file.path));
       waiting.back()->write(file.write);

@@ -115,7 +115,7 @@ class Disturbed(unittest.TestCase):
             outputs = COMMANDS[name][1]
             new = [self.new(line, outputs)[0] for line in lines]
             before = self.leftovers(set())
-            for _ in range(4):
+            for _ in range(20):
                 self.put_old(self.folder, outputs)
                 both = [
                     subprocess.Popen([PROGRAM, *line.split()], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
