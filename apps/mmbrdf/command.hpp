@@ -49,5 +49,6 @@ Run info_command(CLI::App& app, const CommandLine& line);
 Run materials_command(CLI::App& app, const CommandLine& line);
 Run convert_command(CLI::App& app, const CommandLine& line);
 Run export_command(CLI::App& app, const CommandLine& line);
+Run moments_command(CLI::App& app, const CommandLine& line);
 
 }  // namespace mmbrdf::program

@@ -45,6 +45,7 @@ constexpr Command commands[] = {
     {"materials", "List the built-in models.", materials_command},
     {"convert", "Turn a model, or a measurement of another program, into another format.", convert_command},
     {"export", "Write a model as a table that another program reads.", export_command},
+    {"moments", "Print the Fourier moments of a model in azimuth, at cosines of polar angles.", moments_command},
 };
 
 constexpr const char* footer =
@@ -110,7 +111,7 @@ int run(int argc, char** argv) {
   Run chosen = [&app] { std::cout << app.help(); };
   for (const Command& command : commands) {
     CLI::App* subcommand = app.add_subcommand(command.name, command.purpose)->group("Commands");
-    // Seventeen commands have hundreds of options: too many to declare for the one that is there.
+    // Nineteen commands have hundreds of options: too many to declare for the one that is there.
     if (std::ranges::find(line.words, command.name) == line.words.end()) continue;
     subcommand->parse_complete_callback([&chosen, run = command.declare(*subcommand, line)] { chosen = run; });
   }

@@ -80,12 +80,14 @@ KernelModel<T> kernel_model(const Plan& plan, std::span<const T> coefficients, i
 
 struct PreparedModel::Pattern : PreparedPattern {};
 
-/// What the kernel is asked for a prepared model, in double precision. For model.cpp and batch.cpp.
+/// What the kernel is asked for a prepared model, in double precision. For batch.cpp; for moments.cpp what it is made
+/// of.
 struct Evaluation {
   static KernelModel<double> model(const PreparedModel& prepared);
   static KernelModel<double> model(const PreparedIncidence& prepared);
   static const PreparedPattern& pattern(const PreparedModel& prepared);
   static const PreparedPattern& pattern(const PreparedIncidence& prepared);
+  static std::span<const double> coefficients(const PreparedModel& prepared);  ///< of the modes
 };
 
 }  // namespace mmbrdf

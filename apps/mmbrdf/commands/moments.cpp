@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// mmbrdf moments
+
+#include "mmbrdf/model/moments.hpp"
+
+#include <cmath>
+#include <memory>
+#include <ostream>
+
+#include "command.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/numerics/quadrature.hpp"
+#include "options/arguments.hpp"
+#include "options/files.hpp"
+#include "pages/output.hpp"
+
+namespace mmbrdf::program {
+
+namespace {
+
+struct Options {
+  std::string model, output = "-";
+  std::optional<double> wavelength_nm;
+  std::optional<std::vector<double>> mu_i, mu_r;
+  int streams = 0, moments = 0;
+};
+
+struct Cosines {
+  std::vector<double> incident, reflected;
+  std::string words;  // of a quadrature
+};
+
+Cosines cosines_of(const Options& options) {
+  if (options.streams == 0) {
+    if (!options.mu_i) throw missing("--mu-i, or --streams,");
+    if (!options.mu_r) throw missing("--mu-r, or --streams,");
+    return {*options.mu_i, *options.mu_r, ""};
+  }
+  if (options.mu_i || options.mu_r) throw WrongUsage("--streams", "it says all cosines: leave out --mu-i and --mu-r");
+  Cosines result;
+  std::vector<Node> nodes = gauss_legendre(options.streams);
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+    result.incident.push_back(node->x);
+    result.words += (result.words.empty() ? "" : ", ") + exact(node->x) + ":" + exact(node->weight);
+  }
+  result.reflected = result.incident;
+  return result;
+}
+
+/// How many moments to print of those that there are.
+std::size_t moments_asked(const Options& options, std::size_t there) {
+  const auto most = static_cast<std::size_t>(2 * options.streams);
+  const auto asked = static_cast<std::size_t>(options.moments);
+  if (options.streams > 0 && asked > most)
+    throw std::invalid_argument("--moments " + std::to_string(asked) + ": a quadrature of " +
+                                std::to_string(options.streams) + " cosines in each hemisphere carries at most " +
+                                std::to_string(most));
+  if (asked > 0) return asked;
+  return options.streams > 0 ? std::min(there, most) : there;
+}
+
+void write_header(std::ostream& out, const std::string& name, double wavelength, const Cosines& cosines) {
+  out << "# model " << printable(name, longest_text) << " at " << nanometre_list({&wavelength, 1})
+      << ", f in sr^-1, frame sp: f(phi) = sum of c cos(m phi) + s sin(m phi), phi = phi_r - phi_i, 180 is forward\n";
+  if (!cosines.words.empty()) out << "# cosine:weight, Gauss-Legendre on 0 to 1: " << cosines.words << '\n';
+  out << "mu_i,mu_r,m";
+  for (const char part : {'c', 's'})
+    for (std::size_t e = 0; e < 16; ++e) out << ',' << part << element_name(e);
+  out << '\n';
+}
+
+void write_moments(std::ostream& out, const Cosines& cosines, const std::vector<FourierMoments>& all,
+                   std::size_t count) {
+  for (std::size_t i = 0; i < cosines.incident.size(); ++i)
+    for (std::size_t r = 0; r < cosines.reflected.size(); ++r)
+      for (std::size_t m = 0; m < count; ++m) {
+        const FourierMoments& one = all[r * cosines.incident.size() + i];
+        std::string line = exact(cosines.incident[i]) + "," + exact(cosines.reflected[r]) + "," + std::to_string(m);
+        append_elements(line, m < one.cosine.size() ? one.cosine[m] : Mueller{});
+        append_elements(line, m < one.sine.size() ? one.sine[m] : Mueller{});
+        out << line << '\n';
+      }
+}
+
+void print_moments(const Options& options) {
+  const Cosines cosines = cosines_of(options);
+  const Model model = open_model(options.model);
+  const double wavelength = wavelength_from(options.wavelength_nm, model);
+  const PreparedModel prepared = prepare(model, wavelength);
+  const auto there = static_cast<std::size_t>(highest_moment(prepared)) + 1;
+  const std::size_t count = moments_asked(options, there);
+  const std::vector<FourierMoments> all = fourier_moments(prepared, cosines.incident, cosines.reflected);
+  RangeCount range;
+  for (const double mu_i : cosines.incident)
+    for (const double mu_r : cosines.reflected)
+      range.add(static_cast<Outside>(outside(model.validity, wavelength, {{std::acos(mu_i), 0}, {std::acos(mu_r), 0}}) &
+                                     ~unsigned{outside_directions}));  // of all azimuths
+  if (const std::string line = range.line("pair"); !line.empty()) warn(options.model + ": " + line);
+  if (count < there)
+    note("the model has moments up to m = " + std::to_string(there - 1) + ", of which " +
+         std::to_string(there - count) + " are left out");
+  write_output(options.output, [&](std::ostream& out) {
+    write_header(out, model.name, wavelength, cosines);
+    write_moments(out, cosines, all, count);
+  });
+}
+
+}  // namespace
+
+Run moments_command(CLI::App& app, const CommandLine&) {
+  const auto o = std::make_shared<Options>();
+  add_model(app, o->model);
+  add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM",
+             "Wavelength, in nm [that of the fit, if it is one]");
+  add_option(app, "--mu-i", o->mu_i, numbers, "COS[,COS...]", "Cosines of the polar angle of the source");
+  add_option(app, "--mu-r", o->mu_r, numbers, "COS[,COS...]", "Cosines of the polar angle of the detector");
+  add_option(app, "--streams", o->streams, whole_number, "N",
+             "N cosines of both, Gauss-Legendre on 0 to 1, with their\nweights");
+  add_option(app, "--moments", o->moments, whole_number, "M",
+             "How many, m = 0 to M - 1; of streams at most 2 N [all\nthat are not 0]");
+  add_output_file(app, "-o,--output", o->output, "FILE", "CSV file to write [standard output]");
+  set_footer(
+      app,
+      "f(phi) = sum over m of c cos(m phi) + s sin(m phi) in sr^-1, phi = phi_r - phi_i, weight 1 for each m. The "
+      "frame is sp:\n"
+      "Stokes vectors about the meridian planes. Moments come from the modes in closed form; of an isotropic "
+      "model they are\n"
+      "finitely many. mmbrdf export writes them in the layout of VLIDORT.\n"
+      "\n"
+      "Example:\n"
+      "  mmbrdf moments ptfe --wavelength 532 --mu-i 0.5 --mu-r 0.2,0.8");
+  return [o] { print_moments(*o); };
+}
+
+}  // namespace mmbrdf::program
