@@ -3,10 +3,12 @@
 #pragma once
 
 #include "formats/reader.hpp"
+#include "mmbrdf/formats/export.hpp"
 
 namespace mmbrdf {
 
 bool is_bird(std::string_view head, std::uint64_t size);
 std::unique_ptr<ForeignFile::Reader> open_bird(const Source& source);
+Export::Made make_bird(const Model& model, const ExportOptions& options);
 
 }  // namespace mmbrdf

@@ -3,13 +3,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "formats/astm.hpp"
+#include "formats/bird.hpp"
 #include "formats/export_table.hpp"
+#include "formats/klems.hpp"
 #include "formats/pbsdf.hpp"
+#include "formats/reader.hpp"
+#include "formats/rgl.hpp"
+#include "formats/zemax.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
@@ -26,6 +33,14 @@ constexpr std::array writers{
     Writer{{"pbsdf", ".pbsdf", "Mitsuba's measured_polarized: Mueller matrices of an isotropic sample", false},
            make_pbsdf},
     Writer{{"astm", ".astm", "ASTM E2387 text: one number at each geometry of an isotropic sample", true}, make_astm},
+    Writer{{"zemax", ".bsdf", "Zemax tabular BSDF text: one number at each geometry, one wavelength", true},
+           make_zemax},
+    Writer{{"bird", ".brdf", "BiRD JSON v1.0: values between polarization states, with uncertainties", false},
+           make_bird},
+    Writer{{"rgl", ".bsdf", "RGL material for Mitsuba's measured and pbrt: one number at each geometry", true},
+           make_rgl},
+    Writer{{"klems", ".xml", "Radiance's XML: means of one number over Klems' 145 patches, one wavelength", true},
+           make_klems},
 };
 
 constexpr auto written_formats = [] {
@@ -72,15 +87,20 @@ const ExportFormat& export_format(std::string_view name) {
 }
 
 const ExportFormat& export_format_of(std::string_view path) {
-  const auto* const found =
-      std::ranges::find_if(written_formats, [&](const ExportFormat& format) { return path.ends_with(format.ending); });
+  const auto has_it = [&](const ExportFormat& format) { return path.ends_with(format.ending); };
+  const auto* const found = std::ranges::find_if(written_formats, has_it);
   if (found == written_formats.end())
     throw std::invalid_argument(in_quotes(path) + ": no format has this ending; there are " + all_formats());
+  const auto* const other = std::find_if(found + 1, written_formats.end(), has_it);
+  if (other != written_formats.end())
+    throw std::invalid_argument(in_quotes(path) + ": " + std::string(found->name) + " and " + std::string(other->name) +
+                                " have this ending: name one of them");
   return *found;
 }
 
 Export::Export(Made made) : write_(std::move(made.write)), error_(made.error), understood_(std::move(made.understood)) {
-  understood_ += "; interpolation adds " + rounded(100 * error_.rms, 2) + " % of f11 (rms; at most " +
+  if (error_.theta_max == 0) return;
+  understood_ += "; " + made.cause + " adds " + rounded(100 * error_.rms, 2) + " % of f11 (rms; at most " +
                  rounded(100 * error_.largest, 2) + " %) up to " + rounded(in_degrees(error_.theta_max), 4) +
                  " degrees";
 }
@@ -103,10 +123,37 @@ void require_error(const ExportError& error, const ExportOptions& options, const
                                 rounded(100 * options.error, 2) + " % asked for");
 }
 
+bool depends_on_azimuth_of_source(const Model& model) {
+  return model.family == Family::anisotropic || model.rotation == Rotation::as_printed;
+}
+
 void require_isotropic(const Model& model, const std::string& format) {
-  if (model.family == Family::anisotropic || model.rotation == Rotation::as_printed)
+  if (depends_on_azimuth_of_source(model))
     throw std::invalid_argument(format + " file is of an isotropic sample, and this model depends on the " +
                                 "azimuth of the source: `convert --basis isotropic` makes one that does not");
+}
+
+Channel channel_of(const Model& model, const std::string& name) {
+  if (name == "f11") return [](const Mueller& m) { return m(0, 0); };
+  const Quantity& of_name = quantity(name);
+  if (of_name.unit != "sr^-1" || of_name.takes_light)
+    throw std::invalid_argument("channel " + name + ": must be f11, or a quantity in sr^-1 that takes no light");
+  const Elements unknown = unknown_elements(model, Frame::sp);
+  if ((of_name.needs & unknown).any())
+    throw std::invalid_argument("channel " + name + ": " + not_measured_line(unknown_elements(model)));
+  return [value = of_name.value](const Mueller& m) { return value(m, {}); };
+}
+
+double one_wavelength(const ExportOptions& options, const std::string& format) {
+  if (options.wavelengths.size() > 1)
+    throw std::invalid_argument(nanometre_text(options.wavelengths) + ": " + format + " has one wavelength: choose it");
+  return options.wavelengths.front();
+}
+
+Vector3 raised(const Vector3& v) {
+  if (v[2] > horizon) return v;
+  const double across = std::hypot(v[0], v[1]), z = 2 * horizon, length = std::sqrt(1 - z * z);
+  return across > 0 ? Vector3{length * v[0] / across, length * v[1] / across, z} : Vector3{length, 0, z};
 }
 
 }  // namespace mmbrdf

@@ -36,13 +36,6 @@ std::vector<float> axis(double first, double last, std::size_t nodes) {
   return result;
 }
 
-/// A direction at or below the horizon, moved to it.
-Vector3 raised(const Vector3& v) {
-  if (v[2] > horizon) return v;
-  const double across = std::hypot(v[0], v[1]), z = 2 * horizon, length = std::sqrt(1 - z * z);
-  return across > 0 ? Vector3{length * v[0] / across, length * v[1] / across, z} : Vector3{length, 0, z};
-}
-
 Vector3 perpendicular(const Vector3& i, const Vector3& o) {
   const Vector3 n{i[1] * o[2] - i[2] * o[1], i[2] * o[0] - i[0] * o[2], i[0] * o[1] - i[1] * o[0]};
   const double length = std::hypot(n[0], n[1], n[2]), across = std::hypot(i[0], i[1]);

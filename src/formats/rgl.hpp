@@ -4,10 +4,12 @@
 #pragma once
 
 #include "formats/reader.hpp"
+#include "mmbrdf/formats/export.hpp"
 
 namespace mmbrdf {
 
 bool is_rgl(std::string_view head, std::uint64_t size);
 std::unique_ptr<ForeignFile::Reader> open_rgl(const Source& source);
+Export::Made make_rgl(const Model& model, const ExportOptions& options);
 
 }  // namespace mmbrdf

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view magic("tensor_file\0", 12);
 constexpr std::uint64_t longest_axis = 10000;
-constexpr int uint16 = 3, float32 = 10, float64 = 11;
+constexpr int uint8 = 1, uint16 = 3, float32 = 10, float64 = 11;
 constexpr std::array<std::size_t, 12> tensor_type_sizes{0, 1, 1, 2, 2, 4,
                                                         4, 8, 8, 2, 4, 8};  // u8, i8 … i64, f16, f32, f64
 
@@ -200,7 +200,9 @@ void append(std::string& bytes, Number value) {
 
 void write_tensor_file(std::ostream& out, std::span<const NewTensor> fields) {
   constexpr std::uint64_t alignment = 8;
-  const auto size_of = [](const NewTensor& field) { return 4 * field.singles.size() + 2 * field.whole.size(); };
+  const auto size_of = [](const NewTensor& field) {
+    return 4 * field.singles.size() + 2 * field.whole.size() + field.bytes.size();
+  };
   const auto aligned = [](std::uint64_t at) { return (at + alignment - 1) / alignment * alignment; };
   std::uint64_t header = magic.size() + 2 + 4;
   for (const NewTensor& field : fields) header += 2 + field.name.size() + 2 + 1 + 8 + 8 * field.shape.size();
@@ -213,13 +215,14 @@ void write_tensor_file(std::ostream& out, std::span<const NewTensor> fields) {
     append(bytes, static_cast<std::uint16_t>(field.name.size()));
     bytes += field.name;
     append(bytes, static_cast<std::uint16_t>(field.shape.size()));
-    append(bytes, static_cast<std::uint8_t>(field.whole.empty() ? float32 : uint16));
+    append(bytes, static_cast<std::uint8_t>(!field.bytes.empty() ? uint8 : !field.whole.empty() ? uint16 : float32));
     append(bytes, offset);
     for (const std::uint64_t size : field.shape) append(bytes, size);
     offset = aligned(offset + size_of(field));
   }
   for (const NewTensor& field : fields) {
     bytes.resize(aligned(bytes.size()));
+    bytes += field.bytes;
     for (const std::uint16_t value : field.whole) append(bytes, value);
     for (const float value : field.singles) append(bytes, std::bit_cast<std::uint32_t>(value));
   }

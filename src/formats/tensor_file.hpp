@@ -65,12 +65,13 @@ class TensorFile {
   std::vector<char> bytes_;
 };
 
-/// A field to be written: numbers in single precision, or 16 bits of whole ones.
+/// A field to be written: numbers in single precision, 16 bits of whole ones, or bytes.
 struct NewTensor {
   std::string name;
   std::vector<std::uint64_t> shape;
   std::span<const float> singles = {};
   std::span<const std::uint16_t> whole = {};
+  std::string_view bytes = {};
 };
 void write_tensor_file(std::ostream& out, std::span<const NewTensor> fields);
 

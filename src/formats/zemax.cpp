@@ -20,13 +20,6 @@ struct Axis {
   std::vector<double> angles = {};
 };
 
-/// The direction at polar angle `radial` and azimuth about the specular ray, whose azimuth 0 points towards the normal,
-/// for light from theta_i at azimuth 0 (radians). Not valid below the horizon.
-Vector3 about_specular(double theta_i, double azimuth, double radial) {
-  const double x = std::sin(radial) * std::cos(azimuth), y = std::sin(radial) * std::sin(azimuth), z = std::cos(radial);
-  return {x * std::cos(theta_i) - z * std::sin(theta_i), y, x * std::sin(theta_i) + z * std::cos(theta_i)};
-}
-
 class ZemaxReader : public ForeignFile::Reader {
  public:
   explicit ZemaxReader(const Source& source)
@@ -147,6 +140,11 @@ class ZemaxReader : public ForeignFile::Reader {
 };
 
 }  // namespace
+
+Vector3 about_specular(double theta_i, double azimuth, double radial) {
+  const double x = std::sin(radial) * std::cos(azimuth), y = std::sin(radial) * std::sin(azimuth), z = std::cos(radial);
+  return {x * std::cos(theta_i) - z * std::sin(theta_i), y, x * std::sin(theta_i) + z * std::cos(theta_i)};
+}
 
 bool is_zemax(std::string_view head, std::uint64_t) {
   return has_keyword(head, "ScatterRadial") || has_keyword(head, "ScatterAzimuth") ||

@@ -3,12 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "given/foreign.hpp"
 #include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -229,6 +235,177 @@ TEST(Bird, IsToldByItsFirstKeyAndAVariableHoweverLongItsListsAre) {
 TEST(Bird, IsNoModelThatNamesOne) {
   const std::string model = R"({"format": "mmbrdf model", "provenance": {"data": "brdf_json_schema"}})";
   EXPECT_EQ(foreign_format(model, model.size()), "");
+}
+
+std::string exported(const Export& table) {
+  std::ostringstream out;
+  table.write(out);
+  return out.str();
+}
+
+using nlohmann::json;
+
+json exported_json(const Model& model, const ExportOptions& options = {}) {
+  return json::parse(exported(Export(model, export_format_of("x.brdf"), options)));
+}
+
+Geometry geometry_of(const json& data, std::size_t row) {
+  const auto angle = [&](const char* name) { return data[name]["values"][row].get<double>(); };
+  return in_degrees(angle("theta_i"), angle("phi_i"), angle("theta_r"), angle("phi_r"));
+}
+
+/// f from light in the one state to an analyzer of the other, for those that have a quantity; "" for others.
+std::string quantity_of(const json& incident, const json& analyzed) {
+  const auto letter = [](const json& state) {
+    return state == json{1, 1, 0, 0} ? "s" : state == json{1, -1, 0, 0} ? "p" : "";
+  };
+  const std::string i = letter(incident), r = letter(analyzed);
+  return i.empty() || r.empty() ? "" : "f_" + i + r;
+}
+
+TEST(Bird, IsWrittenAsValuesBetweenStatesWithTheirUncertainties) {
+  const Model model = material("ptfe-532");
+  const json data = exported_json(model)["data"];
+  const PreparedModel prepared = prepare(model, 0.532);
+  const PreparedUncertainty uncertainty = prepare_uncertainty(model, 0.532);
+  const json &incident = data["polarization_i"]["values"], &analyzed = data["polarization_r"]["values"];
+  const std::size_t rows = data["BRDF"]["values"].size();
+  ASSERT_EQ(rows % 37, 0U);  // u to u, and six states to six
+  for (const char* name : {"theta_i", "phi_i", "theta_r", "phi_r", "wavelength_i", "uBRDF"})
+    ASSERT_EQ(data[name]["values"].size(), rows) << name;
+  const json unpolarized{1, 0, 0, 0};
+  std::size_t compared = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double value = data["BRDF"]["values"][row], known_to = data["uBRDF"]["values"][row];
+    ASSERT_GE(value, 0);
+    ASSERT_GT(known_to, 0);
+    const std::string name = quantity_of(incident[row], analyzed[row]);
+    const bool is_f11 = incident[row] == unpolarized;
+    if (row % 5 != 0 || (name.empty() && !is_f11)) continue;
+    const Geometry geometry = geometry_of(data, row);
+    const Mueller m = prepared.evaluate(geometry, Frame::sp);
+    const MuellerCovariance covariance = uncertainty.evaluate(geometry, Frame::sp);
+    const Mueller slopes = is_f11 ? Mueller{{1}} : quantity(name).gradient(m, {});
+    double variance = 0;
+    for (std::size_t e = 0; e < 16; ++e)
+      for (std::size_t f = 0; f < 16; ++f) variance += slopes.elements[e] * slopes.elements[f] * covariance(e, f);
+    ASSERT_NEAR(value, is_f11 ? m(0, 0) : quantity(name).value(m, {}), 1e-8);  // eight digits
+    ASSERT_NEAR(known_to, std::sqrt(variance), 5e-4 * known_to);               // four
+    ++compared;
+  }
+  EXPECT_GE(compared, 1000U);
+}
+
+TEST(Bird, ThatIsWrittenHasAnglesThatTheSchemaTakes) {
+  const json data = exported_json(material("ptfe-532"))["data"];
+  for (const char* name : {"theta_i", "phi_i", "theta_r", "phi_r"}) {
+    EXPECT_EQ(data[name]["unit"], "deg");
+    EXPECT_EQ(data[name]["name"], name);
+    for (const json& angle : data[name]["values"]) {
+      ASSERT_GE(angle.get<double>(), 0);
+      ASSERT_LT(angle.get<double>(), name[0] == 't' ? 90 : 360);
+    }
+  }
+  EXPECT_EQ(data["uBRDF"]["name"], "BRDF");  // so the schema wants it
+  EXPECT_EQ(data["BRDF"]["unit"], "1/sr");
+  EXPECT_EQ(data["polarization_i"]["notation"], "inStokes");
+  // Within the fit: sources up to 75 degrees.
+  for (const json& angle : data["theta_i"]["values"]) ASSERT_LE(angle.get<double>(), 75);
+}
+
+TEST(Bird, ThatIsWrittenHasAllMetadataThatTheSchemaAsksFor) {
+  ::setenv("SOURCE_DATE_EPOCH", "1000000000", 1);
+  const json first = exported_json(material("ptfe-532")), again = exported_json(material("ptfe-532")),
+             other = exported_json(material("ptfe-633"));
+  EXPECT_EQ(first, again);  // the same at the same time
+  const json& metadata = first["metadata"];
+  for (const char* name : {"schema", "id", "type", "timestamp", "provenance", "description", "method",
+                           "instrumentation", "software", "sample", "environment"})
+    EXPECT_TRUE(metadata.contains(name)) << name;
+  EXPECT_EQ(metadata["timestamp"], "2001-09-09T01:46:40+00:00");
+  EXPECT_EQ(metadata["type"], "BRDF");
+  EXPECT_EQ(metadata["method"], "simulation");
+  const std::string id = metadata["id"];
+  EXPECT_EQ(id.substr(0, 9), "urn:uuid:");
+  EXPECT_EQ(id.size(), 45U);
+  EXPECT_NE(id, other["metadata"]["id"]);
+  for (const char* name : {"organization", "location", "email", "contact_person"})
+    EXPECT_TRUE(metadata["provenance"].contains(name)) << name;
+  for (const char* name : {"name", "type", "dimensions", "shape", "zero_azimuth_location"})
+    EXPECT_TRUE(metadata["sample"].contains(name)) << name;
+  EXPECT_TRUE(says(metadata["provenance"]["comments"], {"Germer"}));
+  Model scalar = diffuser({0.3});
+  scalar.not_measured = ~Elements{1};
+  const auto refusal = [&](const char* epoch) {
+    ::setenv("SOURCE_DATE_EPOCH", epoch, 1);
+    return export_refusal(scalar, "bird", {.wavelengths = {0.5}});
+  };
+  EXPECT_TRUE(says(refusal("yesterday"), {"yesterday"}));
+  EXPECT_TRUE(says(refusal("-1"), {"SOURCE_DATE_EPOCH = '-1': must be whole seconds since 1970"}));
+  ::unsetenv("SOURCE_DATE_EPOCH");
+  EXPECT_GT(exported_json(scalar, {.wavelengths = {0.5}})["metadata"]["timestamp"].get<std::string>(), "2026");
+}
+
+TEST(Bird, ThatIsWrittenIsReadBackAsTheModel) {
+  const Folder folder;
+  const Model model = material("ptfe");
+  put(folder / "x", exported(Export(model, export_format("bird"), {.wavelengths = {0.45, 0.532}})));
+  const ForeignRead read = read_foreign_file(folder / "x");
+  EXPECT_GE(read.samples.size(), 2000U);
+  const std::array prepared{prepare(model, 0.45), prepare(model, 0.532)};
+  for (const Sample& sample : read.samples) {
+    const Mueller expected = prepared[sample.wavelength > 0.5].evaluate(sample.geometry);
+    EXPECT_EQ(not_measured(sample).count(), 0U);
+    for (std::size_t e = 0; e < 16; ++e)
+      ASSERT_NEAR(sample.f11 * sample.normalized.elements[e], expected.elements[e], 1e-7 * expected(0, 0))
+          << element_name(e);  // eight digits of each value
+  }
+}
+
+TEST(Bird, IsWrittenWithTheStatesThatTheModelKnows) {
+  Model model = diffuser({0.3});
+  const auto all_but = [](int rows) {
+    Elements unknown;
+    for (std::size_t e = 0; e < 16; ++e) unknown[e] = int(e / 4) >= rows || int(e % 4) >= rows;
+    return unknown;
+  };
+  const auto pairs = [&](int rows) {
+    model.not_measured = all_but(rows);
+    const json data = exported_json(model, {.wavelengths = {0.5}})["data"];
+    EXPECT_EQ(data.contains("polarization_i"), rows > 2);
+    EXPECT_FALSE(data.contains("uBRDF"));  // this model knows none
+    for (std::size_t row = 0; row < data["BRDF"]["values"].size(); ++row) {
+      const bool open = rows <= 2 || data["polarization_r"]["values"][row] == json{1, 0, 0, 0};
+      EXPECT_NEAR(data["BRDF"]["values"][row].get<double>(), open ? 0.3 : 0.15, 1e-8);  // an analyzer passes half
+    }
+    std::size_t same = 0;  // rows of the first geometry, along the normal
+    while (same < data["theta_r"]["values"].size() && data["theta_r"]["values"][same] == 0.0) ++same;
+    return same;
+  };
+  EXPECT_EQ(pairs(1), 1U);
+  EXPECT_EQ(pairs(2), 1U);  // 12 and 22 of the frame xy alone are not those of the frame sp
+  EXPECT_EQ(pairs(3), 1U + 16);
+  EXPECT_EQ(pairs(4), 1U + 36);
+}
+
+TEST(Bird, IsWrittenWithoutWhatIsNegative) {
+  const Model model = random_model(Family::isotropic, {4, 3}, 0, 3);  // of matrices that mostly cannot exist
+  const Export table(model, export_format("bird"), {.wavelengths = {0.5}});
+  EXPECT_TRUE(says(table.understood(), {"geometries left out, where a value is negative", "nothing is interpolated"}));
+  EXPECT_EQ(table.understood().find("adds"), std::string::npos);
+  EXPECT_TRUE(says(export_refusal(diffuser({-0.3}), "bird", {.wavelengths = {0.5}}), {"a BiRD file has no negative"}));
+}
+
+TEST(Bird, IsWrittenOfAnisotropicSamplesAtAzimuthsOfTheSource) {
+  const Model model = random_model(Family::anisotropic, {1, 0}, 0, 1);
+  const json data = exported_json(model, {.wavelengths = {0.5}})["data"];
+  const PreparedModel prepared = prepare(model, 0.5);
+  double largest = 0;
+  for (std::size_t row = 0; row < data["BRDF"]["values"].size(); row += 37) {
+    largest = std::max(largest, data["phi_i"]["values"][row].get<double>());
+    ASSERT_NEAR(data["BRDF"]["values"][row].get<double>(), prepared.f11(geometry_of(data, row)), 1e-8);
+  }
+  EXPECT_EQ(largest, 315);
 }
 
 }  // namespace

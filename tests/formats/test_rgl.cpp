@@ -4,11 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <map>
+#include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "given/foreign.hpp"
+#include "given/random_model.hpp"
 #include "given/tensor_file.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -183,6 +190,197 @@ TEST(Rgl, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   };
   EXPECT_TRUE(says(refusal(1, longer), {"field theta_i: 20000 nodes of an axis, must be at most 10000"}));
   EXPECT_TRUE(says(refusal(7, longer), {"field jacobian: must have the shape [1]"}));
+}
+
+std::string exported(const Export& table) {
+  std::ostringstream out;
+  table.write(out);
+  return out.str();
+}
+
+/// As a renderer reads such a file: half directions are turned into samples of the square by the density of visible
+/// normals, with integrals of its own; what is between nodes is linear.
+class Renderer {
+ public:
+  explicit Renderer(const std::string& bytes) {
+    EXPECT_EQ(bytes.substr(0, 14), std::string("tensor_file\0\1\0", 14));
+    std::size_t place = 14;
+    const auto take = [&]<class Number>(Number value) {
+      std::memcpy(&value, bytes.data() + place, sizeof value);
+      place += sizeof value;
+      return value;
+    };
+    for (std::uint32_t f = take(std::uint32_t{}); f > 0; --f) {
+      const std::uint16_t length = take(std::uint16_t{});
+      const std::string name = bytes.substr(place, length);
+      place += length;
+      const std::uint16_t dimensions = take(std::uint16_t{});
+      const int type = take(std::uint8_t{});
+      const std::uint64_t offset = take(std::uint64_t{});
+      std::size_t count = 1;
+      for (int d = 0; d < dimensions; ++d) count *= shapes[name].emplace_back(take(std::uint64_t{}));
+      for (std::size_t n = 0; n < count && type == 1; ++n) text[name] += bytes.at(offset + n);
+      if (type == 1) continue;
+      EXPECT_EQ(type, 10) << name;
+      std::vector<float> all(count);
+      std::memcpy(all.data(), bytes.data() + offset, 4 * count);
+      values[name].assign(all.begin(), all.end());
+      if (dimensions > 1) cut(name);
+    }
+  }
+
+  /// f cos(theta_r) for light from theta_i at azimuth 0.
+  double f_cos(double theta_i, const Vector& o, std::size_t w) const {
+    const auto [u, v] = half(theta_i, o);
+    const std::pair<double, double> xy = sample(theta_i, u, v);
+    const std::size_t count = shapes.at("wavelengths")[0];
+    const double spectrum =
+        of_incidence(theta_i, [&](std::size_t t) { return slice("spectra", t * count + w)(xy.first, xy.second); });
+    return spectrum * slice("ndf", 0)(u, v) / (4 * slice("sigma", 0)(std::sqrt(theta_i * 2 / pi), 0.5));
+  }
+
+  /// Of drawing o: a sample by luminance, and by it a half direction.
+  double pdf(double theta_i, const Vector& o) const {
+    const auto [u, v] = half(theta_i, o);
+    const auto [x, y] = sample(theta_i, u, v);
+    const auto of = [&](const char* name, double a, double b) {
+      return of_incidence(theta_i, [&](std::size_t t) { return slice(name, t)(a, b) / totals.at(name)[t]; });
+    };
+    const Vector i = at(theta_i, 0), h = unit(sum(1, i, 1, o));
+    return of("luminance", x, y) * of("vndf", u, v) / (2 * pi * pi * u * std::hypot(h[0], h[1]) * 4 * dot(i, h));
+  }
+
+  std::map<std::string, std::vector<std::uint64_t>> shapes;
+  std::map<std::string, std::vector<double>> values;
+  std::map<std::string, std::string> text;
+
+ private:
+  static std::pair<double, double> half(double theta_i, const Vector& o) {
+    const Vector h = sum(1, at(theta_i, 0), 1, o);
+    return {std::sqrt(std::atan2(std::hypot(h[0], h[1]), h[2]) * 2 / pi), std::atan2(h[1], h[0]) / (2 * pi) + 0.5};
+  }
+
+  void cut(const std::string& name) {
+    const std::vector<std::uint64_t>& shape = shapes.at(name);
+    const std::size_t nx = shape.back(), ny = shape[shape.size() - 2];
+    for (auto first = values[name].begin(); first != values[name].end(); first += std::ptrdiff_t(nx * ny)) {
+      slices[name].push_back({nx, ny, {first, first + std::ptrdiff_t(nx * ny)}});
+      totals[name].push_back(total(slices[name].back()));
+    }
+  }
+  const Nodes& slice(const std::string& name, std::size_t number) const { return slices.at(name)[number]; }
+
+  static double total(const Nodes& density) {
+    return integral([&](double y) { return of_row(density, y, 1); }, density.ny - 1, 1);
+  }
+  static double of_row(const Nodes& density, double y, double to) {
+    return integral([&](double x) { return density(x, y); }, density.nx - 1, to);
+  }
+
+  std::map<std::string, std::vector<Nodes>> slices;
+  std::map<std::string, std::vector<double>> totals;
+
+  double of_incidence(double theta_i, const std::function<double(std::size_t)>& value) const {
+    const std::vector<double>& nodes = values.at("theta_i");
+    std::size_t t = 0;
+    while (t + 2 < nodes.size() && nodes[t + 1] < theta_i) ++t;
+    const double part = (theta_i - nodes[t]) / (nodes[t + 1] - nodes[t]);
+    return (1 - part) * value(t) + part * value(t + 1);
+  }
+
+  std::pair<double, double> sample(double theta_i, double u, double v) const {
+    const auto mean = [&](const std::function<double(const Nodes&)>& of) {
+      return of_incidence(theta_i, [&](std::size_t t) { return of(slice("vndf", t)) / totals.at("vndf")[t]; });
+    };
+    const double y = mean([&](const Nodes& density) {
+      return integral([&](double row) { return of_row(density, row, 1); }, density.ny - 1, v);
+    });
+    return {
+        mean([&](const Nodes& d) { return of_row(d, v, u); }) / mean([&](const Nodes& d) { return of_row(d, v, 1); }),
+        y};
+  }
+};
+
+struct Drawn {
+  double theta_i;
+  Vector o;
+  double theta_r, phi_r;
+};
+
+std::vector<Drawn> directions(std::size_t count, double theta_max) {
+  std::mt19937_64 engine(11);
+  std::uniform_real_distribution<double> part(0, 1);
+  std::vector<Drawn> result;
+  while (result.size() < count) {
+    const double ti = std::asin(std::sin(theta_max) * std::sqrt(part(engine))),
+                 tr = std::asin(std::sin(theta_max) * std::sqrt(part(engine))), phi = 2 * pi * part(engine);
+    result.push_back({ti, at(tr, phi), tr, phi});
+  }
+  return result;
+}
+
+TEST(Rgl, IsWrittenWithTheErrorThatItSays) {
+  const Model model = material("ptfe");
+  for (const auto& [wanted, side] : {std::pair{1e-2, 33U}, std::pair{2.5e-3, 65U}}) {
+    const Export table(model, export_format("rgl"), {.wavelengths = {0.45, 0.633}, .error = wanted});
+    const Renderer renderer(exported(table));
+    EXPECT_EQ(renderer.shapes.at("spectra")[4], side);
+    EXPECT_EQ(renderer.shapes.at("luminance")[2], side);
+    EXPECT_EQ(renderer.values.at("wavelengths"), (std::vector<double>{450, 633}));
+    EXPECT_EQ(renderer.text.at("jacobian"), "\1");
+    double squares = 0, largest = 0;
+    constexpr std::size_t count = 2000;
+    for (const std::size_t w : {0U, 1U}) {
+      const PreparedModel prepared = prepare(model, w == 0 ? 0.45 : 0.633);
+      for (const Drawn& d : directions(count, table.error().theta_max)) {
+        const double error =
+            renderer.f_cos(d.theta_i, d.o, w) / d.o[2] / prepared.f11({{d.theta_i, 0}, {d.theta_r, d.phi_r}}) - 1;
+        squares += error * error;
+        largest = std::max(largest, std::abs(error));
+      }
+    }
+    // Other directions of the same distribution.
+    EXPECT_LE(table.error().rms, wanted);
+    EXPECT_NEAR(std::sqrt(squares / (2 * count)), table.error().rms, 0.2 * table.error().rms);
+    EXPECT_LT(largest, 2 * table.error().largest);
+  }
+}
+
+TEST(Rgl, ThatIsWrittenIsDrawnNearlyAsItScatters) {
+  const Model model = material("ptfe-532");
+  const PreparedModel prepared = prepare(model, 0.532);
+  const Renderer renderer(exported(Export(model, export_format("rgl"), {.error = 2.5e-3})));
+  double squares = 0;
+  const std::vector<Drawn> drawn = directions(400, radians(70));
+  for (const Drawn& d : drawn) {
+    const double part = prepared.f11({{d.theta_i, 0}, {d.theta_r, d.phi_r}}) * d.o[2] /
+                        directional_hemispherical_reflectance(model, 0.532, {d.theta_i, 0});
+    squares += std::pow(renderer.pdf(d.theta_i, d.o) / part - 1, 2);
+  }
+  // With 65 nodes a side: the density is off by some percent, and far more only near the mirror direction.
+  EXPECT_LT(std::sqrt(squares / double(drawn.size())), 0.1);
+}
+
+TEST(Rgl, ThatIsWrittenIsReadBackAsTheModel) {
+  const Folder folder;
+  for (const Model& model : {material("ptfe"), random_model(Family::isotropic, {4, 3}, 0, 3)}) {
+    put(folder / "x", exported(Export(model, export_format("rgl"), {.wavelengths = {0.532}, .error = 10})));
+    const ForeignRead read = read_foreign_file(folder / "x");
+    const PreparedModel prepared = prepare(model, 0.532);
+    EXPECT_GE(read.samples.size(), 4000U);
+    for (const Sample& s : read.samples) {
+      // Single precision of f cos and of angles, and samples at the sides of the square moved inwards by as much.
+      const double lowest = std::cos(s.geometry.reflected.theta);
+      ASSERT_NEAR(s.f11, prepared.f11(s.geometry), 1e-6 + 1e-7 / lowest);
+    }
+  }
+}
+
+TEST(Rgl, IsNotWrittenOfWhatItCannotHold) {
+  EXPECT_TRUE(says(export_refusal(material("ptfe"), "rgl", {.error = 1e-9}),
+                   {"the finest table, of 73 theta_i, 257 x 257 half directions"}));
+  EXPECT_TRUE(says(export_refusal(random_model(Family::anisotropic, {2, 1}, 0, 1), "rgl", {.wavelengths = {0.5}}),
+                   {"an RGL file is of an isotropic sample"}));
 }
 
 }  // namespace

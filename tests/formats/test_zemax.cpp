@@ -3,10 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <map>
+#include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "given/foreign.hpp"
+#include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
+#include "mmbrdf/radiometry/reflectance.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -95,6 +103,147 @@ TEST(Zemax, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal("TIS 0.9\n", "TIS 0.9\n inf"), {"x:18: value: 'inf'"}));
   EXPECT_TRUE(says(refusal("TIS 0.9\n", "TIS 0.9\n 1"), {"in place of TIS"}));
   EXPECT_TRUE(says(refusal("Asymmetrical", "Mirrored"), {"x:3: Symmetry 'Mirrored' is none of"}));
+}
+
+std::string exported(const Export& table) {
+  std::ostringstream out;
+  table.write(out);
+  return out.str();
+}
+
+/// As optical design reads such a file: lists of angles by keyword, then a line TIS and a line for each azimuth; linear
+/// between the nodes, the other half as the mirror image where the file says so.
+class Design {
+ public:
+  explicit Design(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line) && line != "DataBegin";) {
+      std::istringstream words(line);
+      std::string key, value;
+      if (line.empty() || line[0] == '#' || !(words >> key >> value)) continue;
+      said[key] = value;
+      if (key != "SampleRotation" && key != "AngleOfIncidence" && !key.starts_with("Scatter")) continue;
+      if (key == "ScatterType") continue;
+      std::getline(lines, line);
+      std::istringstream list(line);
+      for (double angle = 0; list >> angle;) angles[key].push_back(angle);
+      EXPECT_EQ(angles[key].size(), std::stoul(value)) << key;
+    }
+    std::string word;
+    for (std::size_t i = 0; i < angles["AngleOfIncidence"].size(); ++i) {
+      EXPECT_TRUE(lines >> word && word == "TIS" && lines >> tis.emplace_back());
+      for (std::size_t n = angles["ScatterAzimuth"].size() * angles["ScatterRadial"].size(); n > 0; --n)
+        EXPECT_TRUE(lines >> values.emplace_back());
+    }
+    EXPECT_TRUE(lines >> word && word == "DataEnd");
+  }
+
+  double operator()(double theta_i, const Vector& o) const {
+    const Vector specular = at(-theta_i, 0), up = at(std::numbers::pi / 2 - theta_i, 0), side{0, 1, 0};
+    double azimuth = std::atan2(dot(o, side), dot(o, up)) / degree;
+    if (azimuth < 0) azimuth = said.at("Symmetry") == "PlaneSymmetrical" ? -azimuth : azimuth + 360;
+    const auto i = place("AngleOfIncidence", theta_i / degree), a = place("ScatterAzimuth", azimuth),
+               r = place("ScatterRadial", std::acos(std::min(1.0, dot(o, specular))) / degree);
+    double result = 0;
+    for (const std::size_t x : {0U, 1U})
+      for (const std::size_t y : {0U, 1U})
+        for (const std::size_t z : {0U, 1U})
+          result += (x ? i.second : 1 - i.second) * (y ? a.second : 1 - a.second) * (z ? r.second : 1 - r.second) *
+                    values[((i.first + x) * angles.at("ScatterAzimuth").size() + a.first + y) *
+                               angles.at("ScatterRadial").size() +
+                           r.first + z];
+    return result;
+  }
+
+  std::map<std::string, std::string> said;
+  std::map<std::string, std::vector<double>> angles;
+  std::vector<double> tis, values;
+
+ private:
+  std::pair<std::size_t, double> place(const char* name, double angle) const {
+    const std::vector<double>& list = angles.at(name);
+    std::size_t below = 0;
+    while (below + 2 < list.size() && list[below + 1] < angle) ++below;
+    return {below, (angle - list[below]) / (list[below + 1] - list[below])};
+  }
+};
+
+TEST(Zemax, IsWrittenWithTheErrorThatItSays) {
+  const Model model = material("ptfe-532");
+  const PreparedModel prepared = prepare(model, 0.532);
+  for (const auto& [wanted, radials] : {std::pair{2e-3, 37U}, std::pair{5e-4, 73U}}) {
+    const Export table(model, export_format("zemax"), {.error = wanted});
+    const Design design(exported(table));
+    EXPECT_EQ(design.said.at("Symmetry"), "PlaneSymmetrical");
+    EXPECT_EQ(design.said.at("ScatterType"), "BRDF");
+    EXPECT_EQ(design.angles.at("ScatterRadial").size(), radials);  // steps of at most 5 degrees, whatever the error
+    std::mt19937_64 engine(5);
+    std::uniform_real_distribution<double> part(0, 1);
+    const double reach = std::sin(table.error().theta_max);
+    double squares = 0, largest = 0;
+    constexpr int count = 4000;
+    for (int n = 0; n < count; ++n) {
+      const double ti = std::asin(reach * std::sqrt(part(engine))), tr = std::asin(reach * std::sqrt(part(engine))),
+                   phi = 2 * std::numbers::pi * part(engine);
+      const double error = std::abs(design(ti, at(tr, phi)) / prepared.f11({{ti, 0}, {tr, phi}}) - 1);
+      squares += error * error;
+      largest = std::max(largest, error);
+    }
+    // Other directions of the same distribution; a few, of forward scattering at grazing angles, have much of it.
+    EXPECT_NEAR(std::sqrt(squares / count), table.error().rms, 0.25 * table.error().rms);
+    EXPECT_LT(largest, 2 * table.error().largest);
+    EXPECT_LE(table.error().rms, wanted);
+  }
+}
+
+TEST(Zemax, IsWrittenOfOneChannel) {
+  const Folder folder;
+  const Model model = material("ptfe-532");
+  put(folder / "x", exported(Export(model, export_format("zemax"), {.channel = "f_sp", .error = 1})));
+  const PreparedModel prepared = prepare(model, 0.532);
+  for (const Sample& s : read_foreign_file(folder / "x", {0.532}).samples) {
+    // Along the normal, which is no node of the radial angles but of few, it turns with the azimuth.
+    if (std::min(s.geometry.incident.theta, s.geometry.reflected.theta) < 1e-6) continue;
+    ASSERT_NEAR(s.f11, quantity("f_sp").value(prepared.evaluate(s.geometry, Frame::sp), {}), 1e-7 * s.f11);
+  }
+}
+
+TEST(Zemax, ThatIsWrittenHasTheReflectanceOfEachIncidence) {
+  const Model model = material("ptfe-532");
+  const Design design(exported(Export(model, export_format("zemax"), {})));
+  for (std::size_t i = 0; i < design.tis.size(); ++i) {
+    const double theta = design.angles.at("AngleOfIncidence")[i] * degree;
+    EXPECT_NEAR(design.tis[i], directional_hemispherical_reflectance(model, 0.532, {theta, 0}), 1e-8);  // eight digits
+    // A reader that scales the table to it by its own sum over nodes, linear between them, changes it by less than 1 %.
+    double sum = 0;
+    constexpr int parts = 90;
+    for (int t = 0; t < parts; ++t)
+      for (int p = 0; p < 2 * parts; ++p) {
+        const double tr = (t + 0.5) * 90 / parts * degree, phi = (p + 0.5) * 180 / parts * degree;
+        sum += design(theta, at(tr, phi)) * std::sin(tr) * std::cos(tr) * std::pow(90.0 / parts * degree, 2) * 2;
+      }
+    EXPECT_NEAR(sum, design.tis[i], 0.01 * design.tis[i]);
+  }
+}
+
+TEST(Zemax, ThatIsWrittenIsReadBackAsTheModelUpToTheHorizon) {
+  const Folder folder;
+  for (const Model& model : {material("ptfe-532"), random_model(Family::isotropic, {4, 3}, 0, 3)}) {
+    put(folder / "x", exported(Export(model, export_format("zemax"), {.wavelengths = {0.532}, .error = 10})));
+    const ForeignRead read = read_foreign_file(folder / "x", {0.532});
+    const PreparedModel prepared = prepare(model, 0.532);
+    EXPECT_GE(read.samples.size(), 10000U);
+    for (const Sample& s : read.samples) ASSERT_NEAR(s.f11, prepared.f11(s.geometry), 1e-7 * std::abs(s.f11) + 1e-9);
+  }
+}
+
+TEST(Zemax, IsNotWrittenOfWhatItCannotHold) {
+  EXPECT_TRUE(says(export_refusal(material("ptfe"), "zemax", {.wavelengths = {0.45, 0.55}}),
+                   {"450 and 550 nm: a Monochrome Zemax file has one wavelength"}));
+  EXPECT_TRUE(says(export_refusal(material("ptfe-532"), "zemax", {.channel = "entropy"}), {"channel entropy"}));
+  EXPECT_TRUE(says(export_refusal(material("ptfe-532"), "zemax", {.error = 1e-9}), {"steps of 2.5 degrees"}));
+  EXPECT_TRUE(says(export_refusal(random_model(Family::anisotropic, {2, 1}, 0, 1), "zemax", {.wavelengths = {0.5}}),
+                   {"isotropic sample"}));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ struct ExportOptions {
 /// What interpolation adds, as parts of f11, over all elements that the table has.
 struct ExportError {
   double rms = 0, largest = 0;
-  double theta_max = 0;  ///< radians: up to where directions were compared
+  double theta_max = 0;  ///< radians: up to where directions were compared; 0 where nothing is interpolated
 };
 
 /// A format that is written.
@@ -48,7 +48,7 @@ std::span<const ExportFormat> export_formats();
 /// By its name. Throws std::invalid_argument for a name that is not in the table.
 const ExportFormat& export_format(std::string_view name);
 
-/// The one whose ending a path has; of several the first. Throws std::invalid_argument if there is none.
+/// The one whose ending a path has. Throws std::invalid_argument if there is none, or several, with their names.
 const ExportFormat& export_format_of(std::string_view path);
 
 class Export {
@@ -70,6 +70,7 @@ class Export {
     std::function<void(std::ostream&)> write;
     ExportError error;
     std::string understood;
+    std::string cause = "interpolation";  ///< of the error
   };
 
  private:

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <vector>
+
+#include "formats/bird.hpp"
+#include "formats/export_table.hpp"
+#include "mmbrdf/model/description.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
+#include "text/json_text.hpp"
+#include "text/numbers.hpp"
+
+namespace mmbrdf {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* bird_schema =
+    "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
+
+/// Light, or what an analyzer lets pass, in the convention s_first_right.
+struct NamedState {
+  const char* text;  ///< as in a file: a Stokes vector
+  Stokes vector;
+};
+constexpr std::array named_states{NamedState{"[1, 0, 0, 0]", {1, 0, 0, 0}},   NamedState{"[1, 1, 0, 0]", {1, 1, 0, 0}},
+                                  NamedState{"[1, -1, 0, 0]", {1, -1, 0, 0}}, NamedState{"[1, 0, 1, 0]", {1, 0, 1, 0}},
+                                  NamedState{"[1, 0, -1, 0]", {1, 0, -1, 0}}, NamedState{"[1, 0, 0, 1]", {1, 0, 0, 1}},
+                                  NamedState{"[1, 0, 0, -1]", {1, 0, 0, -1}}};
+
+/// A value is the sum of elements, of the frame sp in this project's convention, with these weights: half of w M a behind
+/// an analyzer.
+struct StatePair {
+  std::size_t incident, analyzed;  ///< of named_states
+  std::array<double, 16> weights;
+};
+
+StatePair state_pair(std::size_t incident, std::size_t analyzed) {
+  StatePair result{incident, analyzed, {}};
+  const auto own = [](std::size_t state) {
+    return convert(named_states[state].vector, StokesConvention::s_first_right, StokesConvention::germer2017);
+  };
+  const Stokes a = own(incident), w = own(analyzed);
+  for (std::size_t e = 0; e < 16; ++e) result.weights[e] = (analyzed == 0 ? 1 : 0.5) * w[e / 4] * a[e % 4];
+  return result;
+}
+
+/// Unpolarized light without an analyzer, and all pairs of s and p, ±45 degrees and both circular states, as far as the
+/// elements are known that these tell.
+std::vector<StatePair> told_pairs(const Elements& unknown) {
+  std::vector<StatePair> pairs{state_pair(0, 0)};
+  std::size_t components = 4;
+  const auto told = [&] {
+    for (std::size_t e = 0; e < 16; ++e)
+      if (unknown[e] && e / 4 < components && e % 4 < components) return false;
+    return true;
+  };
+  while (components > 1 && !told()) --components;
+  const std::size_t last = 2 * (components - 1);
+  for (std::size_t analyzed = 1; analyzed <= last; ++analyzed)
+    for (std::size_t incident = 1; incident <= last; ++incident) pairs.push_back(state_pair(incident, analyzed));
+  return pairs;
+}
+
+/// Degrees from 0 on, up to `most` (radians) and below 90.
+std::vector<double> polar_nodes(int step, double most) {
+  std::vector<double> result;
+  for (int angle = 0; angle < 90 && radians(angle) <= most + 1e-9; angle += step) result.push_back(angle);
+  return result;
+}
+
+std::vector<double> round_nodes(int step) {
+  std::vector<double> result;
+  for (int angle = 0; angle < 360; angle += step) result.push_back(angle);
+  return result;
+}
+
+struct PointInDegrees {
+  double theta_i, phi_i, theta_r, phi_r;
+  Geometry geometry() const { return {direction_from_degrees(theta_i, phi_i), direction_from_degrees(theta_r, phi_r)}; }
+};
+
+/// Directions within those of the fit. Along the normal there is one azimuth.
+std::vector<PointInDegrees> points_of(const PreparedModel& prepared, const Validity& validity, bool turns_matter) {
+  const int coarser = turns_matter ? 2 : 1;
+  std::vector<PointInDegrees> result;
+  for (const double theta_i : polar_nodes(15, std::min(compared_theta, validity.theta_i_max.value_or(compared_theta))))
+    for (const double phi_i : turns_matter ? round_nodes(45) : std::vector<double>{0})
+      for (const double theta_r :
+           polar_nodes(5 * coarser, std::min(compared_theta, validity.theta_r_max.value_or(compared_theta))))
+        for (const double phi_r : theta_r > 0 ? round_nodes(15 * coarser) : std::vector<double>{0}) {
+          const PointInDegrees point{theta_i, phi_i, theta_r, phi_r};
+          if ((prepared.outside(point.geometry()) & outside_directions) == 0) result.push_back(point);
+        }
+  return result;
+}
+
+/// Values of all pairs of states at points of one wavelength.
+struct BirdValues {
+  double wavelength;
+  std::vector<PointInDegrees> points;
+  std::vector<double> values, uncertainties;  ///< pairs × points, the pair fastest; uncertainties may be empty
+  std::size_t left_out = 0;                   ///< points of which a value is negative
+};
+
+double weighted(const std::array<double, 16>& weights, const Mueller& m) {
+  double sum = 0;
+  for (std::size_t e = 0; e < 16; ++e)
+    if (weights[e] != 0) sum += weights[e] * m.elements[e];
+  return sum;
+}
+
+double uncertainty_of(const std::array<double, 16>& weights, const MuellerCovariance& covariance) {
+  double variance = 0;
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t f = 0; f < 16; ++f)
+      if (weights[e] != 0 && weights[f] != 0) variance += weights[e] * weights[f] * covariance(e, f);
+  return std::sqrt(std::max(0.0, variance));
+}
+
+BirdValues values_at(const Model& model, double wavelength, const std::vector<StatePair>& pairs, bool turns_matter) {
+  const PreparedModel prepared = prepare(model, wavelength);
+  std::optional<PreparedUncertainty> uncertainty;
+  if (knows_uncertainty(model)) uncertainty = prepare_uncertainty(model, wavelength);
+  BirdValues result{wavelength, {}, {}, {}};
+  for (const PointInDegrees& point : points_of(prepared, model.validity, turns_matter)) {
+    const Mueller m = prepared.evaluate(point.geometry(), Frame::sp);
+    if (std::ranges::any_of(pairs, [&](const StatePair& pair) { return weighted(pair.weights, m) < 0; })) {
+      ++result.left_out;
+      continue;
+    }
+    result.points.push_back(point);
+    for (const StatePair& pair : pairs) result.values.push_back(weighted(pair.weights, m));
+    if (!uncertainty) continue;
+    const MuellerCovariance covariance = uncertainty->evaluate(point.geometry(), Frame::sp);
+    for (const StatePair& pair : pairs) result.uncertainties.push_back(uncertainty_of(pair.weights, covariance));
+  }
+  return result;
+}
+
+/// Now, or at SOURCE_DATE_EPOCH, as those who build reproducibly set it; in UTC: "2026-11-30T00:20:00+00:00".
+std::string timestamp() {
+  namespace chrono = std::chrono;
+  auto at = chrono::floor<chrono::seconds>(chrono::system_clock::now());
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
+    const double seconds = parse_number(epoch);
+    if (!(seconds >= 0 && seconds < 253402300800.0) || seconds != std::floor(seconds))
+      throw std::invalid_argument("SOURCE_DATE_EPOCH = " + in_quotes(epoch) + ": must be whole seconds since 1970");
+    at = chrono::sys_seconds(chrono::seconds(static_cast<long>(seconds)));
+  }
+  const auto day = chrono::floor<chrono::days>(at);
+  const chrono::year_month_day date(day);
+  const chrono::hh_mm_ss time(at - day);
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02ld:%02ld:%02ld+00:00", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<long>(time.hours().count()), static_cast<long>(time.minutes().count()),
+                static_cast<long>(time.seconds().count()));
+  return text.data();
+}
+
+/// A UUID that differs where values, model or time do (RFC 9562, version 8).
+std::string identifier(const std::vector<BirdValues>& all, const std::string& text) {
+  std::array<std::uint64_t, 2> hash{14695981039346656037U, 1099511628211U};
+  const auto mix = [&](std::uint64_t bits) {
+    for (std::uint64_t& one : hash) one = ((one ^ bits) * 1099511628211U) ^ (one >> 29);
+  };
+  for (const char c : text) mix(static_cast<unsigned char>(c));
+  for (const BirdValues& at : all)
+    for (const double value : at.values) mix(std::bit_cast<std::uint64_t>(value));
+  std::array<char, 80> uuid{};
+  std::snprintf(uuid.data(), uuid.size(), "urn:uuid:%08x-%04x-8%03x-%04x-%012llx", static_cast<unsigned>(hash[0] >> 32),
+                static_cast<unsigned>(hash[0] >> 16 & 0xffff), static_cast<unsigned>(hash[0] & 0xfff),
+                static_cast<unsigned>(0x8000 | (hash[1] >> 48 & 0x3fff)),
+                static_cast<unsigned long long>(hash[1] & 0xffffffffffffU));
+  return uuid.data();
+}
+
+constexpr const char* not_stated = "not stated";
+
+/// Whom to ask. The address is one that cannot be (RFC 2606).
+ordered_json origin(const Model& model) {
+  ordered_json result{
+      {"organization", not_stated},
+      {"location",
+       {{"country", not_stated}, {"city", not_stated}, {"street", not_stated}, {"building_nr", not_stated}}},
+      {"email", "not-stated@example.invalid"},
+      {"contact_person", not_stated}};
+  const auto attribution = model.provenance.find("attribution");
+  if (attribution != model.provenance.end()) result["comments"] = attribution->second;
+  return result;
+}
+
+ordered_json software(const Model& model, const std::string& name) {
+  return {{"name", "mmbrdf"},
+          {"version", MMBRDF_PROJECT_VERSION},
+          {"simulation_model",
+           {{"name", name},
+            {"description", "Mueller-matrix BRDF fitted to measured samples"},
+            {"comments", basis_line(model)}}}};
+}
+
+ordered_json sample_of(const std::string& name, bool turns_matter) {
+  return {{"name", name},
+          {"type", not_stated},
+          {"shape", not_stated},
+          {"dimensions", ordered_json::object()},
+          {"properties_symmetry", turns_matter ? "anisotropic" : "isotropic"},
+          {"zero_azimuth_location", turns_matter ? "that of the model" : "any: the sample is isotropic"}};
+}
+
+/// What the schema requires; it has no word but text for what is not known.
+ordered_json metadata(const Model& model, bool turns_matter, const std::vector<BirdValues>& all) {
+  const std::string name = model.name.empty() ? not_stated : printable(model.name, 200), time = timestamp();
+  ordered_json provenance = ordered_json::object();
+  for (const auto& [key, text] : model.provenance) provenance[key] = text;
+  return {{"schema", bird_schema},
+          {"id", identifier(all, time + basis_line(model) + name)},
+          {"type", "BRDF"},
+          {"timestamp", time},
+          {"provenance", origin(model)},
+          {"description", "BRDF of a model of the sample " + name + " at directions that its measurement supports"},
+          {"method", "simulation"},
+          {"instrumentation", "NA"},
+          {"software", software(model, name)},
+          {"sample", sample_of(name, turns_matter)},
+          {"environment", "NA"},
+          {"adhoc_section", {{"fitted_range", fitted_range(model.validity)}, {"provenance_of_the_model", provenance}}}};
+}
+
+/// Throws std::invalid_argument for texts that JSON cannot have.
+std::string metadata_text(const Model& model, bool turns_matter, const std::vector<BirdValues>& all) {
+  try {
+    return json_text(metadata(model, turns_matter, all));
+  } catch (const nlohmann::json::exception& e) {
+    throw std::invalid_argument("name or provenance of the model: " + std::string(e.what()));
+  }
+}
+
+/// The lists of `data`, a value for each pair of states at each point of each wavelength.
+class BirdLists {
+ public:
+  BirdLists(std::ostream& out, const std::vector<BirdValues>& all, const std::vector<StatePair>& pairs)
+      : out_(out), all_(all), pairs_(pairs) {}
+
+  void write(bool uncertain, bool polarized) {
+    out_ << "{\n";
+    angle("theta_i", &PointInDegrees::theta_i);
+    angle("phi_i", &PointInDegrees::phi_i);
+    angle("theta_r", &PointInDegrees::theta_r);
+    angle("phi_r", &PointInDegrees::phi_r);
+    list(R"("wavelength_i": {"name": "wavelength_i", "unit": "nm")",
+         [](const BirdValues& at, std::size_t) { return shortest(in_nanometres(at.wavelength)); });
+    if (polarized) {
+      const std::string frame =
+          R"(", "notation": "inStokes", "comments": "s first, +45 degrees from s towards p, right-handed positive)";
+      list(R"("polarization_i": {"name": "polarization_i)" + frame + "\"", [this](const BirdValues&, std::size_t n) {
+        return std::string(named_states[pairs_[n % pairs_.size()].incident].text);
+      });
+      list(R"("polarization_r": {"name": "polarization_r)" + frame +
+               R"(; [1, 0, 0, 0] is a receiver without an analyzer")",
+           [this](const BirdValues&, std::size_t n) {
+             return std::string(named_states[pairs_[n % pairs_.size()].analyzed].text);
+           });
+    }
+    if (uncertain)
+      list(
+          R"("uBRDF": {"name": "BRDF", "unit": "1/sr", "comments": "standard uncertainties, k = 1, of the sample as the )"
+          R"(fit left it; those of one geometry are correlated")",
+          [](const BirdValues& at, std::size_t n) { return rounded(at.uncertainties[n], 4); });
+    list(R"("BRDF": {"name": "BRDF", "unit": "1/sr")",
+         [](const BirdValues& at, std::size_t n) { return rounded(at.values[n], 8); }, "\n");
+    out_ << "}";
+  }
+
+ private:
+  void angle(const std::string& name, double PointInDegrees::*which) {
+    list('"' + name + R"(": {"name": ")" + name + R"(", "unit": "deg")",
+         [this, which](const BirdValues& at, std::size_t n) { return shortest(at.points[n / pairs_.size()].*which); });
+  }
+
+  template <class Text>
+  void list(const std::string& head, const Text& text, const char* end = ",\n") {
+    out_ << head << ", \"values\": [";
+    std::string line;
+    bool first = true;
+    for (const BirdValues& at : all_)
+      for (std::size_t n = 0; n < at.values.size(); ++n) {
+        if (line.size() > 100) out_ << line << '\n', line.clear();
+        line += (first ? "" : ", ") + text(at, n);
+        first = false;
+      }
+    out_ << line << "]}" << end;
+  }
+
+  std::ostream& out_;
+  const std::vector<BirdValues>& all_;
+  const std::vector<StatePair>& pairs_;
+};
+
+std::string bird_understood(const std::vector<BirdValues>& all, std::size_t pairs, bool uncertain) {
+  std::size_t points = 0, left_out = 0;
+  for (const BirdValues& at : all) points += at.points.size(), left_out += at.left_out;
+  std::vector<double> wavelengths;
+  for (const BirdValues& at : all) wavelengths.push_back(at.wavelength);
+  std::string text = std::to_string(points) + " geometries at " + nanometre_text(wavelengths);
+  text += pairs == 1 ? ", f11 in sr^-1"
+                     : ", values in sr^-1 between " + std::to_string(pairs) +
+                           " pairs of states, s first, S4 > 0 right-handed, frame sp";
+  text += uncertain ? ", uBRDF with k = 1" : ", without uncertainties, which the model does not know";
+  if (left_out > 0) text += "; " + std::to_string(left_out) + " geometries left out, where a value is negative";
+  return text + "; values as the model has them, nothing is interpolated";
+}
+
+}  // namespace
+
+Export::Made make_bird(const Model& model, const ExportOptions& options) {
+  const bool turns_matter = depends_on_azimuth_of_source(model);
+  const std::vector<StatePair> pairs = told_pairs(unknown_elements(model, Frame::sp));
+  std::vector<BirdValues> all;
+  for (const double wavelength : options.wavelengths) all.push_back(values_at(model, wavelength, pairs, turns_matter));
+  if (std::ranges::all_of(all, [](const BirdValues& at) { return at.points.empty(); }))
+    throw std::invalid_argument(
+        "a BiRD file has no negative values, and this model has some at each of its geometries");
+  const bool uncertain = knows_uncertainty(model);
+  const std::string understood = bird_understood(all, pairs.size(), uncertain),
+                    head = metadata_text(model, turns_matter, all);
+  const auto shared = std::make_shared<const std::vector<BirdValues>>(std::move(all));
+  const auto write = [shared, pairs, head, uncertain](std::ostream& out) {
+    out << "{\n\"metadata\": " << head << ",\n\"data\": ";
+    BirdLists(out, *shared, pairs).write(uncertain, pairs.size() > 1);
+    out << "\n}\n";
+  };
+  return {write, {}, understood};
+}
+
+}  // namespace mmbrdf
