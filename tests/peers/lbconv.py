@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""libbsdf's lbconv on ASTM text: its .ddr has pi f at directions about the specular ray, which lie between the nodes of the table."""
+"""libbsdf's lbconv on ASTM and Zemax text: its .ddr has pi f at directions about the specular ray."""
 import pathlib
 import tempfile
 
@@ -26,12 +26,11 @@ def read_ddr(text):
     return axes["sigma"], axes["phi"], axes["theta"], values
 
 
-def main():
-    convert = peer.command("MMBRDF_PEER_LBCONV", "libbsdf's lbconv")
+def check(convert, version, ending, format):
     model = mmbrdf.material("ptfe")
     with tempfile.TemporaryDirectory() as folder:
-        table, made = pathlib.Path(folder) / "ptfe.astm", pathlib.Path(folder) / "ptfe.ddr"
-        rms, largest, limit = peer.interpolation(model.export(table, wavelength_nm=WAVELENGTH))
+        table, made = pathlib.Path(folder) / f"ptfe.{ending}", pathlib.Path(folder) / "ptfe.ddr"
+        rms, largest, limit = peer.interpolation(model.export(table, format, wavelength_nm=WAVELENGTH))
         peer.run(convert + [str(table), str(made)])
         sigma, phi, theta, values = read_ddr(made.read_text())
     i, j, k = np.meshgrid(*map(np.arange, values.shape), indexing="ij")
@@ -47,8 +46,14 @@ def main():
     phi_r = np.degrees(np.arctan2(out[..., 1], out[..., 0])).ravel()[chosen]
     f11 = model.evaluate(WAVELENGTH, theta_i, 0, theta_r, phi_r)[:, 0, 0]
     deviations = values.ravel()[chosen] / np.pi / f11 - 1
+    peer.judge(version, f"{format} to .ddr, f11", deviations, rms + DIGITS, largest + DIGITS)
+
+
+def main():
+    convert = peer.command("MMBRDF_PEER_LBCONV", "libbsdf's lbconv")
     version = peer.run(convert + ["--version"]).strip().removeprefix("Version: ")
-    peer.judge(version, "ASTM to .ddr, f11", deviations, rms + DIGITS, largest + DIGITS)
+    check(convert, version, "astm", "astm")
+    check(convert, version, "bsdf", "zemax")
 
 
 main()

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the checks of other programs share; docs/interoperability.md says how to run them."""
 import os
+import pathlib
 import re
 import shlex
 import subprocess
 import sys
+import tempfile
 import warnings
 
 import numpy as np
@@ -23,7 +25,11 @@ def command(variable, what):
 
 
 def run(words, **options):
-    return subprocess.run(words, check=True, text=True, stdout=subprocess.PIPE, **options).stdout
+    """What the peer prints; what it says of its errors ends the check."""
+    done = subprocess.run(words, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+    if done.returncode:
+        sys.exit(f"{shlex.join(words)}: exit status {done.returncode}\n{done.stderr}")
+    return done.stdout
 
 
 def geometries(limit, count=1000):
@@ -54,13 +60,21 @@ def interpolation(note):
     return 1.2 * float(rms) / 100, 2 * float(largest) / 100, float(limit)
 
 
-def judge(peer, what, deviations, rms, largest):
+def judge(peer, what, deviations, rms, largest, of="geometries"):
     """Prints how far the peer's answers are from the model's, as parts of f11, and fails beyond what the format resolves."""
     deviations = np.abs(np.asarray(deviations))
     found = np.sqrt(np.mean(deviations**2)), deviations.max()
     good = np.isfinite(found).all() and found[0] <= rms and found[1] <= largest
-    print(f"mmbrdf {mmbrdf.__version__}, {peer}: {what}, {len(deviations)} geometries")
+    print(f"mmbrdf {mmbrdf.__version__}, {peer}: {what}, {len(deviations)} {of}")
     print(f"deviation / f11: rms {found[0]:.2e} (limit {rms:.2e}), largest {found[1]:.2e} (limit {largest:.2e})")
     if not good:
         print("beyond what the format resolves")
         sys.exit(1)
+
+
+def lambertian(albedo):
+    """A model whose f11 is albedo / pi."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "lambertian.csv"
+        file.write_text(f"1, 1, 0, 0, 0, 0, 0, {2 * albedo!r}\n")
+        return mmbrdf.load_model(file)
