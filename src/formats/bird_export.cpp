@@ -189,12 +189,15 @@ constexpr const char* not_stated = "not stated";
 
 /// Whom to ask. The address is one that cannot be (RFC 2606).
 ordered_json origin(const Model& model) {
-  ordered_json result{
-      {"organization", not_stated},
-      {"location",
-       {{"country", not_stated}, {"city", not_stated}, {"street", not_stated}, {"building_nr", not_stated}}},
-      {"email", "not-stated@example.invalid"},
-      {"contact_person", not_stated}};
+  ordered_json result{{"organization", not_stated},
+                      {"location",
+                       {{"country", not_stated},
+                        {"city", not_stated},
+                        {"street", not_stated},
+                        {"building_nr", not_stated},
+                        {"postal_code", not_stated}}},
+                      {"email", "not-stated@example.invalid"},
+                      {"contact_person", not_stated}};
   const auto attribution = model.provenance.find("attribution");
   if (attribution != model.provenance.end()) result["comments"] = attribution->second;
   return result;
@@ -340,7 +343,9 @@ Export::Made make_bird(const Model& model, const ExportOptions& options) {
     BirdLists(out, *shared, pairs).write(uncertain, pairs.size() > 1);
     out << "\n}\n";
   };
-  return {write, {}, understood};
+  const bool extrapolates = std::ranges::any_of(
+      options.wavelengths, [&](double w) { return leaves_known_range(outside(model.validity, w)); });
+  return {.write = write, .error = {}, .understood = understood, .extrapolates = extrapolates};
 }
 
 }  // namespace mmbrdf
