@@ -343,7 +343,9 @@ Export::Made make_bird(const Model& model, const ExportOptions& options) {
     BirdLists(out, *shared, pairs).write(uncertain, pairs.size() > 1);
     out << "\n}\n";
   };
-  return {write, {}, understood};
+  const bool extrapolates = std::ranges::any_of(
+      options.wavelengths, [&](double w) { return leaves_known_range(outside(model.validity, w)); });
+  return {.write = write, .error = {}, .understood = understood, .extrapolates = extrapolates};
 }
 
 }  // namespace mmbrdf

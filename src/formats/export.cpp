@@ -98,7 +98,11 @@ const ExportFormat& export_format_of(std::string_view path) {
   return *found;
 }
 
-Export::Export(Made made) : write_(std::move(made.write)), error_(made.error), understood_(std::move(made.understood)) {
+Export::Export(Made made)
+    : write_(std::move(made.write)),
+      error_(made.error),
+      understood_(std::move(made.understood)),
+      extrapolates_(made.extrapolates) {
   if (error_.theta_max == 0) return;
   understood_ += "; " + made.cause + " adds " + rounded(100 * error_.rms, 2) + " % of f11 (rms; at most " +
                  rounded(100 * error_.largest, 2) + " %) up to " + rounded(in_degrees(error_.theta_max), 4) +
@@ -107,7 +111,7 @@ Export::Export(Made made) : write_(std::move(made.write)), error_(made.error), u
 
 Export::Export(const Model& model, const ExportFormat& format, const ExportOptions& options)
     : Export(writer_of(format).make(model, completed(model, format, options))) {
-  if (const std::string range = fitted_range(model.validity); !range.empty())
+  if (const std::string range = fitted_range(model.validity); !range.empty() && extrapolates_)
     understood_ += "; beyond its fitted range, " + range + ", the model is extrapolated";
 }
 

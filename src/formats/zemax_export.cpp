@@ -22,7 +22,8 @@ constexpr std::array specular_steps{5.0, 2.5};  // degrees
 class SpecularTable {
  public:
   SpecularTable(const PreparedModel& model, const Channel& channel, double step, bool symmetrical)
-      : step_(radians(step)),
+      : degrees_(step),
+        step_(radians(step)),
         incidences_(nodes(90, step)),
         azimuths_(nodes(symmetrical ? 180 : 360, step)),
         radials_(nodes(180, step)),
@@ -79,11 +80,11 @@ class SpecularTable {
   static std::size_t nodes(double whole, double step) {
     return static_cast<std::size_t>(std::lround(whole / step)) + 1;
   }
-  double angle(std::size_t k) const { return step_ * static_cast<double>(k); }
+  double angle(std::size_t k) const { return radians(degrees_ * static_cast<double>(k)); }
 
   std::string angles(std::size_t count) const {
     std::string line;
-    for (std::size_t k = 0; k < count; ++k) line += (k > 0 ? "\t" : "") + shortest(in_degrees(angle(k)));
+    for (std::size_t k = 0; k < count; ++k) line += (k > 0 ? "\t" : "") + shortest(degrees_ * static_cast<double>(k));
     return line + '\n';
   }
 
@@ -93,7 +94,7 @@ class SpecularTable {
     return {below, x - static_cast<double>(below)};
   }
 
-  double step_;
+  double degrees_, step_;
   std::size_t incidences_, azimuths_, radials_;
   bool symmetrical_;
   std::vector<double> values_;

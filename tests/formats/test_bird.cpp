@@ -331,6 +331,8 @@ TEST(Bird, ThatIsWrittenHasAllMetadataThatTheSchemaAsksFor) {
   EXPECT_NE(id, other["metadata"]["id"]);
   for (const char* name : {"organization", "location", "email", "contact_person"})
     EXPECT_TRUE(metadata["provenance"].contains(name)) << name;
+  for (const char* name : {"country", "city", "street", "building_nr", "postal_code"})
+    EXPECT_TRUE(metadata["provenance"]["location"].contains(name)) << name;
   for (const char* name : {"name", "type", "dimensions", "shape", "zero_azimuth_location"})
     EXPECT_TRUE(metadata["sample"].contains(name)) << name;
   EXPECT_TRUE(says(metadata["provenance"]["comments"], {"Germer"}));

@@ -31,5 +31,5 @@ def test_what_a_format_cannot_hold_is_refused_and_nothing_written(tmp_path):
     with pytest.raises(ValueError, match="no format has this ending; there are pbsdf"):
         model.export(tmp_path / "x.txt")
     with pytest.raises(ValueError, match="no such format"):
-        model.export(tmp_path / "x.txt", "klems")
+        model.export(tmp_path / "x.txt", "oxygen")
     assert not list(tmp_path.iterdir())

@@ -71,6 +71,7 @@ class Export {
     ExportError error;
     std::string understood;
     std::string cause = "interpolation";  ///< of the error
+    bool extrapolates = true;             ///< where it leaves the fitted range
   };
 
  private:
@@ -78,6 +79,7 @@ class Export {
   std::function<void(std::ostream&)> write_;
   ExportError error_;
   std::string understood_;
+  bool extrapolates_;
 };
 
 /// The largest polar angle (80 degrees) at which tables are compared with a model that says no smaller one: towards the
