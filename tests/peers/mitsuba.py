@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mitsuba's measured_polarized on a .pbsdf, all sixteen elements in Mitsuba's own frames."""
+"""Mitsuba's measured_polarized on a .pbsdf, all sixteen elements in Mitsuba's own frames, and its measured on an RGL .bsdf."""
 import pathlib
 import tempfile
 
@@ -36,23 +36,33 @@ def rotator(theta_phi, k):
     return r
 
 
+def asked(ask, model, name, format):
+    """Where it was asked, and its answers over the cosine that it multiplies by, that of the light; and limits."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / name
+        rms, largest, limit = peer.interpolation(model.export(file, format, wavelength_nm=WAVELENGTHS))
+        where = peer.geometries(limit)
+        nm = np.resize(WAVELENGTHS, where[0].shape)
+        light, viewer = peer.direction(*where[:2]), peer.direction(*where[2:])
+        answers = peer.ask(ask + [str(file)], np.column_stack([nm, light, viewer]))
+    m = model.evaluate(nm, *where, frame="sp")
+    return where, answers.reshape(-1, 4, 4) / light[:, 2, None, None], m, rms + PRECISION, largest + PRECISION
+
+
 def main():
     ask = peer.command("MMBRDF_PEER_MITSUBA", "a program that answers lines 'nm light viewer' from Mitsuba's BSDF::eval")
+    version = peer.run(ask + ["--version"]).strip()
     model = mmbrdf.material("ptfe")
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder) / "ptfe.pbsdf"
-        rms, largest, limit = peer.interpolation(model.export(file, wavelength_nm=WAVELENGTHS))
-        theta_i, phi_i, theta_r, phi_r = peer.geometries(limit)
-        nm = np.resize(WAVELENGTHS, theta_i.shape)
-        light, viewer = peer.direction(theta_i, phi_i), peer.direction(theta_r, phi_r)
-        answers = peer.ask(ask + [str(file)], np.column_stack([nm, light, viewer]))
-    m = model.evaluate(nm, theta_i, phi_i, theta_r, phi_r, frame="sp")
+
+    where, answers, m, rms, largest = asked(ask, model, "ptfe.pbsdf", "pbsdf")
     right = np.diag([1, 1, 1, -1])  # S4 > 0 is right-handed there
-    into, out = rotator((theta_i, phi_i), -light), rotator((theta_r, phi_r), viewer)
+    into, out = rotator(where[:2], -peer.direction(*where[:2])), rotator(where[2:], peer.direction(*where[2:]))
     expected = right @ out @ m @ np.swapaxes(into, -1, -2) @ right
-    got = answers.reshape(-1, 4, 4) / light[:, 2, None, None]
-    deviations = ((got - expected) / m[:, :1, :1]).reshape(len(m), 16)
-    peer.judge(peer.run(ask + ["--version"]).strip(), "measured_polarized, 16 elements", deviations, rms + PRECISION, largest + PRECISION)
+    deviations = ((answers - expected) / m[:, :1, :1]).reshape(len(m), 16)
+    peer.judge(version, "measured_polarized, 16 elements", deviations, rms, largest)
+
+    _, answers, m, rms, largest = asked(ask, model, "ptfe.bsdf", "rgl")
+    peer.judge(version, "measured, f11", answers[:, 0, 0] / m[:, 0, 0] - 1, rms, largest)
 
 
 main()
