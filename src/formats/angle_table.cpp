@@ -5,13 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "formats/export_table.hpp"
 #include "formats/reader.hpp"
-#include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
-#include "mmbrdf/quantities/quantities.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
@@ -20,18 +17,6 @@ namespace mmbrdf {
 namespace {
 
 constexpr std::array steps{10.0, 5.0, 2.5};  // degrees
-
-/// Of matrices in the frame sp.
-std::function<double(const Mueller&)> channel(const Model& model, const std::string& name) {
-  if (name == "f11") return [](const Mueller& m) { return m(0, 0); };
-  const Quantity& of_name = quantity(name);
-  if (of_name.unit != "sr^-1" || of_name.takes_light)
-    throw std::invalid_argument("channel " + name + ": must be f11, or a quantity in sr^-1 that takes no light");
-  const Elements unknown = unknown_elements(model, Frame::sp);
-  if ((of_name.needs & unknown).any())
-    throw std::invalid_argument("channel " + name + ": " + not_measured_line(unknown_elements(model)));
-  return [value = of_name.value](const Mueller& m) { return value(m, {}); };
-}
 
 struct Place {
   std::size_t below;
@@ -47,7 +32,7 @@ Place place(double x, std::size_t last) {
 
 AngleTable::AngleTable(const Model& model, const ExportOptions& options, const std::string& what) {
   require_isotropic(model, what);
-  const auto value = channel(model, options.channel);
+  const auto value = channel_of(model, options.channel);
   std::vector<PreparedModel> models;
   for (const double wavelength : options.wavelengths) models.push_back(prepare(model, wavelength));
   wavelengths_ = models.size();

@@ -8,8 +8,12 @@
 
 #include "formats/astm.hpp"
 #include "formats/export_table.hpp"
+#include "formats/mqdiffuse.hpp"
+#include "formats/netcdf.hpp"
 #include "formats/pbsdf.hpp"
+#include "formats/reader.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/quantities/quantities.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
@@ -26,6 +30,12 @@ constexpr std::array writers{
     Writer{{"pbsdf", ".pbsdf", "Mitsuba's measured_polarized: Mueller matrices of an isotropic sample", false},
            make_pbsdf},
     Writer{{"astm", ".astm", "ASTM E2387 text: one number at each geometry of an isotropic sample", true}, make_astm},
+    Writer{
+        {"netcdf", ".nc", "self-describing NetCDF-4: Mueller matrices of an isotropic sample, with u and flags", false},
+        make_netcdf},
+    Writer{{"mqdiffuse", ".mqdiffuse", "eradiate's measured quasi-diffuse surface, NetCDF: one number at each geometry",
+            true},
+           make_mqdiffuse},
 };
 
 constexpr auto written_formats = [] {
@@ -51,6 +61,9 @@ ExportOptions completed(const Model& model, const ExportFormat& format, ExportOp
   if (!format.takes_channel && options.channel != "f11")
     throw std::invalid_argument("channel " + in_quotes(options.channel) + ": a " + std::string(format.ending) +
                                 " file holds whole matrices");
+  if (!format.takes_transfer && options.transfer != TransferAngles{})
+    throw std::invalid_argument("a " + std::string(format.name) +
+                                " file has angles of its own: leave out those of radiative transfer");
   if (options.wavelengths.empty()) options.wavelengths = known_wavelengths(model);
   if (options.wavelengths.empty()) throw std::invalid_argument("the model does not say its wavelengths: tell them");
   std::ranges::sort(options.wavelengths);
@@ -80,6 +93,7 @@ const ExportFormat& export_format_of(std::string_view path) {
 }
 
 Export::Export(Made made) : write_(std::move(made.write)), error_(made.error), understood_(std::move(made.understood)) {
+  if (error_.theta_max == 0) return;
   understood_ += "; interpolation adds " + rounded(100 * error_.rms, 2) + " % of f11 (rms; at most " +
                  rounded(100 * error_.largest, 2) + " %) up to " + rounded(in_degrees(error_.theta_max), 4) +
                  " degrees";
@@ -107,6 +121,23 @@ void require_isotropic(const Model& model, const std::string& format) {
   if (model.family == Family::anisotropic || model.rotation == Rotation::as_printed)
     throw std::invalid_argument(format + " file is of an isotropic sample, and this model depends on the " +
                                 "azimuth of the source: `convert --basis isotropic` makes one that does not");
+}
+
+Channel channel_of(const Model& model, const std::string& name) {
+  if (name == "f11") return [](const Mueller& m) { return m(0, 0); };
+  const Quantity& of_name = quantity(name);
+  if (of_name.unit != "sr^-1" || of_name.takes_light)
+    throw std::invalid_argument("channel " + name + ": must be f11, or a quantity in sr^-1 that takes no light");
+  const Elements unknown = unknown_elements(model, Frame::sp);
+  if ((of_name.needs & unknown).any())
+    throw std::invalid_argument("channel " + name + ": " + not_measured_line(unknown_elements(model)));
+  return [value = of_name.value](const Mueller& m) { return value(m, {}); };
+}
+
+double one_wavelength(const ExportOptions& options, const std::string& format) {
+  if (options.wavelengths.size() > 1)
+    throw std::invalid_argument(nanometre_text(options.wavelengths) + ": " + format + " has one wavelength: choose it");
+  return options.wavelengths.front();
 }
 
 }  // namespace mmbrdf

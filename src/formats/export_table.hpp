@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "mmbrdf/formats/export.hpp"
@@ -19,6 +20,15 @@ void require_isotropic(const Model& model, const std::string& format);
 
 /// Throws std::invalid_argument if the finest `table` is too coarse.
 void require_error(const ExportError& error, const ExportOptions& options, const std::string& table);
+
+/// The number at a geometry that a format without polarization holds, out of the matrix in the frame sp.
+using Channel = std::function<double(const Mueller&)>;
+
+/// Throws std::invalid_argument for a channel that is no quantity in sr⁻¹ or is made of unknown elements.
+Channel channel_of(const Model& model, const std::string& name);
+
+/// The only wavelength of the options. Throws std::invalid_argument if there are more; `format` as in "a Zemax file".
+double one_wavelength(const ExportOptions& options, const std::string& format);
 
 /// Of what a reader finds, beside what the model gives.
 class Deviation {
