@@ -12,6 +12,7 @@
 #include "formats/netcdf.hpp"
 #include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
+#include "formats/transfer.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/quantities.hpp"
 #include "mmbrdf/text/rounding.hpp"
@@ -36,6 +37,10 @@ constexpr std::array writers{
     Writer{{"mqdiffuse", ".mqdiffuse", "eradiate's measured quasi-diffuse surface, NetCDF: one number at each geometry",
             true},
            make_mqdiffuse},
+    Writer{{"vlidort", ".vlidort", "VLIDORT's BRDF supplement: Fourier moments of all elements at its streams", false,
+            true},
+           make_vlidort},
+    Writer{{"6s", ".6s", "6S's user-defined surface: reflectances for one sun and one view", true, true}, make_sixs},
 };
 
 constexpr auto written_formats = [] {
