@@ -104,6 +104,8 @@ using ModelClass = py::class_<ModelObject, ModelPointer>;
 ModelClass bind_model(py::module_& m);
 void bind_evaluation(ModelClass& model);
 void bind_answer(ModelClass& model);
+void bind_export(ModelClass& model);
+void bind_transfer(ModelClass& model);
 void bind_dataset(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_selection(py::module_& m);

@@ -15,9 +15,7 @@
 #include "bindings.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
-#include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/fitting/projection.hpp"
-#include "mmbrdf/formats/export.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
@@ -282,19 +280,6 @@ void warn_outside(const ModelObject& model, const RangeCount& range) {
   warn(text);
 }
 
-std::string exported(const ModelObject& o, const std::filesystem::path& path, const std::optional<std::string>& format,
-                     const std::optional<Given>& wavelength_nm, const std::string& channel, double error) {
-  require_place(path);
-  ExportOptions options{.channel = channel, .error = error};
-  if (wavelength_nm) options.wavelengths = micrometres(numbers("wavelength_nm", *wavelength_nm));
-  const ExportFormat& as = format ? export_format(*format) : export_format_of(path.string());
-  return without_gil([&] {
-    const Export table(o.model(), as, options);
-    write_file(path, [&](std::ostream& out) { table.write(out); });
-    return table.understood();
-  });
-}
-
 ModelClass bind_model(py::module_& m) {
   bind_block(m);
   ModelClass c(m, "Model",
@@ -310,18 +295,6 @@ ModelClass bind_model(py::module_& m) {
        py::arg("path"),
        "Writes JSON, or the published coefficient layout if the path ends in .csv, which has no place for\n"
        "covariance, range, provenance and as_printed. Raises OSError if it cannot be written; nothing is half-written.")
-      .def(
-          "export", exported, py::arg("path"), py::arg("format") = py::none(), py::kw_only(),
-          py::arg("wavelength_nm") = py::none(), py::arg("channel") = "f11", py::arg("error") = ExportOptions{}.error,
-          "Writes a table that another program reads, in the format of this name, or that which the path's ending "
-          "says:\n"
-          "pbsdf (Mitsuba's measured_polarized), astm (ASTM E2387 text). Programs interpolate in it: the coarsest is "
-          "taken whose\n"
-          "rms error is at most `error`, as a part of f11. wavelength_nm: those of the fit if not given. channel: what "
-          "a format\n"
-          "without polarization holds, f11 or a quantity in sr^-1. Returns what was written, in words. Raises OSError "
-          "if it cannot\n"
-          "be written, ValueError with the reason for what the format cannot hold; nothing is half-written.")
       .def(
           "to_json", [](const ModelObject& o) { return to_json(o.model()); }, "The text of a model file")
       .def_static(

@@ -31,6 +31,8 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_dataset(m);
   bind_evaluation(model);
   bind_answer(model);
+  bind_export(model);
+  bind_transfer(model);
   bind_mueller(m);
   bind_analysis(m);
   bind_apertures(m);

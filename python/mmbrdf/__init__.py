@@ -27,6 +27,8 @@ from ._mmbrdf import _holds_samples
 from ._mmbrdf import load_model as load_model
 from ._mmbrdf import read_samples as read_samples
 from ._results import *  # noqa: F403: what choosing, judging and comparing fits gives
+from ._transfer import py6s_surface as py6s_surface
+from ._transfer import pythonic_disort_modes as pythonic_disort_modes
 
 _Array = _np.ndarray
 
@@ -67,6 +69,13 @@ class SampledDirections(_NamedTuple):
     phi_r_deg: _Array
     pdf: _Array
     """Per solid angle, sr^-1."""
+
+
+class FourierMoments(_NamedTuple):
+    """Moments of a Mueller BRDF in azimuth: what Model.fourier_moments() gives. Arrays [mu_r, mu_i, m, row, column]."""
+
+    cosine: _Array
+    sine: _Array
 
 
 class PolarizedBrdf(_NamedTuple):

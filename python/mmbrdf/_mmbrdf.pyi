@@ -89,7 +89,15 @@ class Model:
         wavelength_nm: ArrayLike | None = None,
         channel: str = "f11",
         error: float = 5e-4,
+        streams: int = 0,
+        moments: int = 0,
+        sun_deg: ArrayLike | None = None,
+        view_deg: ArrayLike | None = None,
+        azimuth_deg: ArrayLike | None = None,
     ) -> str: ...
+    def fourier_moments(
+        self, wavelength_nm: float | None, mu_i: ArrayLike, mu_r: ArrayLike
+    ) -> mmbrdf.FourierMoments: ...
     def to_json(self) -> str: ...
     @staticmethod
     def from_json(text: str) -> Model: ...

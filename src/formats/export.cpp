@@ -11,9 +11,12 @@
 #include "formats/bird.hpp"
 #include "formats/export_table.hpp"
 #include "formats/klems.hpp"
+#include "formats/mqdiffuse.hpp"
+#include "formats/netcdf.hpp"
 #include "formats/pbsdf.hpp"
 #include "formats/reader.hpp"
 #include "formats/rgl.hpp"
+#include "formats/transfer.hpp"
 #include "formats/zemax.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/quantities.hpp"
@@ -41,6 +44,16 @@ constexpr std::array writers{
            make_rgl},
     Writer{{"klems", ".xml", "Radiance's XML: means of one number over Klems' 145 patches, one wavelength", true},
            make_klems},
+    Writer{
+        {"netcdf", ".nc", "self-describing NetCDF-4: Mueller matrices of an isotropic sample, with u and flags", false},
+        make_netcdf},
+    Writer{{"mqdiffuse", ".mqdiffuse", "eradiate's measured quasi-diffuse surface, NetCDF: one number at each geometry",
+            true},
+           make_mqdiffuse},
+    Writer{{"vlidort", ".vlidort", "VLIDORT's BRDF supplement: Fourier moments of all elements at its streams", false,
+            true},
+           make_vlidort},
+    Writer{{"6s", ".6s", "6S's user-defined surface: reflectances for one sun and one view", true, true}, make_sixs},
 };
 
 constexpr auto written_formats = [] {
@@ -66,6 +79,9 @@ ExportOptions completed(const Model& model, const ExportFormat& format, ExportOp
   if (!format.takes_channel && options.channel != "f11")
     throw std::invalid_argument("channel " + in_quotes(options.channel) + ": a " + std::string(format.ending) +
                                 " file holds whole matrices");
+  if (!format.takes_transfer && options.transfer != TransferAngles{})
+    throw std::invalid_argument("a " + std::string(format.name) +
+                                " file has angles of its own: leave out those of radiative transfer");
   if (options.wavelengths.empty()) options.wavelengths = known_wavelengths(model);
   if (options.wavelengths.empty()) throw std::invalid_argument("the model does not say its wavelengths: tell them");
   std::ranges::sort(options.wavelengths);

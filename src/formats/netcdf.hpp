@@ -4,6 +4,7 @@
 #pragma once
 
 #include "formats/reader.hpp"
+#include "mmbrdf/formats/export.hpp"
 
 namespace mmbrdf {
 
@@ -11,5 +12,8 @@ bool is_netcdf(std::string_view head, std::uint64_t size);
 
 /// Throws std::runtime_error in a build without NetCDF.
 std::unique_ptr<ForeignFile::Reader> open_netcdf(const Source& source);
+
+/// NetCDF-4 over wavelengths, polar angles of both directions and phi_r, with uncertainty and validity beside the matrices.
+Export::Made make_netcdf(const Model& model, const ExportOptions& options);
 
 }  // namespace mmbrdf

@@ -3,18 +3,15 @@
 
 #ifdef MMBRDF_NETCDF
 
-#include <dlfcn.h>
-#include <netcdf.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <mutex>
 
 #include "formats/netcdf_header.hpp"
+#include "formats/netcdf_library.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -29,75 +26,8 @@ const std::map<int, double> default_fills{{NC_SHORT, NC_FILL_SHORT},
                                           {NC_FLOAT, static_cast<double>(NC_FILL_FLOAT)},
                                           {NC_DOUBLE, NC_FILL_DOUBLE}};
 
-/// Its functions, loaded with the first file: it and some forty libraries that it needs take a program ten times as
-/// long to start as all else.
-class Library {
-  void* handle_ = ::dlopen(MMBRDF_NETCDF, RTLD_LAZY | RTLD_LOCAL);
-
-  struct Symbol {
-    void* address;
-    template <class Function>
-    operator Function*() const {
-      return reinterpret_cast<Function*>(address);
-    }
-  };
-  Symbol found(const char* name) const {
-    const Symbol result{handle_ == nullptr ? nullptr : ::dlsym(handle_, name)};
-    if (result.address != nullptr) return result;
-    const char* const why = ::dlerror();
-    throw std::runtime_error(std::string("a NetCDF file, but " MMBRDF_NETCDF ", which reads it, cannot be loaded: ") +
-                             (why == nullptr ? "not there" : why) + "; install netCDF-C (Debian: libnetcdf19)");
-  }
-
- public:
-  decltype(&::nc_close) close = found("nc_close");
-  decltype(&::nc_free_string) free_string = found("nc_free_string");
-  decltype(&::nc_get_att_double) get_att_double = found("nc_get_att_double");
-  decltype(&::nc_get_att_string) get_att_string = found("nc_get_att_string");
-  decltype(&::nc_get_att_text) get_att_text = found("nc_get_att_text");
-  decltype(&::nc_get_vara_double) get_vara_double = found("nc_get_vara_double");
-  decltype(&::nc_inq_att) inq_att = found("nc_inq_att");
-  decltype(&::nc_inq_attlen) inq_attlen = found("nc_inq_attlen");
-  decltype(&::nc_inq_dimlen) inq_dimlen = found("nc_inq_dimlen");
-  decltype(&::nc_inq_dimname) inq_dimname = found("nc_inq_dimname");
-  decltype(&::nc_inq_var) inq_var = found("nc_inq_var");
-  decltype(&::nc_inq_vardimid) inq_vardimid = found("nc_inq_vardimid");
-  decltype(&::nc_inq_varid) inq_varid = found("nc_inq_varid");
-  decltype(&::nc_open) open = found("nc_open");
-  decltype(&::nc_strerror) strerror = found("nc_strerror");
-
-  /// HDF5 writes pages about errors that netCDF-C expects, in each thread that has not forbidden it.
-  void hush() const {
-    thread_local bool hushed = false;
-    if (hushed) return;
-    hushed = true;
-    using SetAuto = int(std::int64_t stack, void* function, void* data);
-    if (void* const set_auto = ::dlsym(handle_, "H5Eset_auto2"))
-      reinterpret_cast<SetAuto*>(set_auto)(0, nullptr, nullptr);
-  }
-};
-
-/// The library, for one thread at a time: neither it nor HDF5 below it can be used by more.
-class Locked {
- public:
-  const Library* operator->() const { return &library_; }
-
- private:
-  friend Locked library();
-  explicit Locked(const Library& library) : library_(library) { library_.hush(); }
-  static std::recursive_mutex& mutex() {
-    static std::recursive_mutex result;
-    return result;
-  }
-  std::unique_lock<std::recursive_mutex> lock_{mutex()};
-  const Library& library_;
-};
-
 /// Locked until the end of the expression that this is in.
-Locked library() {
-  static const Library result;
-  return Locked(result);
-}
+LockedNetcdf library() { return netcdf_library(); }
 
 }  // namespace
 

@@ -112,6 +112,9 @@ def main():
     }.items():
         run("fit", data, *options, "-o", seeds("model") / f"{name}.json")
     run("convert", seeds("model") / "noise.json", seeds("coefficients") / "one.csv")
+    for kind in range(16):  # formats that are written
+        model = (seeds("model") / "noise.json").read_bytes()
+        (seeds("exports") / f"{kind}").write_bytes(bytes([kind]) + model)
     raw = folder / "raw"
     run("simulate", "ptfe-532", "--grid", "random:3", "--raw", raw)
     for kind, name in enumerate(["references.csv", "raw.csv"]):

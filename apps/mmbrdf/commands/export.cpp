@@ -19,6 +19,8 @@ struct Options {
   std::string model, output, format, channel = "f11";
   std::optional<std::vector<double>> wavelengths_nm;
   double error_percent = 0.05;
+  int streams = 0, moments = 0;
+  std::vector<double> suns_deg, views_deg, azimuths_deg;
 };
 
 /// By --as, or by the ending of the file.
@@ -30,12 +32,20 @@ const ExportFormat& format_of(const Options& options) {
   }
 }
 
+std::vector<double> in_radians(const std::vector<double>& degrees) {
+  std::vector<double> result;
+  for (const double one : degrees) result.push_back(radians(one));
+  return result;
+}
+
 void export_model(const Options& options) {
   const ExportFormat& format = format_of(options);
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   ExportOptions asked{.channel = options.channel, .error = options.error_percent / 100};
   if (options.wavelengths_nm) asked.wavelengths = micrometres(*options.wavelengths_nm);
+  asked.transfer = {options.streams, options.moments, in_radians(options.suns_deg), in_radians(options.views_deg),
+                    in_radians(options.azimuths_deg)};
   const Export table(model, format, asked);
   write_file(options.output, [&](std::ostream& out) { table.write(out); });
   note(options.output + ": " + table.understood());
@@ -44,7 +54,7 @@ void export_model(const Options& options) {
 std::string footer() {
   std::string text = "FILE is in the format that its ending says, or --as:\n";
   for (const ExportFormat& format : export_formats())
-    text += program::format("  %-8s %-8s %s\n", std::string(format.name).c_str(), std::string(format.ending).c_str(),
+    text += program::format("  %-9s %-8s %s\n", std::string(format.name).c_str(), std::string(format.ending).c_str(),
                             std::string(format.meaning).c_str());
   return text +
          "A note says which table was written and what those who read it find: programs interpolate in it, and the "
@@ -54,7 +64,10 @@ std::string footer() {
          "Examples:\n"
          "  mmbrdf export ptfe plaque.pbsdf --wavelength 450,500,550,600,650\n"
          "  mmbrdf export ptfe-532 plaque.pbsdf --error 0.02\n"
-         "  mmbrdf export ptfe-532 plaque.astm --channel f_ss";
+         "  mmbrdf export ptfe-532 plaque.astm --channel f_ss\n"
+         "  mmbrdf export ptfe plaque.nc\n"
+         "  mmbrdf export ptfe-532 plaque.vlidort --streams 8 --sun 30,60 --view 0,40 --azimuth 0,90,180\n"
+         "  mmbrdf export ptfe-532 plaque.6s --sun 30 --view 10 --azimuth 40";
 }
 
 }  // namespace
@@ -70,6 +83,13 @@ Run export_command(CLI::App& app, const CommandLine&) {
            "What a format without polarization holds: f11, or a\nquantity of analyze in sr^-1, as f_ss [f11]");
   add_option(app, "--error", o->error_percent, number, "PERCENT",
              "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]");
+  add_option(app, "--streams", o->streams, whole_number, "N",
+             "Of vlidort: cosines in a hemisphere, Gauss-Legendre on 0 to 1");
+  add_option(app, "--moments", o->moments, whole_number, "M", "Of vlidort: how many, at most 2 N [2 N]");
+  add_option(app, "--sun", o->suns_deg, numbers, "DEG[,DEG...]", "Of vlidort and 6s: polar angles of the sun");
+  add_option(app, "--view", o->views_deg, numbers, "DEG[,DEG...]", "Of vlidort and 6s: polar angles of the view");
+  add_option(app, "--azimuth", o->azimuths_deg, numbers, "DEG[,DEG...]",
+             "Of vlidort and 6s: phi_r - phi_i, 180 is forward");
   set_footer(app, footer());
   return [o] { export_model(*o); };
 }

@@ -20,6 +20,14 @@
 
 namespace mmbrdf {
 
+/// What codes of radiative transfer ask a surface for. Polar angles and azimuths phi_r − phi_i are in radians, π is forward.
+struct TransferAngles {
+  int streams = 0;  ///< cosines in a hemisphere, Gauss–Legendre on (0, 1)
+  int moments = 0;  ///< how many m, 0 … moments − 1: at most 2 × streams, which 0 stands for
+  std::vector<double> suns = {}, views = {}, azimuths = {};
+  friend bool operator==(const TransferAngles&, const TransferAngles&) = default;
+};
+
 struct ExportOptions {
   /// Micrometres; empty: known_wavelengths(model).
   std::vector<double> wavelengths = {};
@@ -27,9 +35,12 @@ struct ExportOptions {
   std::string channel = "f11";
   /// Wanted: the rms of what interpolation adds, as a part of f11. The coarsest table that has it is written.
   double error = 5e-4;
+  /// Of the formats that take it; empty for others.
+  TransferAngles transfer = {};
 };
 
-/// What interpolation adds, as parts of f11, over all elements that the table has.
+/// What interpolation adds, as parts of f11, over all elements that the table has. Nothing, and theta_max 0, in a format
+/// of moments and values at given angles.
 struct ExportError {
   double rms = 0, largest = 0;
   double theta_max = 0;  ///< radians: up to where directions were compared; 0 where nothing is interpolated
@@ -37,10 +48,11 @@ struct ExportError {
 
 /// A format that is written.
 struct ExportFormat {
-  std::string_view name;     ///< "pbsdf"
-  std::string_view ending;   ///< ".pbsdf"
-  std::string_view meaning;  ///< "Mitsuba's measured_polarized: Mueller matrices of isotropic samples"
-  bool takes_channel;        ///< it holds one number at a geometry, not a matrix
+  std::string_view name;        ///< "pbsdf"
+  std::string_view ending;      ///< ".pbsdf"
+  std::string_view meaning;     ///< "Mitsuba's measured_polarized: Mueller matrices of isotropic samples"
+  bool takes_channel;           ///< it holds one number at a geometry, not a matrix
+  bool takes_transfer = false;  ///< it holds what TransferAngles asks for
 };
 
 std::span<const ExportFormat> export_formats();
