@@ -20,8 +20,8 @@ namespace {
 struct CosineCounts {
   std::size_t cosines, azimuths;
 };
-/// The renderer's azimuths are off by up to a step, which decides the error: the more of them.
-constexpr std::array<CosineCounts, 5> cosine_grids{{{31, 90}, {31, 180}, {31, 360}, {51, 720}, {101, 1440}}};
+/// Cosines resolve the directions about the normal badly, which decides the error.
+constexpr std::array<CosineCounts, 5> cosine_grids{{{31, 72}, {51, 72}, {101, 90}, {151, 180}, {201, 360}}};
 
 std::string to_string(const CosineCounts& grid) {
   return std::to_string(grid.cosines) + " cosines of each direction and " + std::to_string(grid.azimuths) + " azimuths";
@@ -46,17 +46,17 @@ class CosineTable {
     }
   }
 
-  /// As the renderer does: linear, but its azimuths 0 … 2π are stretched over the nodes, of which the last lies before 2π.
+  /// As the renderer does: linear, and after the last azimuth comes the first, which its loader repeats at 2π.
   double looked_up(const Geometry& geometry) const {
     const double turns = (geometry.reflected.phi - geometry.incident.phi) / (4 * half_pi);
     const auto [o, along_o] = place(std::cos(geometry.reflected.theta), grid_.cosines);
-    const auto [p, along_p] = place(turns - std::floor(turns), grid_.azimuths);
+    const auto [p, along_p] = place(turns - std::floor(turns), grid_.azimuths + 1);
     const auto [i, along_i] = place(std::cos(geometry.incident.theta), grid_.cosines);
     double sum = 0;
     for (const std::size_t corner : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
       const std::size_t a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
       sum += (a ? along_o : 1 - along_o) * (b ? along_p : 1 - along_p) * (c ? along_i : 1 - along_i) *
-             values_[((o + a) * grid_.azimuths + p + b) * grid_.cosines + i + c];
+             values_[((o + a) * grid_.azimuths + (p + b) % grid_.azimuths) * grid_.cosines + i + c];
     }
     return sum;
   }

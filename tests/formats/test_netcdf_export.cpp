@@ -82,7 +82,7 @@ TEST(NetcdfExport, RefusesWhatItCannotHold) {
                    {"351, 532, 633 and 1064 nm", "has one wavelength: choose it"}));
   EXPECT_TRUE(says(export_refusal(material("ptfe"), "netcdf", {.channel = "f_ss"}), {"holds whole matrices"}));
   EXPECT_TRUE(
-      says(export_refusal(material("ptfe-532"), "mqdiffuse", {.error = 1e-7}), {"the finest table, of 101 cosines"}));
+      says(export_refusal(material("ptfe-532"), "mqdiffuse", {.error = 1e-7}), {"the finest table, of 201 cosines"}));
 }
 #endif
 
