@@ -315,8 +315,9 @@ ModelClass bind_model(py::module_& m) {
           py::arg("wavelength_nm") = py::none(), py::arg("channel") = "f11", py::arg("error") = ExportOptions{}.error,
           "Writes a table that another program reads, in the format of this name, or that which the path's ending "
           "says:\n"
-          "pbsdf (Mitsuba's measured_polarized), astm (ASTM E2387 text). Programs interpolate in it: the coarsest is "
-          "taken whose\n"
+          "pbsdf (Mitsuba's measured_polarized), astm (ASTM E2387 text), zemax, bird (BiRD JSON), rgl, klems "
+          "(Radiance).\n"
+          "Programs interpolate in it: the coarsest is taken whose\n"
           "rms error is at most `error`, as a part of f11. wavelength_nm: those of the fit if not given. channel: what "
           "a format\n"
           "without polarization holds, f11 or a quantity in sr^-1. Returns what was written, in words. Raises OSError "
