@@ -9,6 +9,8 @@ import pytest
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 import mmbrdf
 import mmbrdf.plot
@@ -174,12 +176,14 @@ def test_limits_hold_what_was_fitted_and_are_said(ptfe, data):
     assert "3 rms" in written(plot.residual_map(ptfe, data, 532, 60)[0])
 
 
-def test_a_third_of_the_samples_beyond_the_limits_would_be_too_many(noisy):
+def test_two_in_a_hundred_samples_are_beyond_the_limits_of_their_scale(noisy):
     _, axes = plot.hemisphere(noisy, 532, 60)
-    for each in axes.flat:
-        low, high = each.images[0].get_clim()
-        values = each.images[0].get_array().compressed()
-        assert ((values < low) | (values > high)).mean() < 0.05
+    large = [(1, 1), (1, 2), (2, 1), (2, 2), (3, 3)]
+    small = [place for place in np.ndindex(4, 4) if place not in large and place != (0, 0)]
+    for places in ([(0, 0)], large, small):
+        low, high = axes[places[0]].images[0].get_clim()
+        values = np.concatenate([shown(axes[place]).compressed() for place in places])
+        assert ((values < low) | (values > high)).mean() <= 0.02
 
 
 # Marks
@@ -464,19 +468,27 @@ def test_a_column_has_its_width_and_its_fonts(ptfe, data, width_cm, points):
     ):
         rendered(figure)
         assert figure.get_figwidth() * 2.54 == pytest.approx(width_cm)
-        texts = [text for text in figure.findobj(lambda each: hasattr(each, "get_text")) if text.get_text().strip()]
+        texts = [text for text in figure.findobj(Text) if text.get_text().strip()]
         assert all(5.8 <= text.get_fontsize() <= points + 0.5 for text in texts if text.get_visible())
 
 
-def overhanging(figure):
-    """Texts that are cut by the edges of the figure."""
+def overhangs(figure):
+    """By how many inches what is drawn is cut by the edges of the figure."""
     rendered(figure)
-    renderer, edge = figure.canvas.get_renderer(), figure.bbox
-    for text in figure.findobj(lambda each: hasattr(each, "get_window_extent") and hasattr(each, "get_text")):
-        if text.get_text().strip() and text.get_visible():
-            box = text.get_window_extent(renderer)
-            if box.x0 < edge.x0 - 1 or box.x1 > edge.x1 + 1 or box.y0 < edge.y0 - 1 or box.y1 > edge.y1 + 1:
-                yield text.get_text()
+    renderer = figure.canvas.get_renderer()
+    if any(axes.name == "polar" for axes in figure.axes):
+        # The square of the whole disc, of which half is drawn, may go beyond the figure: its words may not.
+        words = [each.get_window_extent(renderer) for axes in figure.axes for each in _words(axes)]
+        box = Bbox.union(words).transformed(figure.dpi_scale_trans.inverted())
+    else:
+        box = figure.get_tightbbox(renderer)
+    return max(-box.x0, -box.y0, box.x1 - figure.get_figwidth(), box.y1 - figure.get_figheight())
+
+
+def _words(axes):
+    texts = [axes.title, axes.xaxis.label, axes.yaxis.label, *axes.texts, *axes.get_xticklabels()]
+    legend = [] if axes.get_legend() is None else axes.get_legend().get_texts()
+    return [text for text in texts + legend if text.get_text().strip()]
 
 
 @pytest.mark.parametrize("width_cm", [8, 17, None])
@@ -496,7 +508,7 @@ def test_no_text_is_cut_by_the_edge_of_a_figure(ptfe, fitted, noisy, width_cm):
         plot.anisotropy(ptfe, **size),
         plot.coefficient_spectrum(ptfe, power=1, **size),
     ):
-        assert list(overhanging(figure)) == []
+        assert overhangs(figure) < 0.015  # a pixel of the screen
 
 
 def test_a_picture_leaves_the_settings_of_matplotlib_as_they_were(ptfe):

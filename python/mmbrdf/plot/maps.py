@@ -218,20 +218,34 @@ def draw_map(
     image: disc.DiscImage, scale: Scale, view: disc.View, label: str, title: str, axes, colorbar: bool, width_cm=None
 ) -> tuple[Any, Axes]:
     """One disc with all that is marked, its scale and the words for both."""
-    own = axes is None
+    own, place = axes is None, None
     if own:
-        axes = sizes.figure(width_cm, 4.6, 4.1, layout="constrained").add_subplot()
+        axes, place = _own_axes(width_cm, colorbar)
     figure = axes.figure
     drawn = disc.draw(axes, image, scale.cmap, scale.norm, label_axes=True)
     disc.mark(axes, view)
     axes.set_title(title)
     if own:
         handles = disc.key(view, disc.lacks(image))
-        sizes.legend_below(axes, handles, columns=2 if len(handles) == 4 else 3)
+        sizes.legend_below(axes, handles, ems=3.4, columns=2 if len(handles) == 4 else 3, handlelength=1.6)
     if colorbar:
-        bar = figure.colorbar(drawn, ax=axes, extend=scale.extend, shrink=0.9)
+        bar = figure.colorbar(drawn, extend=scale.extend, **dict(ax=axes, shrink=0.9) if place is None else dict(cax=place))
         bar.set_label(label + (f"\n({scale.said})" if scale.said else ""))
     return figure, axes
+
+
+def _own_axes(width_cm: float | None, colorbar: bool) -> tuple[Axes, Axes | None]:
+    """A square for a disc, with room for words and, if there is one, a place for its scale."""
+    em, width = sizes.em(), 4.6 if width_cm is None else width_cm * sizes.CM
+    left, right, bottom, top = (em * room for room in (4.2, 10.5 if colorbar else 1.0, 7.2, 2.2))
+    side = width - left - right
+    height = side + bottom + top
+    figure = labels.Picture(figsize=(width, height))
+    axes = figure.add_axes((left / width, bottom / height, side / width, side / height))
+    if not colorbar:
+        return axes, None
+    across = (left + side + 1.2 * em) / width
+    return axes, figure.add_axes((across, (bottom + 0.06 * side) / height, 1.1 * em / width, 0.88 * side / height))
 
 
 def depolarization_map(

@@ -87,9 +87,11 @@ def em() -> float:
     return float(rcParams["font.size"]) / 72
 
 
-def legend_below(axes: Any, handles: Any, title: str | None = None, *, ems: float = 3.1, columns: int = 2) -> None:
+def legend_below(
+    axes: Any, handles: Any, title: str | None = None, *, ems: float = 3.1, columns: int = 2, **style: Any
+) -> None:
     """A legend so many font heights below axes: behind the ticks and their label."""
     place = offset_copy(axes.transAxes, axes.figure, 0, -ems * em(), units="inches")
-    style = dict(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=place, frameon=False, borderpad=0)
-    legend = axes.legend(handles=handles, ncol=columns, title=title or None, **style)
+    at = dict(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=place, frameon=False, borderpad=0)
+    legend = axes.legend(handles=handles, ncol=columns, title=title or None, **at, **style)
     legend.get_title().set_fontsize(0.9 * float(rcParams["font.size"]))
