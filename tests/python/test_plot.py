@@ -230,6 +230,15 @@ def test_the_realizability_map_shows_the_margin_over_its_own_range(ptfe):
     assert "eigenvalue" in written(figure)
 
 
+def test_what_can_be_is_not_red_beyond_the_fit_either(ptfe):
+    _, axes = mmbrdf.plot.realizability_map(ptfe, 1064, 75, samples=SAMPLES)
+    (image,) = axes.images
+    margin, inside = image.get_array(), expected_over_disc(ptfe, 1064, 75)[0]
+    edge = np.hypot(*cell_centres()) > np.sin(np.radians(ptfe.theta_r_max_deg))
+    assert margin[inside].min() >= 0 and (inside & edge).any() and margin[inside].min() == margin[inside & edge].min()
+    assert image.get_clim()[0] <= margin[inside].min()
+
+
 def test_the_realizability_map_is_red_where_no_scatterer_can_be():
     x, y = (axis.ravel() for axis in np.meshgrid([-0.1, 0.0, 0.1], [-0.1, 0.0, 0.1]))
     mueller = np.tile(np.diag([0.3, 0.0, 0.0, 0.0]), (9, 1, 1))

@@ -43,9 +43,9 @@ _SEVERAL_NM = {"polar-in-plane", "reflectance-against-angle", "reflectance-again
 _SEVERAL_DEG = {"reflectance-against-angle", "reflectance-against-wavelength", "reflectance-factor"}
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(prog: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="python3 -m mmbrdf.plot",
+        prog=prog,
         usage="%(prog)s KIND MODEL [DATA.csv] -o FILE.pdf [options]",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -92,8 +92,10 @@ def _numbers(text: str, count: int, name: str) -> list[float]:
 
 
 def _term(text: str) -> tuple[str, float]:
-    name, _, value = text.partition("=")
-    return name, _numbers(value, 1, f"--term {name}=")[0]
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise ValueError(f"--term {text}: expected NAME=VALUE")
+    return name, _numbers(value, 1, f"--term {name}:")[0]
 
 
 def _converted(name: str, value: Any, kind: str) -> Any:
@@ -154,9 +156,9 @@ def _saved(figure: Any, path: str, dpi: float) -> None:
     write(path, buffer.getvalue())
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """python3 -m mmbrdf.plot"""
-    parser = _parser()
+def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.plot") -> int:
+    """Exit status: 0, 1 for bad input, 2 for wrong usage."""
+    parser = _parser(prog)
     options = parser.parse_args(arguments)
     if Path(options.output).suffix.lower() not in FORMATS:
         parser.error(f"-o {options.output}: expected a file that ends with {', '.join(FORMATS)}")

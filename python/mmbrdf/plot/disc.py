@@ -237,7 +237,8 @@ def mark(axes: Axes, view: View, size: float = 5.0) -> None:
     axes.add_line(_mark("specular", [-x], [-y], 0.85 * size))
     if shows_limit(view):
         radius = np.sin(np.radians(view.theta_max_deg))
-        axes.add_patch(Circle((0, 0), radius, **_LIMIT, zorder=3, gid="limit"))
+        halo = [withStroke(linewidth=1.7, foreground="white")]
+        axes.add_patch(Circle((0, 0), radius, **_LIMIT, zorder=3, gid="limit", path_effects=halo))
 
 
 def shows_limit(view: View) -> bool:

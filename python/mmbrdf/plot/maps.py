@@ -229,7 +229,9 @@ def draw_map(
         handles = disc.key(view, disc.lacks(image))
         sizes.legend_below(axes, handles, ems=3.4, columns=2 if len(handles) == 4 else 3, handlelength=1.6)
     if colorbar:
-        bar = figure.colorbar(drawn, extend=scale.extend, **dict(ax=axes, shrink=0.9) if place is None else dict(cax=place))
+        bar = figure.colorbar(
+            drawn, extend=scale.extend, **dict(ax=axes, shrink=0.9) if place is None else dict(cax=place)
+        )
         bar.set_label(label + (f"\n({scale.said})" if scale.said else ""))
     return figure, axes
 
@@ -296,20 +298,19 @@ def realizability_map(
     """How far the Mueller matrices are from those that no scatterer can have.
 
     ``map`` of the smallest eigenvalue of the coherency matrix divided by f11: 1/4 for a perfect depolarizer, 0 at the edge.
-    Directions are red where it or f11 is negative: without ``limits`` the scale begins at the smallest value that is not.
+    Directions are red where it or f11 is negative; without ``limits`` the scale holds all others of the disc.
     """
     require_measured(source)
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
     picture = _picture(scalar(_margin), source, None, "value", wavelength_nm, view, None, samples)
     values = picture.image.values
-    can_be = picture.image.within(view.theta_max_deg) & (values >= 0)
-    cmap = colours.with_fault_colour(UNREALIZABLE)
-    scale = chosen_scale(values, can_be, measured=False, limits=limits, cmap=cmap)
+    # All that can be has a place on the scale, beyond the fit too: red is for nothing else.
+    can_be = picture.image.within(None) & (values >= 0)
+    scale = chosen_scale(values, can_be, measured=False, limits=limits, cmap=colours.with_fault_colour(UNREALIZABLE))
     if limits is None:
-        scale = scale._replace(norm=Normalize(max(scale.norm.vmin, 0.0), scale.norm.vmax))
-        if np.nanmin(values) < 0:
-            scale = scale._replace(norm=Normalize(0.0, scale.norm.vmax), extend="min", said="red: cannot exist")
+        said = "red: cannot exist" if (values[np.isfinite(values)] < 0).any() else "range of the disc"
+        scale = scale._replace(norm=Normalize(max(scale.norm.vmin, 0.0), scale.norm.vmax), said=said)
     label = r"smallest coherency eigenvalue $/\,f_{\mathrm{r},11}$"
     title = labels.title(named(source), wavelength_nm, theta_i_deg)
     return draw_map(picture.image, scale, view, label, title, axes, colorbar, width_cm)

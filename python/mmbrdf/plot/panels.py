@@ -220,7 +220,7 @@ def _own_figure(width_cm: float | None, decorated: bool) -> labels.Picture:
 
 def _write_coordinates(figure, axes, title: str, width: float, height: float) -> None:
     """The coordinates of the corner disc, and a title."""
-    axes[3, 0].set(xticks=[-1, 0, 1], yticks=[-1, 0, 1])
+    axes[3, 0].set(xticks=[-1, 0, 1], yticks=[-1, 0])  # at 1 is the element's name
     axes[3, 0].tick_params(labelsize=_small(), length=2, pad=1.5)
     first, last = axes[0, 0].get_position(), axes[3, 3].get_position()
     middle = (first.x0 + last.x1) / 2, (last.y0 + first.y1) / 2
