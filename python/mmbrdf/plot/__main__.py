@@ -100,7 +100,7 @@ def _term(text: str) -> tuple[str, float]:
 
 def _converted(name: str, value: Any, kind: str) -> Any:
     """An option as the function takes it."""
-    if name == "wavelength_nm" and kind not in _SEVERAL_NM or name == "theta_i_deg" and not _takes_angles(kind):
+    if name == "wavelength_nm" and kind not in _SEVERAL_NM or name == "theta_i_deg" and kind not in _SEVERAL_DEG:
         if len(value) != 1:
             raise ValueError(f"{kind} takes one {'wavelength' if name == 'wavelength_nm' else 'angle of incidence'}")
         return value[0]
@@ -112,10 +112,6 @@ def _converted(name: str, value: Any, kind: str) -> Any:
         n, thickness_um, substrate, k = _numbers(value, 4, "--film")
         return n, thickness_um, complex(substrate, k)
     return value
-
-
-def _takes_angles(kind: str) -> bool:
-    return kind in _SEVERAL_DEG
 
 
 def _opened(name: str, kind: str) -> Any:

@@ -14,7 +14,7 @@ import mmbrdf
 
 from .._arguments import number, own_wavelength, require
 from . import disc, labels, sizes
-from .colours import COMPONENTS, MARKERS, series
+from .colours import series
 from .curves import ANGLE_LABEL, grey_beyond, in_plane, mark_plane
 from .scalars import SYMBOLS
 

@@ -18,7 +18,6 @@ from .scalars import in_frame
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, Normalize
     from matplotlib.image import AxesImage
     from numpy.typing import NDArray
 

@@ -13,7 +13,7 @@ import mmbrdf
 
 from .._arguments import require, require_measured
 from . import colours, disc, labels, sizes
-from .scalars import Asked, Scalar, in_frame, model_uncertainty, ratio, sample_uncertainty, scalar
+from .scalars import SYMBOLS, Asked, Scalar, in_frame, model_uncertainty, ratio, sample_uncertainty, scalar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from mmbrdf import Dataset, Model
 
-DEPOLARIZATION_LABEL = "Gil–Bernabeu depolarization parameter"
+DEPOLARIZATION_LABEL = SYMBOLS["depolarization"]
 UNREALIZABLE = "#d62728"
-SHOWN = ("value", "u", "value / u")
+_KINDS = ("value", "u", "value / u")
 
 
 class Scale(NamedTuple):
@@ -79,7 +79,7 @@ def _outwards(low: float, high: float) -> tuple[float, float]:
     return float(np.floor(low / step + 1e-9) * step), float(np.ceil(high / step - 1e-9) * step)
 
 
-class Picture(NamedTuple):
+class Shown(NamedTuple):
     """What a map shows of one number."""
 
     image: disc.DiscImage
@@ -127,25 +127,25 @@ def map(
     Returns the figure and its axes. ValueError for an unknown name or frame, and where there is no u.
     """
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
-    if show not in SHOWN:
-        raise ValueError(f"show = {show!r}, expected one of {', '.join(SHOWN)}")
+    if show not in _KINDS:
+        raise ValueError(f"show = {show!r}, expected one of {', '.join(_KINDS)}")
     asked = scalar(quantity, frame, stokes)
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
-    picture = _picture(asked, source, minus, show, wavelength_nm, view, terms, samples)
-    if minus is not None and limits is None and picture.measured and show != "u":
-        scale = residual_scale(picture.image.values, show == "value / u", cmap)
+    found = _shown(asked, source, minus, show, wavelength_nm, view, terms, samples)
+    if minus is not None and limits is None and found.measured and show != "u":
+        scale = residual_scale(found.image.values, show == "value / u", cmap)
     else:
         scale = chosen_scale(
-            picture.image.values,
-            picture.image.within(view.theta_max_deg),
-            measured=picture.measured,
+            found.image.values,
+            found.image.within(view.theta_max_deg),
+            measured=found.measured,
             limits=limits,
             cmap=cmap,
             signed=True if minus is not None and show != "u" else None,
         )
     name = named(source, minus)
     title = labels.title(name, wavelength_nm, theta_i_deg, asked.frame) if title is None else title
-    return draw_map(picture.image, scale, view, label or picture.label, title, axes, colorbar, width_cm)
+    return draw_map(found.image, scale, view, label or found.label, title, axes, colorbar, width_cm)
 
 
 def named(source: Model | Dataset, minus: Model | None = None) -> str:
@@ -165,7 +165,7 @@ def residual_scale(values: NDArray[np.float64], over_u: bool, cmap: Colormap | s
     )._replace(said=said)
 
 
-def _picture(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.View, terms, samples) -> Picture:
+def _shown(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.View, terms, samples) -> Shown:
     """Of a model on a lattice, of samples in their cells; ``show`` as map() has it."""
     measured = isinstance(source, mmbrdf.Dataset)
     label = asked.label
@@ -179,14 +179,14 @@ def _picture(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.
         data = disc.samples_at(source, wavelength_nm, view.theta_i_deg, view.phi_i_deg)
         where, mueller = data.geometry, in_frame(data.mueller, data.geometry, asked.frame)
         found = _values(asked, mueller, data, minus, show, wavelength_nm, where, terms)
-        return Picture(disc.sample_cells(data, found), label, True)
+        return Shown(disc.sample_cells(data, found), label, True)
 
     def over(theta_r_deg, phi_r_deg):
         where = tuple(np.broadcast_arrays(view.theta_i_deg, view.phi_i_deg, theta_r_deg, phi_r_deg))
         mueller = disc.evaluate(source, wavelength_nm, where, asked.frame)
         return _values(asked, mueller, source, minus, show, wavelength_nm, where, terms)
 
-    return Picture(disc.over_disc(samples or (201 if show == "value" else 61), over), label, False)
+    return Shown(disc.over_disc(samples or (201 if show == "value" else 61), over), label, False)
 
 
 def _values(asked: Scalar, mueller, source, minus, show: str, wavelength_nm, where, terms) -> NDArray[np.float64]:
@@ -303,17 +303,16 @@ def realizability_map(
     require_measured(source)
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
-    picture = _picture(scalar(_margin), source, None, "value", wavelength_nm, view, None, samples)
-    values = picture.image.values
+    found = _shown(scalar(_margin), source, None, "value", wavelength_nm, view, None, samples)
+    values = found.image.values
     # All that can be has a place on the scale, beyond the fit too: red is for nothing else.
-    can_be = picture.image.within(None) & (values >= 0)
+    can_be = found.image.within(None) & (values >= 0)
     scale = chosen_scale(values, can_be, measured=False, limits=limits, cmap=colours.with_fault_colour(UNREALIZABLE))
     if limits is None:
         said = "red: cannot exist" if (values[np.isfinite(values)] < 0).any() else "range of the disc"
         scale = scale._replace(norm=Normalize(max(scale.norm.vmin, 0.0), scale.norm.vmax), said=said)
-    label = r"smallest coherency eigenvalue $/\,f_{\mathrm{r},11}$"
     title = labels.title(named(source), wavelength_nm, theta_i_deg)
-    return draw_map(picture.image, scale, view, label, title, axes, colorbar, width_cm)
+    return draw_map(found.image, scale, view, SYMBOLS["eigenvalue_min"], title, axes, colorbar, width_cm)
 
 
 def _margin(mueller: NDArray[np.float64]) -> NDArray[np.float64]:

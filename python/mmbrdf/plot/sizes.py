@@ -90,8 +90,12 @@ def em() -> float:
 def legend_below(
     axes: Any, handles: Any, title: str | None = None, *, ems: float = 3.1, columns: int = 2, **style: Any
 ) -> None:
-    """A legend so many font heights below axes: behind the ticks and their label."""
-    place = offset_copy(axes.transAxes, axes.figure, 0, -ems * em(), units="inches")
-    at = dict(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=place, frameon=False, borderpad=0)
-    legend = axes.legend(handles=handles, ncol=columns, title=title or None, **at, **style)
+    """A legend so many font heights below axes: behind the ticks and their label. Within the axes of others, whose figure may
+    have no room there."""
+    place: dict[str, Any] = dict(ncol=2, loc="best", framealpha=0.8)
+    if isinstance(axes.figure, labels.Picture):
+        below = offset_copy(axes.transAxes, axes.figure, 0, -ems * em(), units="inches")
+        place = dict(loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, frameon=False, borderpad=0)
+        place["ncol"] = columns
+    legend = axes.legend(handles=handles, title=title or None, **place, **style)
     legend.get_title().set_fontsize(0.9 * float(rcParams["font.size"]))
