@@ -74,3 +74,24 @@ def test_what_a_format_cannot_hold_is_refused_and_nothing_written(tmp_path):
     with pytest.raises(ValueError, match="no such format"):
         model.export(tmp_path / "x.txt", "oxygen")
     assert not list(tmp_path.iterdir())
+
+
+def scaled(model, factor):
+    """f11 times a factor."""
+    text = json.loads(model.to_json())
+    text.pop("posterior", None)
+    for block in text["blocks"]:
+        block.pop("covariance", None)
+        if "11" in block["elements"]:
+            block["coefficients"] = (factor * np.array(block["coefficients"])).tolist()
+    return text
+
+
+def test_a_black_model_has_tables_without_errors_and_one_fitted_at_the_normal_too(tmp_path):
+    black = mmbrdf.Model.from_json(json.dumps(scaled(mmbrdf.material("ptfe-532"), 0)))
+    written = black.export(tmp_path / "black.astm")
+    assert "adds 0 % of f11 (rms; at most 0 %) up to 75 degrees" in written
+    text = scaled(mmbrdf.material("ptfe-532"), 1)
+    text["validity"]["theta_i_max_deg"] = 0
+    at_normal = mmbrdf.Model.from_json(json.dumps(text))
+    assert "up to 30 degrees" in at_normal.export(tmp_path / "normal.astm")
