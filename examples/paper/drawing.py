@@ -98,7 +98,9 @@ def curves_figure(study: Study, basis: str) -> Figure:
         Line2D([], [], color="0.35", linewidth=width, label=label)
         for width, label in ((0.7, "one wavelength"), (1.9, ALL))
     ]
-    axes.legend(handles=curves.component_handles() + styles + widths, frameon=False, ncol=3, loc="upper left")
+    axes.legend(
+        handles=curves.component_handles(linestyle="-") + styles + widths, frameon=False, ncol=3, loc="upper left"
+    )
     axes.set_title(rf"{basis}, $\theta_\mathrm{{i}}$ = 45°", fontsize=10)
     return axes.figure
 
@@ -110,7 +112,7 @@ def subset_figure(study: Study, basis: str) -> Figure:
         study.parts(basis), study.model(basis, SUBSET_NM), SUBSET_NM, 45.0, axes=axes, legend=False
     )
     widths = [
-        Line2D([], [], color="0.35", linewidth=0.7, label="a third of the random directions"),
+        Line2D([], [], color="0.35", linewidth=0.9, label="a third of the random directions"),
         Line2D([], [], color="0.35", linewidth=2.4, label="regular directions"),
     ]
     axes.legend(handles=curves.component_handles() + widths, frameon=False, ncol=2, loc="upper left")

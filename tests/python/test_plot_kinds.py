@@ -3,6 +3,7 @@
 
 import json
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -519,3 +520,32 @@ def test_a_picture_leaves_the_settings_of_matplotlib_as_they_were(ptfe):
     with pytest.raises(ValueError):
         plot.map(ptfe, "nothing", 532, 60, width_cm=8)
     assert dict(rcParams) == before
+
+
+def test_the_calls_of_the_documentation_run_as_they_stand(fitted, noisy, tmp_path, monkeypatch):
+    page = (Path(__file__).parents[2] / "docs/python.md").read_text(encoding="utf-8")
+    gallery = page[page.index("## Pictures") :].split("```")[1].removeprefix("python\n")
+    monkeypatch.chdir(tmp_path)
+    goniometer = mmbrdf.Goniometer(seed=1)
+    goniometer.write_references("references.csv", 532)
+    instrument = mmbrdf.calibrate("references.csv", film=goniometer.film)
+    several = mmbrdf.simulate(
+        mmbrdf.material("ptfe"), [443, 532, 670], mmbrdf.random_geometries(150, seed=1), speckle=0.01
+    )
+    model = mmbrdf.fit(several).model
+    names = {"data": noisy, "model": model, "instrument": instrument}
+    for line in gallery.splitlines():
+        if "data=data" in line or "minus=model" in line or "(model, data" in line:
+            exec(line, names | {"model": fitted})  # the samples are of one wavelength
+        elif line:
+            exec(line, names)
+    assert (tmp_path / "directions.pdf").read_bytes().startswith(b"%PDF")
+    drawn = {name for name in plot.__all__ if f"plot.{name}(" in gallery}
+    assert set(plot.__all__) - drawn == {
+        "depolarization_map",
+        "realizability_map",
+        "low_order_residuals",
+        "suspicious",
+        "plan",
+        "subset_study",
+    }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.patches import Patch
@@ -57,33 +57,55 @@ def uncertainty_parts(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mmbrdf.ExtrapolationWarning)
         if quantity == "dhr":
-            angles = np.arange(0.0, 86.0, 2.5) if theta_i_deg is None else np.atleast_1d(np.asarray(theta_i_deg, float))
-            where = wavelength_nm, angles, phi_i_deg
-            value = np.asarray(mmbrdf.directional_hemispherical_reflectance(model, *where))
-            parts = mmbrdf.directional_hemispherical_uncertainty(model, *where, terms=terms, by_term=True)
-            limit, incident = model.theta_i_max_deg, None
+            parts = _of_dhr(model, wavelength_nm, theta_i_deg, phi_i_deg, terms)
         else:
             incident = number("theta_i_deg", 45.0 if theta_i_deg is None else theta_i_deg)
-            angles = np.arange(-85.0, 86.0, 2.5) if theta_r_deg is None else np.asarray(theta_r_deg, float)
-            # The intensity that unpolarized light of intensity 1 leaves behind is f11.
-            where_to = in_plane(incident, phi_i_deg, angles)
-            found = model.analyze(wavelength_nm, *where_to, terms=terms, stokes=[1, 0, 0, 0])
-            found = {"f11": found["scattered_S1"]} | {name: found[name] for name in _without_light(found)}
-            if quantity not in found:
-                raise ValueError(f"quantity = {quantity!r}: expected one of dhr, {', '.join(found)}")
-            value, parts, limit = found[quantity].value, found[quantity].parts, model.theta_r_max_deg
-    bodies = {name: np.abs(np.broadcast_to(part, angles.shape)) for name, part in parts.items()}
-    axes = _stack(axes, width_cm, angles, bodies, 100 / np.abs(value) if relative else np.ones(angles.shape), limit)
-    if incident is None:
-        axes.set(xlabel=r"angle of incidence $\theta_\mathrm{i}$ / °", xlim=(angles.min(), angles.max()))
-        grey_beyond(axes, limit, angles.max(), both=False)
+            parts = _in_plane(model, wavelength_nm, incident, phi_i_deg, theta_r_deg, quantity, terms)
+    axes = _stack(axes, width_cm, parts, relative)
+    span = parts.angles.min(), parts.angles.max()
+    if quantity == "dhr":
+        axes.set(xlabel=r"angle of incidence $\theta_\mathrm{i}$ / °", xlim=span)
+        grey_beyond(axes, parts.limit, span[1], both=False)
     else:
-        axes.set(xlabel=ANGLE_LABEL, xlim=(angles.min(), angles.max()))
-        grey_beyond(axes, limit, max(abs(angles.min()), abs(angles.max())))
+        axes.set(xlabel=ANGLE_LABEL, xlim=span)
+        grey_beyond(axes, parts.limit, max(-span[0], span[1]))
         mark_plane(axes, incident)
     axes.set_ylabel(_label(quantity, relative))
-    axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, incident))
+    axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, None if quantity == "dhr" else incident))
     return axes.figure, axes
+
+
+class Parts(NamedTuple):
+    """A value and its standard uncertainty by cause at some angles, of which those up to the limit were fitted."""
+
+    angles: NDArray[np.float64]
+    value: NDArray[np.float64]
+    by_cause: dict[str, NDArray[np.float64]]
+    limit: float | None
+
+
+def _of_dhr(model: Model, wavelength_nm, theta_i_deg, phi_i_deg: float, terms) -> Parts:
+    angles = np.arange(0.0, 86.0, 2.5) if theta_i_deg is None else np.atleast_1d(np.asarray(theta_i_deg, float))
+    where = wavelength_nm, angles, phi_i_deg
+    value = np.asarray(mmbrdf.directional_hemispherical_reflectance(model, *where))
+    parts = mmbrdf.directional_hemispherical_uncertainty(model, *where, terms=terms, by_term=True)
+    return Parts(angles, value, _spread(parts, angles), model.theta_i_max_deg)
+
+
+def _in_plane(model: Model, wavelength_nm, theta_i_deg: float, phi_i_deg: float, theta_r_deg, quantity, terms) -> Parts:
+    angles = np.arange(-85.0, 86.0, 2.5) if theta_r_deg is None else np.asarray(theta_r_deg, float)
+    # The intensity that unpolarized light of intensity 1 leaves behind is f11.
+    where = in_plane(theta_i_deg, phi_i_deg, angles)
+    found = model.analyze(wavelength_nm, *where, terms=terms, stokes=[1, 0, 0, 0])
+    found = {"f11": found["scattered_S1"]} | {name: found[name] for name in _without_light(found)}
+    if quantity not in found:
+        raise ValueError(f"quantity = {quantity!r}: expected one of dhr, {', '.join(found)}")
+    asked = found[quantity]
+    return Parts(angles, asked.value, _spread(asked.parts, angles), model.theta_r_max_deg)
+
+
+def _spread(parts: dict[str, Any], angles) -> dict[str, NDArray[np.float64]]:
+    return {name: np.abs(np.broadcast_to(part, angles.shape)) for name, part in parts.items()}
 
 
 def _label(quantity: str, relative: bool) -> str:
@@ -105,9 +127,10 @@ CAUSES = {"posterior": "sample and noise", "projection": "end of the basis", "fi
 """What the names of a model's own parts mean, for a legend."""
 
 
-def _stack(axes, width_cm, angles, bodies: dict[str, NDArray], unit, limit) -> Axes:
-    own = axes is None
-    axes = sizes.figure(width_cm, 6.0, 4.6, layout="constrained").add_subplot() if own else axes
+def _stack(axes, width_cm, parts: Parts, relative: bool) -> Axes:
+    axes = sizes.figure(width_cm, 6.0, 4.6, layout="constrained").add_subplot() if axes is None else axes
+    angles, bodies, limit = parts.angles, parts.by_cause, parts.limit
+    unit = 100 / np.abs(parts.value) if relative else np.ones(angles.shape)
     square = np.sum([body**2 for body in bodies.values()], axis=0)
     total = np.sqrt(square)
     strokes = series(len(bodies), [labels.plain(CAUSES.get(name, name.replace("_", " "))) for name in bodies])

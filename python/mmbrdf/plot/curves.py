@@ -174,11 +174,11 @@ def subset_study(
     options["width_cm"] = width_cm
     figure, axes = in_plane_curves(reference, wavelength_nm, theta_i_deg, axes=axes, linewidth=2.4, **options)
     for part in parts:
-        in_plane_curves(part, wavelength_nm, theta_i_deg, axes=axes, linewidth=0.7, **options)
+        in_plane_curves(part, wavelength_nm, theta_i_deg, axes=axes, linewidth=0.9, **options)
     if legend:
         thick_and_thin = [
             Line2D([], [], color="0.4", linewidth=2.4, label=labels.plain(reference.name)),
-            Line2D([], [], color="0.4", linewidth=0.7, label=f"{len(parts)} disjoint parts"),
+            Line2D([], [], color="0.4", linewidth=0.9, label=f"{len(parts)} disjoint parts"),
         ]
         axes.set_title(labels.title("", own_wavelength(reference, wavelength_nm), theta_i_deg))
         sizes.legend_below(axes, component_handles() + thick_and_thin, columns=3)
