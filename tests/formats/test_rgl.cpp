@@ -378,7 +378,8 @@ TEST(Rgl, ThatIsWrittenIsReadBackAsTheModel) {
 
 TEST(Rgl, ThatIsWrittenHasADensityEvenOfWhatIsBlack) {
   const Export table(diffuser({-0.3}), export_format("rgl"), {.wavelengths = {0.5}, .error = 1});
-  for (const double bright : Renderer(exported(table)).values.at("luminance")) ASSERT_EQ(bright, 1);
+  const Renderer renderer(exported(table));
+  for (const double bright : renderer.values.at("luminance")) ASSERT_EQ(bright, 1);
 }
 
 TEST(Rgl, IsNotWrittenOfWhatItCannotHold) {
