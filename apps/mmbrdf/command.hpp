@@ -41,6 +41,7 @@ Run plan_command(CLI::App& app, const CommandLine& line);
 Run subsets_command(CLI::App& app, const CommandLine& line);
 Run compare_command(CLI::App& app, const CommandLine& line);
 Run report_command(CLI::App& app, const CommandLine& line);
+Run plot_command(CLI::App& app, const CommandLine& line);
 Run simulate_command(CLI::App& app, const CommandLine& line);
 Run calibrate_command(CLI::App& app, const CommandLine& line);
 Run instrument_command(CLI::App& app, const CommandLine& line);

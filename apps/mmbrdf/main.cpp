@@ -37,6 +37,7 @@ constexpr Command commands[] = {
     {"subsets", "Fit parts of the data apart and say how far the fits agree.", subsets_command},
     {"compare", "Say how far a model is from samples or from another model.", compare_command},
     {"report", "Say what a model is and how far it can be trusted.", report_command},
+    {"plot", "Draw a picture of a model or of samples, with Python.", plot_command},
     {"simulate", "Make samples that a model would give, with or without noise.", simulate_command},
     {"calibrate", "Find what a polarimeter makes and analyses from readings of references.", calibrate_command},
     {"instrument", "Print what a calibrated polarimeter is and how good.", instrument_command},

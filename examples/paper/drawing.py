@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 import mmbrdf.plot
-from mmbrdf.plot import curves, disc, maps, panels
+from mmbrdf.plot import colours, curves, disc, maps, panels
 from study import ALL, INCIDENT_DEG, ISOTROPIC, PUBLISHED, SUBSET_NM, WAVELENGTHS_NM, Study, depolarization_around
 
 F11_LIMITS, ELEMENT_LIMIT = (0.25, 0.45), 0.1
@@ -32,6 +32,7 @@ def matrix_figure(study: Study, basis: str, wavelength_nm: float, samples: int =
                 wavelength_nm,
                 theta_i_deg,
                 samples=samples,
+                scale="paper",
                 f11_limits=F11_LIMITS,
                 limit=ELEMENT_LIMIT,
                 figure=cells[row, column],
@@ -62,7 +63,8 @@ def depolarization_figure(study: Study, basis: str, samples: int = 201) -> Figur
             mmbrdf.plot.depolarization_map(
                 model, wavelength_nm, theta_i_deg, samples=samples, limits=limits, axes=each, colorbar=False
             )
-            each.set(xlabel="", ylabel="")
+            angle = rf"$\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
+            each.set(xlabel="", ylabel="", title=f"{wavelength_nm:g} nm, {angle}")
         figure.colorbar(
             ScalarMappable(Normalize(*limits), "viridis"), ax=axes[row], extend="both", label="depolarization parameter"
         )
@@ -96,7 +98,9 @@ def curves_figure(study: Study, basis: str) -> Figure:
         Line2D([], [], color="0.35", linewidth=width, label=label)
         for width, label in ((0.7, "one wavelength"), (1.9, ALL))
     ]
-    axes.legend(handles=curves.component_handles() + styles + widths, frameon=False, ncol=3, loc="upper left")
+    axes.legend(
+        handles=curves.component_handles(linestyle="-") + styles + widths, frameon=False, ncol=3, loc="upper left"
+    )
     axes.set_title(rf"{basis}, $\theta_\mathrm{{i}}$ = 45°", fontsize=10)
     return axes.figure
 
@@ -108,7 +112,7 @@ def subset_figure(study: Study, basis: str) -> Figure:
         study.parts(basis), study.model(basis, SUBSET_NM), SUBSET_NM, 45.0, axes=axes, legend=False
     )
     widths = [
-        Line2D([], [], color="0.35", linewidth=0.7, label="a third of the random directions"),
+        Line2D([], [], color="0.35", linewidth=0.9, label="a third of the random directions"),
         Line2D([], [], color="0.35", linewidth=2.4, label="regular directions"),
     ]
     axes.legend(handles=curves.component_handles() + widths, frameon=False, ncol=2, loc="upper left")
@@ -132,10 +136,10 @@ def _plane_axes():
 def fourfold_figure(study: Study) -> Figure:
     """The depolarization parameter around the normal: for an isotropic sample it must be constant."""
     axes = Figure(figsize=(6.8, 4.2), layout="constrained").add_subplot()
-    for wavelength_nm, color in zip((351.0, 532.0, 1064.0), ("#7b3fb5", "#2ca02c", "#b5443f")):
+    for wavelength_nm, stroke in zip((351.0, 532.0, 1064.0), colours.series(3)):
         for basis, style in ((PUBLISHED, "-"), (ISOTROPIC, "--")):
             phi_r_deg, values = depolarization_around(study.model(basis, ALL), wavelength_nm, steps=360)
-            axes.plot(phi_r_deg, values, style, color=color, label=f"{basis}, {wavelength_nm:g} nm")
+            axes.plot(phi_r_deg, values, style, color=stroke.color, label=f"{basis}, {wavelength_nm:g} nm")
     axes.set(
         xlim=(0, 359),
         xticks=range(0, 360, 45),
@@ -151,7 +155,7 @@ def prediction_figure(study: Study) -> Figure:
     """What the fit to the regular directions leaves of the random ones, element by element."""
     axes = Figure(figsize=(7.2, 4.2), layout="constrained").add_subplot()
     elements = [f"{row}{column}" for row in range(1, 5) for column in range(1, 5)][1:]
-    markers = ("s", "#d62728"), ("o", "#7f7f7f"), ("D", "#1f5fd0")
+    markers = ("s", "#c14a09"), ("o", "#7f7f7f"), ("D", "#12408c")
     for (name, values), (marker, color) in zip(study.predictions.items(), markers):
         axes.plot(
             np.arange(15),

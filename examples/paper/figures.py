@@ -25,7 +25,7 @@ import mmbrdf.plot
 
 def write_readme_picture(path: Path) -> None:
     """All elements of the built-in model at 532 nm and 60 degrees, small enough to be kept with the sources."""
-    figure, _ = mmbrdf.plot.hemisphere(mmbrdf.material("ptfe"), 532, 60, samples=301)
+    figure, _ = mmbrdf.plot.hemisphere(mmbrdf.material("ptfe"), 532, 60, samples=301, scale="paper")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=88)
 

@@ -38,16 +38,23 @@ std::string exported(const ModelObject& o, const std::filesystem::path& path, co
   });
 }
 
-constexpr const char* export_doc =
-    "Writes a table that another program reads, in the format of this name, or that which the path's ending says:\n"
-    "pbsdf (Mitsuba's measured_polarized), astm (ASTM E2387 text), netcdf (all elements and u), mqdiffuse (eradiate),\n"
-    "vlidort, 6s. Programs interpolate in it: the coarsest is taken whose rms error is at most `error`, as a part of\n"
-    "f11. Returns what was written, in words. Raises OSError if it cannot be written, ValueError with the reason for\n"
-    "what the format cannot hold; nothing is half-written.\n\n"
-    "wavelength_nm  those of the fit if not given\n"
-    "channel        what a format without polarization holds: f11, or a quantity in sr^-1\n"
-    "streams        of vlidort: cosines in a hemisphere; moments: how many, 2 x streams if 0\n"
-    "sun_deg, view_deg, azimuth_deg  of vlidort and 6s: polar angles, and phi_r - phi_i, 180 is forward";
+/// With the formats that there are.
+std::string export_doc() {
+  std::string text =
+      "Writes a table that another program reads, in the format of this name, or that which the path's ending says:\n";
+  for (const ExportFormat& format : export_formats())
+    text += "    " + std::string(format.name) + " (" + std::string(format.ending) +
+            "): " + std::string(format.meaning) + "\n";
+  return text +
+         "Programs interpolate in it: the coarsest is taken whose rms error is at most `error`, as a part of f11. "
+         "Returns\n"
+         "what was written, in words. Raises OSError if it cannot be written, ValueError with the reason for what the\n"
+         "format cannot hold; nothing is half-written.\n\n"
+         "wavelength_nm  those of the fit if not given\n"
+         "channel        what a format without polarization holds: f11, or a quantity in sr^-1\n"
+         "streams        of vlidort: cosines in a hemisphere; moments: how many, 2 x streams if 0\n"
+         "sun_deg, view_deg, azimuth_deg  of vlidort and 6s: polar angles, and phi_r - phi_i, 180 is forward";
+}
 
 }  // namespace
 
@@ -55,7 +62,7 @@ void bind_export(ModelClass& model) {
   model.def("export", exported, py::arg("path"), py::arg("format") = py::none(), py::kw_only(),
             py::arg("wavelength_nm") = py::none(), py::arg("channel") = "f11", py::arg("error") = ExportOptions{}.error,
             py::arg("streams") = 0, py::arg("moments") = 0, py::arg("sun_deg") = py::none(),
-            py::arg("view_deg") = py::none(), py::arg("azimuth_deg") = py::none(), export_doc);
+            py::arg("view_deg") = py::none(), py::arg("azimuth_deg") = py::none(), export_doc().c_str());
 }
 
 }  // namespace mmbrdf::python

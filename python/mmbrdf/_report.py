@@ -247,7 +247,7 @@ def document(title: str, parts: Sequence[str], *, escaped: bool = False) -> str:
     )
 
 
-def write(path: str | os.PathLike[str], text: str) -> None:
+def write(path: str | os.PathLike[str], text: str | bytes) -> None:
     """All of it or nothing: links are followed, modes kept, devices written directly."""
     if not Path(path).parent.exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(path))

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -152,7 +152,11 @@ std::string timestamp() {
   namespace chrono = std::chrono;
   auto at = chrono::floor<chrono::seconds>(chrono::system_clock::now());
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    const double seconds = parse_number(epoch);
+    double seconds = -1;
+    try {
+      seconds = parse_number(epoch);
+    } catch (const std::invalid_argument&) {  // said below
+    }
     if (!(seconds >= 0 && seconds < 253402300800.0) || seconds != std::floor(seconds))
       throw std::invalid_argument("SOURCE_DATE_EPOCH = " + in_quotes(epoch) + ": must be whole seconds since 1970");
     at = chrono::sys_seconds(chrono::seconds(static_cast<long>(seconds)));

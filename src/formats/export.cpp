@@ -132,11 +132,14 @@ Export::Export(const Model& model, const ExportFormat& format, const ExportOptio
 }
 
 double compared_up_to(const Model& model) {
-  return std::min({compared_theta, model.validity.theta_i_max.value_or(compared_theta),
-                   model.validity.theta_r_max.value_or(compared_theta)});
+  return std::max(radians(30), std::min({compared_theta, model.validity.theta_i_max.value_or(compared_theta),
+                                         model.validity.theta_r_max.value_or(compared_theta)}));
 }
 
 void require_error(const ExportError& error, const ExportOptions& options, const std::string& table) {
+  if (!std::isfinite(error.rms))
+    throw std::invalid_argument("f11 of the model is 0 at directions up to " + rounded(in_degrees(error.theta_max), 4) +
+                                " degrees: the error of a table, a part of f11, cannot be told");
   if (error.rms > options.error)
     throw std::invalid_argument("the finest table, of " + table + ", has an rms error of " +
                                 rounded(100 * error.rms, 2) + " % of f11, more than the " +

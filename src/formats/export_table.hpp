@@ -13,7 +13,8 @@
 
 namespace mmbrdf {
 
-/// Directions of a table are compared up to this polar angle.
+/// Directions of a table are compared up to this polar angle: that of the fit, but 30 degrees at least, as a table is to
+/// be the model wherever that is from.
 double compared_up_to(const Model& model);
 
 /// Whether a turn of the sample changes what the model says.
@@ -41,7 +42,7 @@ Vector3 raised(const Vector3& v);
 class Deviation {
  public:
   void add(double found, double expected, double f11) {
-    const double part = (found - expected) / f11;
+    const double part = found == expected ? 0 : (found - expected) / f11;
     squares_ += part * part;
     largest_ = std::max(largest_, std::abs(part));
     ++count_;

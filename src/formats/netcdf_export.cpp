@@ -187,18 +187,20 @@ std::string netcdf_bytes(const Model& model, const MatrixGrid& grid, const std::
   return file.bytes();
 }
 
-void require_moderate(std::size_t wavelengths) {
-  constexpr std::size_t most = 100;
-  if (wavelengths > most)
-    throw std::invalid_argument(std::to_string(wavelengths) + " wavelengths are more than the " + std::to_string(most) +
-                                " of a NetCDF file of this program");
+/// Throws std::invalid_argument for so many numbers that they and their uncertainties may not fit into memory.
+void require_moderate(const MatrixGrid& grid, std::size_t wavelengths, double step) {
+  constexpr std::size_t most = 100'000'000;
+  const std::size_t numbers = 16 * grid.geometries().size() * wavelengths;
+  if (numbers > most)
+    throw std::invalid_argument("steps of " + shortest(step) + " degrees at " + std::to_string(wavelengths) +
+                                " wavelengths are " + std::to_string(numbers / 1'000'000) +
+                                " million numbers, more than 100 million: ask for fewer wavelengths or a larger error");
 }
 
 }  // namespace
 
 Export::Made make_netcdf(const Model& model, const ExportOptions& options) {
   require_isotropic(model, "a NetCDF");
-  require_moderate(options.wavelengths.size());
   const Elements unknown = unknown_elements(model, Frame::sp);
   std::vector<PreparedModel> models;
   for (const double wavelength : options.wavelengths) models.push_back(prepare(model, wavelength));
@@ -209,6 +211,7 @@ Export::Made make_netcdf(const Model& model, const ExportOptions& options) {
   for (const double degrees : netcdf_steps) {
     step = degrees;
     grid = std::make_unique<MatrixGrid>(step);
+    require_moderate(*grid, models.size(), step);
     for (const PreparedModel& prepared : models) grid->add(prepared);
     error = grid_error(*grid, models, unknown, theta_max);
     if (error.rms <= options.error) break;

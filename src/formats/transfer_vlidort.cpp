@@ -143,8 +143,10 @@ std::vector<std::string> words_of(const Model& model, double wavelength) {
 }
 
 void require_complete(const TransferAngles& angles) {
-  if (angles.streams < 1 || angles.streams > 500)
-    throw std::invalid_argument("a VLIDORT file needs its number of streams, cosines in a hemisphere: 1 to 500");
+  constexpr int most = 100;  // a file of 400 MB
+  if (angles.streams < 1 || angles.streams > most)
+    throw std::invalid_argument("a VLIDORT file needs its number of streams, cosines in a hemisphere: 1 to " +
+                                std::to_string(most));
   if (angles.suns.empty()) throw std::invalid_argument("a VLIDORT file needs polar angles of the sun");
   if (angles.views.empty() != angles.azimuths.empty())
     throw std::invalid_argument("views and azimuths of a VLIDORT file come together");

@@ -15,19 +15,18 @@
 namespace mmbrdf {
 namespace {
 
-constexpr std::array specular_steps{5.0, 2.5};  // degrees
+constexpr std::array specular_steps{5.0, 2.5, 1.25};  // degrees
 
-/// Values at angles of incidence of 0 to 90 degrees, azimuths of 0 to 180 or 360 and radial angles of 0 to 180 degrees
-/// about the specular ray, in equal steps.
+/// Values at angles of incidence of 0 to 90 degrees, azimuths and radial angles of 0 to 180 degrees about the specular
+/// ray, in equal steps. The other half is the mirror image: models of isotropic samples have no other channels.
 class SpecularTable {
  public:
-  SpecularTable(const PreparedModel& model, const Channel& channel, double step, bool symmetrical)
+  SpecularTable(const PreparedModel& model, const Channel& channel, double step)
       : degrees_(step),
         step_(radians(step)),
         incidences_(nodes(90, step)),
-        azimuths_(nodes(symmetrical ? 180 : 360, step)),
-        radials_(nodes(180, step)),
-        symmetrical_(symmetrical) {
+        azimuths_(nodes(180, step)),
+        radials_(nodes(180, step)) {
     for (std::size_t i = 0; i < incidences_; ++i)
       for (std::size_t a = 0; a < azimuths_; ++a)
         for (std::size_t r = 0; r < radials_; ++r) {
@@ -43,9 +42,8 @@ class SpecularTable {
     const Vector3 o = unit_vector({geometry.reflected.theta, geometry.reflected.phi - geometry.incident.phi});
     const double x = o[0] * std::cos(theta_i) + o[2] * std::sin(theta_i),
                  z = o[2] * std::cos(theta_i) - o[0] * std::sin(theta_i);
-    const double turn = std::atan2(o[1], x);
     const auto [i, along_i] = place(theta_i, incidences_);
-    const auto [a, along_a] = place(symmetrical_ ? std::abs(turn) : turn + (turn < 0 ? 4 * half_pi : 0), azimuths_);
+    const auto [a, along_a] = place(std::abs(std::atan2(o[1], x)), azimuths_);
     const auto [r, along_r] = place(std::atan2(std::hypot(x, o[1]), z), radials_);
     double sum = 0;
     for (const std::size_t corner : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
@@ -96,7 +94,6 @@ class SpecularTable {
 
   double degrees_, step_;
   std::size_t incidences_, azimuths_, radials_;
-  bool symmetrical_;
   std::vector<double> values_;
 };
 
@@ -108,22 +105,11 @@ double total_scatter(const PreparedModel& model, const Channel& channel, double 
   return sum;
 }
 
-/// Whether both sides of the plane of incidence have the same values.
-bool mirrors(const PreparedModel& model, const Channel& channel, const std::vector<Geometry>& geometries) {
-  constexpr double rounding = 1e-10;  // of f11
-  return std::ranges::all_of(geometries, [&](const Geometry& g) {
-    const double phi = g.reflected.phi - g.incident.phi;
-    const Mueller one = model.evaluate({{g.incident.theta, 0}, {g.reflected.theta, phi}}, Frame::sp),
-                  other = model.evaluate({{g.incident.theta, 0}, {g.reflected.theta, -phi}}, Frame::sp);
-    return std::abs(channel(one) - channel(other)) <= rounding * std::abs(one(0, 0));
-  });
-}
-
-std::string zemax_head(const Model& model, const ExportOptions& options, bool symmetrical) {
-  return "# " + options.channel + " in sr^-1 of " + printable(model.name, 60) +
+std::string zemax_head(const Model& model, const ExportOptions& options) {
+  return "# " + options.channel + " in sr^-1" + (model.name.empty() ? "" : " of " + printable(model.name, 60)) +
          "\n# Wavelength (nm) = " + shortest(in_nanometres(options.wavelengths.front())) +
-         "\nSource  Measured\nSymmetry  " + (symmetrical ? "PlaneSymmetrical" : "Asymmetrical") +
-         "\nSpectralContent  Monochrome\nScatterType  BRDF\nSampleRotation  1\n0\n";
+         "\nSource  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\nScatterType  "
+         "BRDF\nSampleRotation  1\n0\n";
 }
 
 ExportError error_of(const SpecularTable& table, const PreparedModel& model, const Channel& channel,
@@ -136,9 +122,9 @@ ExportError error_of(const SpecularTable& table, const PreparedModel& model, con
   return deviation.error(theta_max);
 }
 
-std::string zemax_understood(const SpecularTable& table, const ExportOptions& options, double step, bool symmetrical) {
-  std::string text = std::string(symmetrical ? "PlaneSymmetrical, " : "Asymmetrical, ") + options.channel +
-                     " in sr^-1 at " + nanometre_text(options.wavelengths) + ", steps of " + shortest(step) +
+std::string zemax_understood(const SpecularTable& table, const ExportOptions& options, double step) {
+  std::string text = "PlaneSymmetrical, " + options.channel + " in sr^-1 at " + nanometre_text(options.wavelengths) +
+                     ", steps of " + shortest(step) +
                      " degrees about the specular ray; below the horizon the values on it; TIS is the reflectance of "
                      "each incidence";
   if (const auto negative = std::ranges::count_if(table.values(), [](double v) { return v < 0; }); negative > 0)
@@ -154,13 +140,12 @@ Export::Made make_zemax(const Model& model, const ExportOptions& options) {
   const PreparedModel prepared = prepare(model, one_wavelength(options, "a Monochrome Zemax file"));
   const double theta_max = compared_up_to(model);
   const std::vector<Geometry> compared = random_geometries(4000, 1, theta_max);
-  const bool symmetrical = mirrors(prepared, channel, compared);
   std::shared_ptr<const SpecularTable> table;
   ExportError error;
   double step = 0;
   for (const double degrees : specular_steps) {
     step = degrees;
-    table = std::make_shared<const SpecularTable>(prepared, channel, step, symmetrical);
+    table = std::make_shared<const SpecularTable>(prepared, channel, step);
     error = error_of(*table, prepared, channel, compared, theta_max);
     if (error.rms <= options.error) break;
   }
@@ -169,11 +154,11 @@ Export::Made make_zemax(const Model& model, const ExportOptions& options) {
   std::vector<double> tis;
   for (std::size_t i = 0; i < table->incidences(); ++i)
     tis.push_back(total_scatter(prepared, channel, table->theta_i(i), std::max(many_nodes, hemisphere_nodes(model))));
-  const auto write = [table, tis, head = zemax_head(model, options, symmetrical)](std::ostream& out) {
+  const auto write = [table, tis, head = zemax_head(model, options)](std::ostream& out) {
     out << head;
     table->write(out, tis);
   };
-  return {write, error, zemax_understood(*table, options, step, symmetrical)};
+  return {write, error, zemax_understood(*table, options, step)};
 }
 
 }  // namespace mmbrdf

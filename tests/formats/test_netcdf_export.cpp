@@ -75,6 +75,11 @@ TEST(NetcdfExport, TakesTheCoarsestGridThatHasTheErrorAskedFor) {
 }
 
 TEST(NetcdfExport, RefusesWhatItCannotHold) {
+  Model diffuse = diffuser({0.3, 0.1});
+  std::vector<double> many;
+  for (int nm = 400; nm < 2400; ++nm) many.push_back(nm * 1e-3);
+  EXPECT_TRUE(says(export_refusal(diffuse, "netcdf", {.wavelengths = many, .error = 1}),
+                   {"steps of 10 degrees at 2000 wavelengths are 118 million"}));
   Model anisotropic = random_model(Family::anisotropic, {2, 1}, 0, 1);
   for (const std::string format : {"netcdf", "mqdiffuse"})
     EXPECT_TRUE(says(export_refusal(anisotropic, format, {.wavelengths = {0.5}}), {"azimuth of the source"}));

@@ -376,6 +376,12 @@ TEST(Rgl, ThatIsWrittenIsReadBackAsTheModel) {
   }
 }
 
+TEST(Rgl, ThatIsWrittenHasADensityEvenOfWhatIsBlack) {
+  const Export table(diffuser({-0.3}), export_format("rgl"), {.wavelengths = {0.5}, .error = 1});
+  const Renderer renderer(exported(table));
+  for (const double bright : renderer.values.at("luminance")) ASSERT_EQ(bright, 1);
+}
+
 TEST(Rgl, IsNotWrittenOfWhatItCannotHold) {
   EXPECT_TRUE(says(export_refusal(material("ptfe"), "rgl", {.error = 1e-9}),
                    {"the finest table, of 73 theta_i, 257 x 257 half directions"}));

@@ -58,7 +58,7 @@ def test_the_hemisphere_shows_the_models_values_and_nothing_outside_the_disc(ptf
 
 
 def test_the_hemisphere_has_the_papers_scales_and_colours(ptfe):
-    figure, axes = mmbrdf.plot.hemisphere(ptfe, 532, 60, samples=SAMPLES)
+    figure, axes = mmbrdf.plot.hemisphere(ptfe, 532, 60, samples=SAMPLES, scale="paper")
     images = [each.images[0] for each in axes.flat]
     assert images[0].get_clim() == (0.25, 0.45)
     assert all(image.get_clim() == (-0.1, 0.1) for image in images[1:])
@@ -203,8 +203,11 @@ def test_the_depolarization_map_shows_the_parameter(ptfe):
     m = mueller / mueller[:, :1, :1]
     np.testing.assert_allclose(shown[inside], np.sqrt(((m**2).sum(axis=(1, 2)) - 1) / 3), rtol=1e-10)
     x, y = cell_centres()
-    fitted = np.hypot(x, y)[inside] <= np.sin(np.radians(ptfe.theta_r_max_deg))
-    assert axes.images[0].get_clim() == (shown[inside][fitted].min(), shown[inside][fitted].max())
+    fitted = shown[inside][np.hypot(x, y)[inside] <= np.sin(np.radians(ptfe.theta_r_max_deg))]
+    low, high = axes.images[0].get_clim()
+    hundredth = np.ptp(fitted) / 10  # of a span of two digits
+    assert fitted.min() - hundredth < low <= fitted.min() and fitted.max() <= high < fitted.max() + hundredth
+    assert "range within the fit" in written(figure)
     assert "Bernabeu" in written(figure) and "351 nm" in written(figure)
 
 
@@ -217,12 +220,23 @@ def test_maps_take_limits_and_axes(ptfe):
     assert axes.images[0].get_clim() == (0, 0.2)
 
 
-def test_the_realizability_map_shows_the_margin(ptfe):
-    figure, axes = mmbrdf.plot.realizability_map(ptfe, 1064, 75, samples=SAMPLES)
-    inside, mueller = expected_over_disc(ptfe, 1064, 75)
-    np.testing.assert_array_equal(picture(axes)[inside].data, mmbrdf.realizability_margin(mueller))
-    assert axes.images[0].get_clim() == (0, 0.25)
+def test_the_realizability_map_shows_the_margin_over_its_own_range(ptfe):
+    figure, axes = mmbrdf.plot.realizability_map(ptfe, 1064, 60, samples=SAMPLES)
+    inside, mueller = expected_over_disc(ptfe, 1064, 60)
+    margin = mmbrdf.realizability_margin(mueller)
+    np.testing.assert_array_equal(picture(axes)[inside].data, margin)
+    low, high = axes.images[0].get_clim()
+    assert 0 <= low <= margin.max() <= high <= 0.25 + 0.01 and high - low < 1.5 * np.ptp(margin)
     assert "eigenvalue" in written(figure)
+
+
+def test_what_can_be_is_not_red_beyond_the_fit_either(ptfe):
+    _, axes = mmbrdf.plot.realizability_map(ptfe, 1064, 75, samples=SAMPLES)
+    (image,) = axes.images
+    margin, inside = image.get_array(), expected_over_disc(ptfe, 1064, 75)[0]
+    edge = np.hypot(*cell_centres()) > np.sin(np.radians(ptfe.theta_r_max_deg))
+    assert margin[inside].min() >= 0 and (inside & edge).any() and margin[inside].min() == margin[inside & edge].min()
+    assert image.get_clim()[0] <= margin[inside].min()
 
 
 def test_the_realizability_map_is_red_where_no_scatterer_can_be():
@@ -295,7 +309,7 @@ def test_curves_are_scaled_to_the_fitted_angles_and_grey_beyond():
 
 
 def test_colours_of_components_are_those_of_the_paper():
-    colours = [to_rgba(colour)[:3] for colour, _ in curves.COMPONENTS.values()]
+    colours = [to_rgba(colour)[:3] for colour in (stroke.color for stroke in curves.COMPONENTS.values())]
     assert colours[0] == (0, 0, 0)
     assert [int(np.argmax(colour)) for colour in colours[1:]] == [0, 1, 2]  # red, green, blue
 
@@ -358,8 +372,9 @@ def test_the_spectrum_shows_every_coefficient_of_a_power_with_its_uncertainty(pt
         [np.sqrt(np.diag(block.covariance))[power * n : (power + 1) * n] for block, n in zip(ptfe.blocks, modes)]
     )
     np.testing.assert_allclose(tops, np.abs(values) + 2 * u, rtol=1e-12)
-    assert axes.get_yscale() == "log" and "sr$^{-1}$" in axes.get_ylabel()
-    assert "22,23,32,33" in written(figure)
+    assert axes.get_yscale() == "log" and "sr$^{-1}$" in axes.get_xlabel()
+    assert ("µm$^{-1}$" in axes.get_xlabel()) == (power == 1)
+    assert "22\n23\n32\n33" in written(figure)
 
 
 def test_a_power_that_the_model_lacks_is_refused(ptfe):

@@ -95,6 +95,10 @@ def pictures_with_names(model, data):
     yield plot.subset_study([model], model, 532)[0]
     yield plot.polar_in_plane(model, 532)[0]
     yield plot.coefficient_spectrum(model)[0]
+    yield plot.map(model, "11", 532, 60, samples=SAMPLES)[0]
+    yield plot.reflectance_factor(model, 532, bands=False)[0]
+    yield plot.reflectance_against_wavelength(model, bands=False)[0]
+    yield plot.anisotropy(model)[0]
 
 
 @pytest.mark.parametrize("name", [r"$\frac$", "cost $5 or $6 _{", r"a\$b", "_hidden", "纸样"])

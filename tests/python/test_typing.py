@@ -19,6 +19,11 @@ figure.savefig("curves.png")
 mmbrdf.plot.hemisphere(model, 532, 60)
 mmbrdf.plot.residual_map(model, data, None, 60)
 mmbrdf.plot.polar_in_plane([model], [532, 633])
+mmbrdf.plot.map(data, "22", 532, 60, minus=model, show="value / u", width_cm=8)
+mmbrdf.plot.map(model, mmbrdf.depolarization, 532, 60, limits=(0, 0.2))
+mmbrdf.plot.in_plane_curves(model, 532, data=data, width_cm=8)
+mmbrdf.plot.reflectance_factor(model, [443, 670], views=[(0, 0), (45, 180)], terms={"scale": 0.003})
+mmbrdf.plot.uncertainty_parts(model, 532, quantity="dhr")
 mmbrdf.report(model, data, "report.html", theta_i_deg=60)
 seen: mmbrdf.Inspection = mmbrdf.inspect(data)
 mmbrdf.plot.directions(data, 532, inspection=seen)
@@ -60,6 +65,7 @@ def test_a_program_that_is_right_passes(tmp_path, cache):
     [
         ('mmbrdf.report(data, data, "report.html")', 'incompatible type "Dataset"; expected'),
         ("mmbrdf.plot.in_plane_curves(mmbrdf.fit(data), 532)", 'incompatible type "FitResult"; expected "Model"'),
+        ("mmbrdf.plot.map(model, 11, 532)", 'incompatible type "int"'),
         ('mmbrdf.plot.hemisphere(model, "532", 60)', 'incompatible type "str"'),
         ("model.evaluate(532)", 'No overload variant of "evaluate"'),
         ("model.save(1)", 'incompatible type "int"'),

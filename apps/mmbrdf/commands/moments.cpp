@@ -36,6 +36,9 @@ Cosines cosines_of(const Options& options) {
     if (!options.mu_r) throw missing("--mu-r, or --streams,");
     return {*options.mu_i, *options.mu_r, ""};
   }
+  constexpr int most = 100;
+  if (options.streams > most)
+    throw WrongUsage("--streams", std::to_string(options.streams) + " are more than " + std::to_string(most));
   if (options.mu_i || options.mu_r) throw WrongUsage("--streams", "it says all cosines: leave out --mu-i and --mu-r");
   Cosines result;
   std::vector<Node> nodes = gauss_legendre(options.streams);

@@ -6,23 +6,23 @@ import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib.patches import Circle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch
+from matplotlib.patheffects import withStroke
 
 import mmbrdf
 
 from .._arguments import number, own_wavelength, require
+from .colours import HATCH, HATCH_COLOUR, UNMEASURED
+from .scalars import in_frame
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap, Normalize
     from matplotlib.image import AxesImage
     from numpy.typing import NDArray
 
 SOURCE_AZIMUTH_DEG = 180.0
 """Azimuth of the source in pictures: light comes from the left."""
-
-UNMEASURED = "#e6e6da"
-"""Colour of what was not measured or has no meaning; neither grey nor on the way from blue to red."""
 
 
 class DiscImage(NamedTuple):
@@ -43,6 +43,19 @@ class DiscImage(NamedTuple):
         y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
         columns_x, rows_y = np.meshgrid(x, y)
         return columns_x, rows_y
+
+    def within(self, theta_max_deg: float | None) -> NDArray[np.bool_]:
+        """Which cells have their centre in the disc, and within a polar angle if it is known."""
+        edge = 1.0 if theta_max_deg is None else np.sin(np.radians(theta_max_deg))
+        return np.asarray(np.hypot(*self.centres()) <= edge)
+
+
+class View(NamedTuple):
+    """What is marked in a picture of the hemisphere: the source, and where the fitted polar angles of detection end."""
+
+    theta_i_deg: float
+    phi_i_deg: float
+    theta_max_deg: float | None = None
 
 
 X_LABEL = r"$\sin\theta_\mathrm{r}\,\cos\phi_\mathrm{r}$"
@@ -76,21 +89,22 @@ def question(source, wavelength_nm, theta_i_deg) -> tuple[float | None, float]:
     return own_wavelength(source, wavelength_nm), number("theta_i_deg", theta_i_deg)
 
 
-def matrices(source, wavelength_nm: float, theta_i_deg: float, phi_i_deg: float, frame: str, samples: int) -> DiscImage:
+def matrices(source, wavelength_nm, theta_i_deg: float, phi_i_deg: float, frame: str, samples: int) -> DiscImage:
     """Mueller BRDF in sr^-1 over the disc, of a model (samples x samples cells) or of a data set (its own cells)."""
     if isinstance(source, mmbrdf.Dataset):
         data = samples_at(source, wavelength_nm, theta_i_deg, phi_i_deg)
-        values = data.mueller
-        if frame != "xy":
-            where = data.theta_i_deg, data.phi_i_deg, data.theta_r_deg, data.phi_r_deg
-            values = mmbrdf.change_frame(values, *where, "xy", frame)
-        return cells(*direction_cosines(data.theta_r_deg, data.phi_r_deg), values)
+        return sample_cells(data, in_frame(data.mueller, data.geometry, frame))
     return over_disc(
         samples,
         lambda theta_r_deg, phi_r_deg: evaluate(
             source, wavelength_nm, (theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg), frame
         ),
     )
+
+
+def sample_cells(data: mmbrdf.Dataset, values: NDArray[np.float64]) -> DiscImage:
+    """Values of samples, (samples, ...), as cells."""
+    return cells(*direction_cosines(data.theta_r_deg, data.phi_r_deg), values)
 
 
 def over_disc(samples: int, function) -> DiscImage:
@@ -172,40 +186,70 @@ def _nearest(x, y, values, samples: int = 101) -> DiscImage:
     return over_disc(samples, look_up)
 
 
-def draw(axes: Axes, values, extent, cmap: Colormap | str, norm: Normalize, label_axes: bool = False) -> AxesImage:
-    """One scalar picture, (rows, columns), clipped to the unit disc, with its outline."""
-    image = axes.imshow(
-        np.ma.masked_invalid(values),
-        extent=extent,
+def draw(axes: Axes, image: DiscImage, cmap, norm, label_axes: bool = False) -> AxesImage:
+    """One scalar picture, (rows, columns), clipped to the unit disc, with its outline; hatched where there is no number."""
+    drawn = axes.imshow(
+        np.ma.masked_invalid(image.values),
+        extent=image.extent,
         origin="lower",
         cmap=cmap,
         norm=norm,
         interpolation="nearest",
         zorder=1,
     )
-    rim = Circle((0, 0), 1, facecolor=UNMEASURED, edgecolor="none", zorder=0)
+    hatched = dict(hatch=HATCH, facecolor=UNMEASURED, edgecolor=HATCH_COLOUR, linewidth=0) if lacks(image) else {}
+    rim = Circle((0, 0), 1, **{"facecolor": "white", "edgecolor": "none", **hatched}, zorder=0)
     axes.add_patch(rim)
-    image.set_clip_path(rim)
+    drawn.set_clip_path(rim)
     axes.add_patch(Circle((0, 0), 1, facecolor="none", edgecolor="0.35", linewidth=0.5, zorder=2))
     axes.set(xlim=(-1.03, 1.03), ylim=(-1.03, 1.03), aspect="equal")
     axes.spines[:].set_visible(False)
     axes.set(xticks=[], yticks=[])
     if label_axes:
         axes.set(xticks=[-1, 0, 1], yticks=[-1, 0, 1], xlabel=X_LABEL, ylabel=Y_LABEL)
-    return image
+    return drawn
 
 
-def mark_limit(axes: Axes, theta_r_max_deg: float | None) -> None:
-    """A dashed circle where the fitted directions of detection end, if that is known and can be told from the rim."""
-    if theta_r_max_deg is not None and np.sin(np.radians(theta_r_max_deg)) < 0.98:
-        axes.add_patch(
-            Circle(
-                (0, 0),
-                np.sin(np.radians(theta_r_max_deg)),
-                facecolor="none",
-                edgecolor="0.25",
-                linewidth=0.6,
-                linestyle=(0, (3, 2)),
-                zorder=2,
-            )
-        )
+def lacks(image: DiscImage) -> bool:
+    """Whether there is a cell without a number in the disc, or a part of the disc without a cell."""
+    part = max(image.extent[0], image.extent[2]) > -1 or min(image.extent[1], image.extent[3]) < 1
+    return part or not np.isfinite(image.values[image.within(None)]).all()
+
+
+_HALO = [withStroke(linewidth=1.6, foreground="white")]
+_LIMIT = dict(edgecolor="0.1", facecolor="none", linewidth=0.7, linestyle=(0, (3, 2)))
+
+
+def _mark(name: str, x, y, size: float) -> Line2D:
+    """The source is a ring, which is the retro direction, too; the specular direction a cross."""
+    label = {"source": "source and retro", "specular": "specular"}[name]
+    style = dict(linestyle="none", color="black", markerfacecolor="none", path_effects=_HALO, zorder=4, gid=name)
+    marker = {"source": "o", "specular": "x"}[name]
+    return Line2D(x, y, marker=marker, markersize=size, markeredgewidth=0.9, label=label, **style)
+
+
+def mark(axes: Axes, view: View, size: float = 5.0) -> None:
+    """Source, which is the retro direction of detection, too; specular direction; a dashed circle where the fitted directions
+    of detection end, if that is known and can be told from the rim."""
+    x, y = direction_cosines(view.theta_i_deg, view.phi_i_deg)
+    axes.add_line(_mark("source", [x], [y], size))
+    axes.add_line(_mark("specular", [-x], [-y], 0.85 * size))
+    if shows_limit(view):
+        radius = np.sin(np.radians(view.theta_max_deg))
+        halo = [withStroke(linewidth=1.7, foreground="white")]
+        axes.add_patch(Circle((0, 0), radius, **_LIMIT, zorder=3, gid="limit", path_effects=halo))
+
+
+def shows_limit(view: View) -> bool:
+    return view.theta_max_deg is not None and np.sin(np.radians(view.theta_max_deg)) < 0.98
+
+
+def key(view: View, hatched: bool) -> list[Line2D | Patch]:
+    """Handles of a legend of what is marked."""
+    handles: list[Line2D | Patch] = [_mark("source", [], [], 4.5), _mark("specular", [], [], 4.0)]
+    if shows_limit(view):
+        handles.append(Line2D([], [], color="0.1", linewidth=0.7, linestyle=(0, (3, 2)), label="end of the fit"))
+    if hatched:
+        hatch = dict(facecolor=UNMEASURED, edgecolor=HATCH_COLOUR, hatch=HATCH, linewidth=0)
+        handles.append(Patch(label="no value", **hatch))
+    return handles

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterator
 from typing import Any
 
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 
@@ -16,11 +17,20 @@ def plain(name: str) -> str:
     return (" " if name.startswith("_") else "") + name.replace("$", r"\$")
 
 
-def title(name: str, wavelength_nm: float | None, theta_i_deg: float | None = None) -> str:
-    """What is shown, as plain() gives it, at which wavelength and angle of incidence: what of this is known."""
+def title(name: str, wavelength_nm: float | None, theta_i_deg: float | None = None, frame: str | None = None) -> str:
+    """What is shown, as plain() gives it, at which wavelength and angle of incidence, in which frame: what of this is known."""
     wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm"
     angle = "" if theta_i_deg is None else rf"$\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
-    return ", ".join(part for part in (name, wavelength, angle) if part)
+    axes = "" if frame is None else f"frame {frame.replace('_', ' ')}"
+    return ", ".join(part for part in (name, wavelength, angle, axes) if part)
+
+
+_UNITS = {"sr^-1": "sr$^{-1}$", "deg": "°"}
+
+
+def quantity(symbol: str, unit: str) -> str:
+    """A label as SI has it, the quantity divided by its unit: ``f / sr$^{-1}$``. No unit: the symbol alone."""
+    return f"{symbol} / {_UNITS.get(unit, unit)}" if unit else symbol
 
 
 _SAYS_WHAT_FONTS_LACK = logging.getLogger("matplotlib.mathtext")
@@ -43,11 +53,18 @@ def _whatever_the_font_lacks() -> Iterator[None]:
 
 
 class Picture(Figure):
-    """A figure that draws a box for each character that its font lacks, as all do, but says nothing of each."""
+    """A figure that draws a box for each character that its font lacks, as all do, but says nothing of each.
+
+    Its hatches are thin, and what it saves as PDF has its fonts as TrueType, which publishers ask for.
+    """
 
     def draw(self, renderer: Any) -> None:
-        with _whatever_the_font_lacks():
+        with _whatever_the_font_lacks(), rc_context({"hatch.linewidth": 0.5}):
             super().draw(renderer)
+
+    def savefig(self, fname: Any, **options: Any) -> None:
+        with rc_context({"pdf.fonttype": 42, "ps.fonttype": 42}):
+            super().savefig(fname, **options)
 
     def get_tightbbox(self, *arguments: Any, **options: Any) -> Any:
         with _whatever_the_font_lacks():

@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Wedge
 import mmbrdf
 
 from .._arguments import own_wavelength, require
-from . import disc, labels
+from . import disc, labels, sizes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 COUNTS = "cividis_r"
 """Light to dark, so that grey prints tell the same."""
+
+SMALL = 6.5
+"""Of notes beside small discs, in points."""
 
 _SAME_DEG = 0.2
 """Directions closer than this are one point."""
@@ -35,12 +38,14 @@ _MARKS = "xD^sv+"
 _HOLE = {"facecolor": "none", "edgecolor": SUSPICIOUS, "linewidth": 0, "hatch": "////", "zorder": 1}
 
 
+@sizes.sized
 def directions(
     data: Dataset,
     wavelength_nm: float | None = None,
     *,
     inspection: Inspection | None = None,
     figure: Figure | SubFigure | None = None,
+    width_cm: float | None = None,
 ) -> tuple[Figure | SubFigure, NDArray]:
     """Where the samples of one wavelength (nm) were measured, in projected direction cosines.
 
@@ -60,7 +65,7 @@ def directions(
     wavelength_nm = own_wavelength(data, wavelength_nm)
     here = data.at_wavelengths(wavelength_nm)
     seen = mmbrdf.inspect(here) if inspection is None else inspection
-    figure = labels.Picture(figsize=(4.6, 3.3)) if figure is None else figure
+    figure = sizes.figure(width_cm, 4.6, 3.3) if figure is None else figure
     axes = figure.subplots(1, 2, gridspec_kw=dict(left=0.02, right=0.98, bottom=0.3, top=0.9, wspace=0.06))
     relative = here.phi_r_deg - here.phi_i_deg + disc.SOURCE_AZIMUTH_DEG
     places = [_places(here.theta_i_deg, here.phi_i_deg), _places(here.theta_r_deg, relative)]
@@ -69,14 +74,16 @@ def directions(
         _circles(each)
         points = each.scatter(x, y, 5 + 25 * np.log(counts) / np.log(most), counts, cmap=COUNTS, norm=LogNorm(1, most))
         points.set(edgecolor="0.15", linewidth=0.3, zorder=3)
-        each.set_title(f"{name}: {len(x)} direction{'s' * (len(x) > 1)}", fontsize=9)
+        each.set_title(f"{name}: {len(x)} direction{'s' * (len(x) > 1)}")
     _mark_hole(*axes, seen.missing)
-    axes[0].text(-1.02, -1.02, r"$\phi_\mathrm{i}$ = 0 is on the right", fontsize=7, va="top")
-    axes[1].text(-1.02, -1.02, "towards the source", fontsize=7, va="top")
-    axes[1].text(1.02, -1.02, "forward", fontsize=7, va="top", ha="right")
+    axes[0].text(-1.02, -1.02, r"$\phi_\mathrm{i}$ = 0 is on the right", fontsize=SMALL, va="top")
+    axes[1].text(-1.02, -1.02, "towards the source", fontsize=SMALL, va="top")
+    axes[1].text(1.02, -1.02, "forward", fontsize=SMALL, va="top", ha="right")
     _count_bar(figure, points, most)
     words = (seen.hole or f"covered: {seen.rows['covered']}").replace("phi_r - phi_i", "phi_r\u00a0-\u00a0phi_i")
-    figure.text(0.02, 0.115, textwrap.fill(words, 92), fontsize=6.5, va="top")
+    figure.text(
+        0.02, 0.115, textwrap.fill(words, int(92 * figure.bbox.width / figure.dpi / 4.6)), fontsize=SMALL, va="top"
+    )
     return figure, axes
 
 
@@ -97,7 +104,7 @@ def _circles(axes: Axes) -> None:
     box = dict(facecolor="white", edgecolor="none", alpha=0.75, pad=0.4)
     for theta_deg in (30, 60, 90):
         x, y = disc.direction_cosines(theta_deg, 68)
-        axes.text(x, y, f"{theta_deg}°", fontsize=7, ha="center", va="center", bbox=box, zorder=4)
+        axes.text(x, y, f"{theta_deg}°", fontsize=SMALL, ha="center", va="center", bbox=box, zorder=4)
     axes.set(xlim=(-1.05, 1.05), ylim=(-1.05, 1.05), aspect="equal", xticks=[], yticks=[])
     axes.spines[:].set_visible(False)
 
@@ -127,16 +134,18 @@ def _count_bar(figure, points, most: int) -> None:
     ticks = np.unique(np.round(np.geomspace(1, most, 4)).astype(int))
     bar.ax.minorticks_off()
     bar.set_ticks(ticks, labels=[str(tick) for tick in ticks])
-    bar.ax.tick_params(labelsize=7, length=2, pad=1.5)
-    bar.ax.set_ylabel("samples ", fontsize=7, rotation=0, ha="right", va="center")
+    bar.ax.tick_params(labelsize=SMALL, length=2, pad=1.5)
+    bar.ax.set_ylabel("samples ", fontsize=SMALL, rotation=0, ha="right", va="center")
 
 
+@sizes.sized
 def suspicious(
     data: Dataset,
     wavelength_nm: float | None = None,
     *,
     inspection: Inspection | None = None,
     axes: Axes | None = None,
+    width_cm: float | None = None,
 ) -> tuple[Figure | SubFigure, Axes]:
     """f11 of the samples of one wavelength (nm) against theta_r, with a mark for those that a finding names.
 
@@ -144,22 +153,24 @@ def suspicious(
     scale is that of the samples without a mark: others may be at its ends, as triangles. ``inspection`` is
     ``mmbrdf.inspect(data)``, if that is known already. Returns the figure and its axes.
     """
-    return _against_theta_r(data, wavelength_nm, inspection, axes, _f11, r"$f_{\mathrm{r},11}$ / sr$^{-1}$")
+    return _against_theta_r(data, wavelength_nm, inspection, axes, width_cm, _f11, r"$f_{\mathrm{r},11}$ / sr$^{-1}$")
 
 
+@sizes.sized
 def low_order_residuals(
     data: Dataset,
     wavelength_nm: float | None = None,
     *,
     inspection: Inspection | None = None,
     axes: Axes | None = None,
+    width_cm: float | None = None,
 ) -> tuple[Figure | SubFigure, Axes]:
     """The same of what a fit of low order leaves of f11, in percent of its root mean square: noise, fine structure, faults.
 
     Only the wavelength of the first sample has such a fit.
     """
     name = "f11 less a fit of low order / %"
-    figure, axes = _against_theta_r(data, wavelength_nm, inspection, axes, _residuals, name)
+    figure, axes = _against_theta_r(data, wavelength_nm, inspection, axes, width_cm, _residuals, name)
     axes.axhline(0, color="0.3", linewidth=0.6, zorder=0)
     return figure, axes
 
@@ -174,7 +185,9 @@ def _residuals(data: Dataset, seen: Inspection) -> NDArray:
     return 100 * seen.residuals / (size or 1.0)
 
 
-def _against_theta_r(data, wavelength_nm, inspection, axes, values_of, name) -> tuple[Figure | SubFigure, Axes]:
+def _against_theta_r(
+    data, wavelength_nm, inspection, axes, width_cm, values_of, name
+) -> tuple[Figure | SubFigure, Axes]:
     require("data", data, mmbrdf.Dataset)
     if inspection is not None:
         require("inspection", inspection, mmbrdf.Inspection)
@@ -184,7 +197,7 @@ def _against_theta_r(data, wavelength_nm, inspection, axes, values_of, name) -> 
     if not here.any():
         raise ValueError(f"no samples at {wavelength_nm:g} nm")
     if axes is None:
-        axes = labels.Picture(figsize=(4.6, 3.2), layout="constrained").add_subplot()
+        axes = sizes.figure(width_cm, 4.6, 3.2, layout="constrained").add_subplot()
     forward = np.cos(np.radians(data.phi_r_deg - data.phi_i_deg)) <= 1e-6
     angle, values = np.where(forward, 1, -1) * data.theta_r_deg, values_of(data, seen)
     named = {one.fault: np.isin(np.arange(len(data)), one.samples) & here for one in seen.findings if one.samples}
@@ -201,7 +214,7 @@ def _against_theta_r(data, wavelength_nm, inspection, axes, values_of, name) -> 
     axes.set_axisbelow(True)
     axes.figure.colorbar(points, ax=axes, label=r"$\theta_\mathrm{i}$ / °", ticks=[0, 30, 60, 90])
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(fontsize=7, loc="best", framealpha=0.85)
+        axes.legend(loc="best", framealpha=0.85)
     return axes.figure, axes
 
 

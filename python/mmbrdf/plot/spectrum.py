@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib import colormaps
+from matplotlib import rcParams
 from matplotlib.lines import Line2D
 
 import mmbrdf
 
 from .._arguments import require
-from . import labels
+from . import labels, sizes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,8 +20,14 @@ if TYPE_CHECKING:
     from mmbrdf import Model
 
 
+@sizes.sized
 def coefficient_spectrum(
-    model: Model, *, power: int = 0, coverage: float = 1.0, axes: Axes | None = None
+    model: Model,
+    *,
+    power: int = 0,
+    coverage: float = 1.0,
+    axes: Axes | None = None,
+    width_cm: float | None = None,
 ) -> tuple[Figure, Axes]:
     """Moduli of the coefficients of one power of the wavelength, block after block in the model's order of modes.
 
@@ -33,21 +39,20 @@ def coefficient_spectrum(
     if not 0 <= power <= model.powers:
         raise ValueError(f"power = {power}, the model has powers 0 to {model.powers}")
     if axes is None:
-        axes = labels.Picture(figsize=(8.2, 4.2), layout="constrained").add_subplot()
+        axes = sizes.figure(width_cm, 8.2, 5.4, layout="constrained").add_subplot()
     first, ticks = 0, []
     for number, block in enumerate(model.blocks):
         values = np.atleast_2d(block.coefficients)[power]
         at = first + np.arange(len(values))
-        _draw_block(
-            axes, at, values, _uncertainties(block, power, len(values)), coverage, colormaps["Dark2"](number % 8)
-        )
-        ticks.append((at.mean(), ",".join(block.elements)))
+        _draw_block(axes, at, values, _uncertainties(block, power, len(values)), coverage, "0.15")
+        ticks.append((at.mean(), "\n".join(block.elements)))
         first += len(values) + 2
         if number + 1 < len(model.blocks):
             axes.axvline(first - 1.5, color="0.85", linewidth=0.8, zorder=0)
-    axes.set(yscale="log", xlim=(-2, first - 1), xlabel="mode, by block of elements that were fitted together")
-    axes.set_ylabel("|coefficient|" + _unit(power))
-    axes.set_xticks(*zip(*ticks), rotation=20 if len(ticks) < 8 else 60, fontsize=8)
+    unit = f"11 in sr$^{{-1}}$ {_micrometres(power)}".rstrip() + (f", others in {_micrometres(power)}" if power else "")
+    axes.set(yscale="log", xlim=(-2, first - 1), xlabel=f"modes, by elements that were fitted together\n{unit}")
+    axes.set_ylabel("modulus of coefficient")
+    axes.set_xticks(*zip(*ticks))
     axes.set_title(
         (f"{labels.plain(model.name)}: " if model.name else "")
         + f"{model.family}, "
@@ -88,7 +93,7 @@ def _draw_block(axes, at, values, uncertainties, coverage: float, color) -> None
         axes.scatter(
             at[chosen],
             moduli[chosen],
-            s=14,
+            s=(0.36 * float(rcParams["font.size"])) ** 2,
             marker="v" if negative else "^",
             facecolors=faces,
             edgecolors=[color],
@@ -97,22 +102,16 @@ def _draw_block(axes, at, values, uncertainties, coverage: float, color) -> None
         )
 
 
-def _unit(power: int) -> str:
-    suffix = f" µm$^{{-{power}}}$" if power else ""
-    return rf" / sr$^{{-1}}${suffix} (block 11)" + (f",{suffix} (others)" if power else ", 1 (others)")
+def _micrometres(power: int) -> str:
+    """The unit that a coefficient has of its power of the wavelength."""
+    return f"µm$^{{-{power}}}$" if power else ""
 
 
 def _legend(axes) -> None:
-    style = dict(linestyle="none", color="0.3", markersize=4.5)
-    axes.legend(
-        handles=[
-            Line2D([], [], marker="^", label="positive", **style),
-            Line2D([], [], marker="v", label="negative", **style),
-            Line2D([], [], marker="^", markerfacecolor="white", label="within 2u of zero", **style),
-        ],
-        frameon=False,
-        ncol=3,
-        fontsize=8,
-        loc="lower right",
-        bbox_to_anchor=(1, 1),
-    )
+    style = dict(linestyle="none", color="0.15", markersize=4.5)
+    handles = [
+        Line2D([], [], marker="^", label="positive", **style),
+        Line2D([], [], marker="v", label="negative", **style),
+        Line2D([], [], marker="^", markerfacecolor="white", label="within $2u$ of zero", **style),
+    ]
+    sizes.legend_below(axes, handles, ems=7.6, columns=3)

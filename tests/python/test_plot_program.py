@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""python3 -m mmbrdf.plot, and mmbrdf plot: pictures from a shell."""
+
+import os
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import mmbrdf
+import mmbrdf.plot
+from mmbrdf.plot import __main__ as command
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch, samples):
+    """A folder with a model, samples, an instrument and its references."""
+    monkeypatch.chdir(tmp_path)
+    samples.save("data.csv")
+    mmbrdf.material("ptfe-532").save("model.json")
+    goniometer = mmbrdf.Goniometer(seed=1)
+    goniometer.write_references("references.csv", 532)
+    mmbrdf.calibrate("references.csv", film=goniometer.film).save("instrument.json")
+    return tmp_path
+
+
+def called(text):
+    return command.main(text.split())
+
+
+KINDS = {
+    "anisotropy": "ptfe",
+    "calibration": "instrument.json references.csv --film 1.4607,1.0,4.15,0.044",
+    "coefficient-spectrum": "model.json",
+    "depolarization-map": "ptfe -w 532 -i 60",
+    "directions": "data.csv",
+    "hemisphere": "data.csv -i 60 --scale paper",
+    "in-plane-curves": "model.json data.csv -i 60",
+    "low-order-residuals": "data.csv",
+    "map": "data.csv model.json -i 60 --quantity 22 --frame sp",
+    "polar-in-plane": "ptfe -w 351 532 -i 30",
+    "realizability-map": "ptfe -w 532",
+    "reflectance-against-angle": "model.json",
+    "reflectance-against-wavelength": "ptfe -w 400 500 -i 8 45",
+    "reflectance-factor": "ptfe -w 351 532 --view 0,0 --view 30,180 --term scale=0.003 --coverage 1",
+    "residual-map": "model.json data.csv -i 60",
+    "suspicious": "data.csv",
+    "uncertainty-parts": "ptfe -w 532 --quantity f_ss --term calibration=0.001",
+}
+
+
+def test_every_kind_is_drawn_at_the_width_that_is_asked_for(files, capsys):
+    assert KINDS.keys() == command._SOURCES.keys()
+    for kind, rest in KINDS.items():
+        assert called(f"{kind} {rest} -o {kind}.png --width 8 --dpi 100") == 0, capsys.readouterr().err
+        assert imread(f"{kind}.png").shape[1] == pytest.approx(8 / 2.54 * 100, abs=1)
+
+
+def test_every_picture_is_a_kind_but_those_of_several_fits_and_designs():
+    functions = {name.replace("_", "-") for name in mmbrdf.plot.__all__}
+    assert functions - command._SOURCES.keys() == {"plan", "subset-study"}
+
+
+def test_a_file_has_the_format_of_its_ending_and_is_the_same_each_time(files):
+    for ending, begins in (("pdf", b"%PDF"), ("png", b"\x89PNG")):
+        for name in ("a", "b"):
+            assert called(f"in-plane-curves ptfe -w 532 -o {name}.{ending}") == 0
+        assert (files / f"a.{ending}").read_bytes().startswith(begins)
+    assert (files / "a.pdf").read_bytes() == (files / "b.pdf").read_bytes()
+    assert called("in-plane-curves ptfe -w 532 -o a.SVG") == 0
+    assert xml.parse(files / "a.SVG").getroot().tag.endswith("svg")
+
+
+def test_the_same_picture_as_in_python(files):
+    assert called("map ptfe -w 532 -i 60 --quantity purity --width 8 --dpi 100 -o shell.png") == 0
+    figure, _ = mmbrdf.plot.map(mmbrdf.material("ptfe"), "purity", 532, 60, width_cm=8)
+    figure.savefig("python.png", dpi=100)
+    np.testing.assert_array_equal(imread("shell.png"), imread("python.png"))
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        ("hemisphere ptfe -w 532 -o a.jpg", "-o a.jpg: expected a file that ends with .pdf, .png, .svg"),
+        ("hemisphere ptfe -w 532 --term a=1 -o a.png", "hemisphere takes no --term"),
+        ("residual-map model.json -o a.png", "residual-map takes model and data"),
+        ("hemispheres ptfe -o a.png", "invalid choice: 'hemispheres'"),
+    ],
+)
+def test_wrong_usage_is_said_with_status_2(files, capsys, words, message):
+    with pytest.raises(SystemExit) as stopped:
+        called(words)
+    assert stopped.value.code == 2 and message in capsys.readouterr().err
+    assert not list(files.glob("a.*"))
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        ("hemisphere nowhere.json -o a.png", "nowhere.json"),
+        ("hemisphere ptfe -w 532 633 -o a.png", "hemisphere takes one wavelength"),
+        ("hemisphere ptfe -o a.png", "the model depends on the wavelength"),
+        ("directions ptfe -o a.png", "ptfe: expected samples"),
+        ("in-plane-curves data.csv -o a.png", "data.csv: expected a model"),
+        ("reflectance-factor ptfe -w 532 --view 30 -o a.png", "--view 30: expected 2 numbers"),
+        ("reflectance-factor ptfe -w 532 --term scale -o a.png", "--term scale: expected NAME=VALUE"),
+        ("map ptfe -w 532 --quantity f12 -o a.png", "quantity = 'f12': expected one of 11, 12"),
+        ("hemisphere model.json -o nowhere/a.png", "nowhere/a.png"),
+    ],
+)
+def test_bad_input_is_said_in_a_line_with_status_1_and_nothing_is_written(files, capsys, words, message):
+    assert called(words) == 1
+    printed = capsys.readouterr().err
+    assert message in printed and printed.count("\n") == 1 and printed.startswith("python3 -m mmbrdf.plot: ")
+    assert not list(files.glob("a.*"))
+
+
+def test_what_a_picture_is_of_is_not_overwritten(files, capsys):
+    (files / "data.png").symlink_to("data.csv")
+    before = (files / "data.csv").read_bytes()
+    assert called("directions data.csv -o data.png") == 1
+    assert "would overwrite data.csv" in capsys.readouterr().err and (files / "data.csv").read_bytes() == before
+
+
+def run(environment, *words):
+    program = os.environ["MMBRDF_PROGRAM"]
+    return subprocess.run([program, "plot", *words], env=os.environ | environment, capture_output=True, text=True)
+
+
+def test_the_program_draws_through_python(files):
+    done = run({"MMBRDF_PYTHON": sys.executable}, *"in-plane-curves ptfe -w 532 -o a.svg".split())
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "") and (files / "a.svg").stat().st_size > 10_000
+    done = run({"MMBRDF_PYTHON": sys.executable}, *"directions ptfe -o b.png".split())
+    assert (done.returncode, done.stderr) == (1, "mmbrdf plot: ptfe: expected samples\n")
+
+
+def test_the_program_says_in_a_line_that_it_has_no_python(files):
+    done = run({"MMBRDF_PYTHON": "/nowhere/python3"}, *"directions data.csv -o a.png".split())
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "plot is drawn by Python: /nowhere/python3: No such file or directory; MMBRDF_PYTHON names" in done.stderr
+    done = run({"MMBRDF_PYTHON": sys.executable, "PYTHONPATH": ""}, *"directions data.csv -o a.png".split())
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "mmbrdf: plot needs the Python package mmbrdf and matplotlib: No module named 'mmbrdf'" in done.stderr
