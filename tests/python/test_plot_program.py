@@ -45,7 +45,7 @@ KINDS = {
     "realizability-map": "ptfe -w 532",
     "reflectance-against-angle": "model.json",
     "reflectance-against-wavelength": "ptfe -w 400 500 -i 8 45",
-    "reflectance-factor": "ptfe -w 351 532 --view 0,0 --view 30,180 --term scale=0.003 --coverage 1",
+    "reflectance-factor": "ptfe -w 351 532 --view 0,0 --view 30,180 --term scale=0.3% --coverage 1",
     "residual-map": "model.json data.csv -i 60",
     "suspicious": "data.csv",
     "uncertainty-parts": "ptfe -w 532 --quantity f_ss --term calibration=0.001",
@@ -116,6 +116,11 @@ def test_bad_input_is_said_in_a_line_with_status_1_and_nothing_is_written(files,
     printed = capsys.readouterr().err
     assert message in printed and printed.count("\n") == 1 and printed.startswith("python3 -m mmbrdf.plot: ")
     assert not list(files.glob("a.*"))
+
+
+def test_terms_are_written_as_those_of_the_program():
+    terms = [command._term(text) for text in ("scale=0.3%", "theta_r=0.02deg", "theta_i_deg=0.1", "calibration=0.001")]
+    assert dict(terms) == {"scale": 0.003, "theta_r_deg": 0.02, "theta_i_deg": 0.1, "calibration": 0.001}
 
 
 def test_what_a_picture_is_of_is_not_overwritten(files, capsys):

@@ -72,7 +72,7 @@ def _parser(prog: str) -> argparse.ArgumentParser:
         action="append",
         help="detector of a reflectance factor, from the source's azimuth",
     )
-    add("--term", dest="terms", metavar="NAME=VALUE", action="append", help="an uncertainty of type B")
+    add("--term", dest="terms", metavar="KIND=U", action="append", help="of type B: scale=0.3%%, theta_r=0.02deg")
     add("--coverage", metavar="K", type=float, help="standard uncertainties to each side of a band [2]")
     add("--film", metavar="INDEX,UM,N,K", help="of the wafers of a calibration")
     add("--dial-sense", type=int, choices=(1, -1), help="of the polarizer of a calibration")
@@ -92,10 +92,15 @@ def _numbers(text: str, count: int, name: str) -> list[float]:
 
 
 def _term(text: str) -> tuple[str, float]:
+    """As the program's: scale=0.3%, theta_r=0.02deg, calibration=0.001."""
     name, equals, value = text.partition("=")
     if not equals:
         raise ValueError(f"--term {text}: expected NAME=VALUE")
-    return name, _numbers(value, 1, f"--term {name}:")[0]
+    if value.endswith("deg"):
+        name, value = name.removesuffix("_deg") + "_deg", value.removesuffix("deg")
+    percent = value.endswith("%")
+    number = _numbers(value.removesuffix("%"), 1, f"--term {name}:")[0]
+    return name, number / 100 if percent else number
 
 
 def _converted(name: str, value: Any, kind: str) -> Any:

@@ -140,7 +140,7 @@ def _stack(axes, width_cm, parts: Parts, relative: bool) -> Axes:
         hatch = HATCHES[number_ % len(HATCHES)]
         face = dict(facecolor=stroke.color, edgecolor="white", hatch=hatch, linewidth=0.4)
         axes.fill_between(angles, below, below + share, **face, zorder=1)
-        handles.append(Patch(label=stroke.label, **face))
+        handles.append(Patch(label=stroke.label if share.any() else f"{stroke.label}: none", **face))
         below = below + share
     axes.plot(angles, total * unit, color="black", linewidth=1.2, zorder=2, label="u")
     inside = np.abs(angles) <= (np.inf if limit is None else limit)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
 import mmbrdf
@@ -102,7 +103,10 @@ def band(axes: Axes, x, value, u, coverage: float, stroke: Stroke) -> Line2D:
     line.set_label(stroke.label)
     if u is not None:
         half = coverage * u
-        axes.fill_between(x, value - half, value + half, color=stroke.color, alpha=0.18, linewidth=0, zorder=1)
+        axes.fill_between(x, value - half, value + half, color=stroke.color, alpha=0.15, linewidth=0, zorder=1)
+        edges = [np.column_stack([x, value + side * half]) for side in (-1, 1)]
+        style = dict(colors=stroke.color, linestyles=[stroke.style], linewidths=0.5, alpha=0.7, zorder=1)
+        axes.add_collection(LineCollection(edges, **style))
     return line
 
 
