@@ -29,6 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const ExportFormat& format = export_formats()[data[0] % export_formats().size()];
   ExportOptions options;
   options.error = 1e3;  // the coarsest table will do
+  if (format.takes_transfer) options.transfer = {2, 0, {0.5}, {0.3}, {1}};
   if (known_wavelengths(*model).empty()) options.wavelengths = {0.532};
   const auto table = fuzz::unless_refused([&] { return Export(*model, format, options); });
   if (!table) return 0;

@@ -58,6 +58,9 @@ std::size_t moments_asked(const Options& options, std::size_t there) {
     throw std::invalid_argument("--moments " + std::to_string(asked) + ": a quadrature of " +
                                 std::to_string(options.streams) + " cosines in each hemisphere carries at most " +
                                 std::to_string(most));
+  constexpr std::size_t longest = 1000;  // what is beyond those that there are is 0
+  if (asked > longest)
+    throw WrongUsage("--moments", std::to_string(asked) + " are more than " + std::to_string(longest));
   if (asked > 0) return asked;
   return options.streams > 0 ? std::min(there, most) : there;
 }
@@ -86,6 +89,7 @@ void write_moments(std::ostream& out, const Cosines& cosines, const std::vector<
 }
 
 void print_moments(const Options& options) {
+  require_model_kept(options.model, options.output);
   const Cosines cosines = cosines_of(options);
   const Model model = open_model(options.model);
   const double wavelength = wavelength_from(options.wavelength_nm, model);
