@@ -407,11 +407,12 @@ TEST(Formats, AreAsTheirExamplesInTheDocumentationShow) {
   std::vector<std::string> examples;
   bool inside_example = false;
   for (std::string line; std::getline(page, line);) {
-    if (line.starts_with("```csv") || line.starts_with("```json"))
-      examples.emplace_back();
-    else if (inside_example && !line.starts_with("```"))
+    if (line.starts_with("```")) {
+      inside_example = line == "```csv" || line == "```json";
+      if (inside_example) examples.emplace_back();
+    } else if (inside_example) {
       examples.back() += line + "\n";
-    inside_example = line.starts_with("```") ? line.size() > 3 : inside_example;
+    }
   }
   ASSERT_EQ(examples.size(), 5U);
   const auto samples = samples_in(examples[0]);
