@@ -170,6 +170,11 @@ Export::Made make_vlidort(const Model& model, const ExportOptions& options) {
   require_complete(angles);
   angles.moments = moments_carried(angles.moments, angles.streams);
   const PreparedModel prepared = prepare(model, one_wavelength(options, "a VLIDORT file"));
+  if (!is_its_own_mirror_image(prepared))
+    throw std::invalid_argument(
+        "a VLIDORT file is of a sample that is its own mirror image: elements of this model have sines of phi_r - "
+        "phi_i "
+        "beside cosines, or in place of them, and there is room for one of the two");
   const Elements unknown = unknown_elements(model, Frame::sp);
   const int components = components_known(unknown);
   const auto table = std::make_shared<const VlidortTable>(prepared, angles, components);

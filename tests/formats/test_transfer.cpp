@@ -236,6 +236,8 @@ TEST(Vlidort, RefusesWhatItCannotHold) {
   Model anisotropic = random_model(Family::anisotropic, {2, 1}, 0, 1);
   anisotropic.validity.wavelengths = {0.5};
   EXPECT_TRUE(says(refusal(some_angles, anisotropic), {"depends on the azimuth of the source"}));
+  EXPECT_TRUE(says(export_refusal(handed(), "vlidort", {.wavelengths = {0.5}, .transfer = some_angles}),
+                   {"a sample that is its own mirror image", "sines of phi_r - phi_i"}));
   EXPECT_TRUE(says(export_refusal(material("ptfe-532"), "astm", {.transfer = some_angles}), {"angles of its own"}));
 }
 
