@@ -154,7 +154,7 @@ void require_complete(const TransferAngles& angles) {
   if (angles.streams < 1 || angles.streams > most)
     throw std::invalid_argument("a VLIDORT file needs its number of streams, cosines in a hemisphere: 1 to " +
                                 std::to_string(most));
-  if (angles.suns.empty()) throw std::invalid_argument("a VLIDORT file needs polar angles of the sun");
+  if (angles.suns.empty()) throw std::invalid_argument("a VLIDORT file needs suns, their polar angles");
   if (angles.views.empty() != angles.azimuths.empty())
     throw std::invalid_argument("views and azimuths of a VLIDORT file come together");
   require_polar_angles(angles.suns, "a sun");

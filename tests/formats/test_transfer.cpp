@@ -226,7 +226,7 @@ TEST(Vlidort, RefusesWhatItCannotHold) {
   angles = some_angles, angles.streams = 0;
   EXPECT_TRUE(says(refusal(angles), {"needs its number of streams"}));
   angles = some_angles, angles.suns = {};
-  EXPECT_TRUE(says(refusal(angles), {"polar angles of the sun"}));
+  EXPECT_TRUE(says(refusal(angles), {"needs suns, their polar angles"}));
   angles = some_angles, angles.azimuths = {};
   EXPECT_TRUE(says(refusal(angles), {"come together"}));
   angles = some_angles, angles.suns = {2};
