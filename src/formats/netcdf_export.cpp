@@ -12,6 +12,7 @@
 #include "formats/reader.hpp"
 #include "mmbrdf/model/batch.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/model/moments.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -139,10 +140,10 @@ void add_words(NewNetcdf& file, const Model& model) {
   file.attribute("provenance", provenance.empty() ? "not known" : provenance);
 }
 
-/// Standard uncertainties at the nodes of the grid, row after row of azimuths. They are even in the azimuth, so half of a row is
-/// asked for: it takes a thousand times as long as a matrix.
-void add_uncertainties(const PreparedUncertainty& prepared, const MatrixGrid& grid, std::span<Mueller> out) {
-  const std::size_t row = grid.azimuths().size(), half = row / 2 + 1;
+/// Standard uncertainties at the nodes of the grid, row after row of azimuths. Where they are even in the azimuth, half of a
+/// row is asked for: it takes a thousand times as long as a matrix.
+void add_uncertainties(const PreparedUncertainty& prepared, const MatrixGrid& grid, bool even, std::span<Mueller> out) {
+  const std::size_t row = grid.azimuths().size(), half = even ? row / 2 + 1 : row;
   in_any_order(out.size() / row, [&](std::size_t r) {
     const std::span<const Geometry> geometries = std::span(grid.geometries()).subspan(r * row, half);
     const std::span<Mueller> u = out.subspan(r * row, row);
@@ -152,12 +153,13 @@ void add_uncertainties(const PreparedUncertainty& prepared, const MatrixGrid& gr
 }
 
 /// Of all wavelengths; none if the model does not know them.
-std::vector<Mueller> grid_uncertainties(const Model& model, const MatrixGrid& grid, const ExportOptions& options) {
+std::vector<Mueller> grid_uncertainties(const Model& model, const MatrixGrid& grid,
+                                        const std::vector<PreparedModel>& models, const ExportOptions& options) {
   if (!knows_uncertainty(model)) return {};
   const std::size_t nodes = grid.geometries().size();
   std::vector<Mueller> result(options.wavelengths.size() * nodes);
   for (std::size_t w = 0; w < options.wavelengths.size(); ++w)
-    add_uncertainties(prepare_uncertainty(model, options.wavelengths[w]), grid,
+    add_uncertainties(prepare_uncertainty(model, options.wavelengths[w]), grid, is_its_own_mirror_image(models[w]),
                       std::span(result).subspan(w * nodes, nodes));
   return result;
 }
@@ -217,7 +219,7 @@ Export::Made make_netcdf(const Model& model, const ExportOptions& options) {
     if (error.rms <= options.error) break;
   }
   require_error(error, options, "steps of " + shortest(step) + " degrees");
-  const std::vector<Mueller> u = grid_uncertainties(model, *grid, options);
+  const std::vector<Mueller> u = grid_uncertainties(model, *grid, models, options);
   const auto bytes = std::make_shared<const std::string>(netcdf_bytes(model, *grid, models, u, options));
   std::string understood =
       "f_ij in sr^-1 at " + nanometre_text(options.wavelengths) +

@@ -64,6 +64,7 @@ Export::Made make_sixs(const Model& model, const ExportOptions& options) {
     throw std::invalid_argument("a 6S file is for one sun, one view and the azimuth between them: tell all three");
   require_polar_angles(angles.suns, "the sun");
   require_polar_angles(angles.views, "the view");
+  require_azimuths(angles.azimuths);
   const PreparedModel prepared = prepare(model, one_wavelength(options, "a 6S file"));
   const auto value = channel_of(model, options.channel);
   const auto reflectance = [&](double sun, double view, double azimuth) {

@@ -50,6 +50,13 @@ int components_known(const Elements& unknown) {
   return 1;
 }
 
+/// VLIDORT counts azimuths from forward and takes 0 ... 360 degrees.
+double degrees_from_forward(double azimuth) {
+  const double turned = std::fmod(in_degrees(azimuth) + 180, 360);  // -180 ... 540 are in 0 ... 360
+  const double positive = turned < 0 ? turned + 360 : turned;
+  return positive < 360 ? positive : 0;
+}
+
 class VlidortTable {
  public:
   VlidortTable(const PreparedModel& model, const TransferAngles& angles, int components)
@@ -66,7 +73,7 @@ class VlidortTable {
     for (const Node& stream : streams_) out << shortest(stream.x) << ' ' << shortest(stream.weight) << '\n';
     for (const std::vector<double>* one : {&angles_.suns, &angles_.views})
       for (const double angle : *one) out << shortest(in_degrees(angle)) << '\n';
-    for (const double azimuth : angles_.azimuths) out << shortest(in_degrees(azimuth) - 180) << '\n';
+    for (const double azimuth : angles_.azimuths) out << shortest(degrees_from_forward(azimuth)) << '\n';
     write_moments(out, of_streams_, of_suns_);
     write_moments(out, of_streams_, of_streams_);
     write_exact(out);
@@ -89,7 +96,7 @@ class VlidortTable {
 
  private:
   double known(const Mueller& m, int row, int column) const {
-    return row < components_ && column < components_ ? m(row, column) : 0;
+    return row < components_ && column < components_ ? m(row, column) + 0.0 : 0;  // no -0
   }
 
   void write_moments(std::ostream& out, const std::vector<double>& reflected,
@@ -147,11 +154,12 @@ void require_complete(const TransferAngles& angles) {
   if (angles.streams < 1 || angles.streams > most)
     throw std::invalid_argument("a VLIDORT file needs its number of streams, cosines in a hemisphere: 1 to " +
                                 std::to_string(most));
-  if (angles.suns.empty()) throw std::invalid_argument("a VLIDORT file needs polar angles of the sun");
+  if (angles.suns.empty()) throw std::invalid_argument("a VLIDORT file needs suns, their polar angles");
   if (angles.views.empty() != angles.azimuths.empty())
     throw std::invalid_argument("views and azimuths of a VLIDORT file come together");
   require_polar_angles(angles.suns, "a sun");
   require_polar_angles(angles.views, "a view");
+  require_azimuths(angles.azimuths);
 }
 
 }  // namespace
@@ -162,6 +170,11 @@ Export::Made make_vlidort(const Model& model, const ExportOptions& options) {
   require_complete(angles);
   angles.moments = moments_carried(angles.moments, angles.streams);
   const PreparedModel prepared = prepare(model, one_wavelength(options, "a VLIDORT file"));
+  if (!is_its_own_mirror_image(prepared))
+    throw std::invalid_argument(
+        "a VLIDORT file is of a sample that is its own mirror image: elements of this model have sines of phi_r - "
+        "phi_i "
+        "beside cosines, or in place of them, and there is room for one of the two");
   const Elements unknown = unknown_elements(model, Frame::sp);
   const int components = components_known(unknown);
   const auto table = std::make_shared<const VlidortTable>(prepared, angles, components);

@@ -8,6 +8,7 @@
 
 #include "formats/export_table.hpp"
 #include "formats/zemax.hpp"
+#include "mmbrdf/model/moments.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "text/numbers.hpp"
@@ -17,16 +18,17 @@ namespace {
 
 constexpr std::array specular_steps{5.0, 2.5, 1.25};  // degrees
 
-/// Values at angles of incidence of 0 to 90 degrees, azimuths and radial angles of 0 to 180 degrees about the specular
-/// ray, in equal steps. The other half is the mirror image: models of isotropic samples have no other channels.
+/// Values at angles of incidence of 0 to 90 degrees, azimuths of 0 to 180 degrees if the other half is the mirror image, or
+/// else 360, and radial angles of 0 to 180 degrees about the specular ray, in equal steps.
 class SpecularTable {
  public:
-  SpecularTable(const PreparedModel& model, const Channel& channel, double step)
+  SpecularTable(const PreparedModel& model, const Channel& channel, double step, bool symmetrical)
       : degrees_(step),
         step_(radians(step)),
         incidences_(nodes(90, step)),
-        azimuths_(nodes(180, step)),
-        radials_(nodes(180, step)) {
+        azimuths_(nodes(symmetrical ? 180 : 360, step)),
+        radials_(nodes(180, step)),
+        symmetrical_(symmetrical) {
     for (std::size_t i = 0; i < incidences_; ++i)
       for (std::size_t a = 0; a < azimuths_; ++a)
         for (std::size_t r = 0; r < radials_; ++r) {
@@ -42,8 +44,9 @@ class SpecularTable {
     const Vector3 o = unit_vector({geometry.reflected.theta, geometry.reflected.phi - geometry.incident.phi});
     const double x = o[0] * std::cos(theta_i) + o[2] * std::sin(theta_i),
                  z = o[2] * std::cos(theta_i) - o[0] * std::sin(theta_i);
+    const double turn = std::atan2(o[1], x);
     const auto [i, along_i] = place(theta_i, incidences_);
-    const auto [a, along_a] = place(std::abs(std::atan2(o[1], x)), azimuths_);
+    const auto [a, along_a] = place(symmetrical_ ? std::abs(turn) : turn + (turn < 0 ? 4 * half_pi : 0), azimuths_);
     const auto [r, along_r] = place(std::atan2(std::hypot(x, o[1]), z), radials_);
     double sum = 0;
     for (const std::size_t corner : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
@@ -70,6 +73,7 @@ class SpecularTable {
     out << "DataEnd\n";
   }
 
+  bool symmetrical() const { return symmetrical_; }
   std::size_t incidences() const { return incidences_; }
   double theta_i(std::size_t i) const { return std::min(angle(i), half_pi); }
   const std::vector<double>& values() const { return values_; }
@@ -94,6 +98,7 @@ class SpecularTable {
 
   double degrees_, step_;
   std::size_t incidences_, azimuths_, radials_;
+  bool symmetrical_;
   std::vector<double> values_;
 };
 
@@ -105,11 +110,15 @@ double total_scatter(const PreparedModel& model, const Channel& channel, double 
   return sum;
 }
 
-std::string zemax_head(const Model& model, const ExportOptions& options) {
+const char* symmetry_of(const SpecularTable& table) {
+  return table.symmetrical() ? "PlaneSymmetrical" : "Asymmetrical";
+}
+
+std::string zemax_head(const SpecularTable& table, const Model& model, const ExportOptions& options) {
   return "# " + options.channel + " in sr^-1" + (model.name.empty() ? "" : " of " + printable(model.name, 60)) +
          "\n# Wavelength (nm) = " + shortest(in_nanometres(options.wavelengths.front())) +
-         "\nSource  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\nScatterType  "
-         "BRDF\nSampleRotation  1\n0\n";
+         "\nSource  Measured\nSymmetry  " + symmetry_of(table) +
+         "\nSpectralContent  Monochrome\nScatterType  BRDF\nSampleRotation  1\n0\n";
 }
 
 ExportError error_of(const SpecularTable& table, const PreparedModel& model, const Channel& channel,
@@ -123,8 +132,8 @@ ExportError error_of(const SpecularTable& table, const PreparedModel& model, con
 }
 
 std::string zemax_understood(const SpecularTable& table, const ExportOptions& options, double step) {
-  std::string text = "PlaneSymmetrical, " + options.channel + " in sr^-1 at " + nanometre_text(options.wavelengths) +
-                     ", steps of " + shortest(step) +
+  std::string text = std::string(symmetry_of(table)) + ", " + options.channel + " in sr^-1 at " +
+                     nanometre_text(options.wavelengths) + ", steps of " + shortest(step) +
                      " degrees about the specular ray; below the horizon the values on it; TIS is the reflectance of "
                      "each incidence";
   if (const auto negative = std::ranges::count_if(table.values(), [](double v) { return v < 0; }); negative > 0)
@@ -140,12 +149,13 @@ Export::Made make_zemax(const Model& model, const ExportOptions& options) {
   const PreparedModel prepared = prepare(model, one_wavelength(options, "a Monochrome Zemax file"));
   const double theta_max = compared_up_to(model);
   const std::vector<Geometry> compared = random_geometries(4000, 1, theta_max);
+  const bool symmetrical = options.channel == "f11" || is_its_own_mirror_image(prepared);
   std::shared_ptr<const SpecularTable> table;
   ExportError error;
   double step = 0;
   for (const double degrees : specular_steps) {
     step = degrees;
-    table = std::make_shared<const SpecularTable>(prepared, channel, step);
+    table = std::make_shared<const SpecularTable>(prepared, channel, step, symmetrical);
     error = error_of(*table, prepared, channel, compared, theta_max);
     if (error.rms <= options.error) break;
   }
@@ -154,7 +164,7 @@ Export::Made make_zemax(const Model& model, const ExportOptions& options) {
   std::vector<double> tis;
   for (std::size_t i = 0; i < table->incidences(); ++i)
     tis.push_back(total_scatter(prepared, channel, table->theta_i(i), std::max(many_nodes, hemisphere_nodes(model))));
-  const auto write = [table, tis, head = zemax_head(model, options)](std::ostream& out) {
+  const auto write = [table, tis, head = zemax_head(*table, model, options)](std::ostream& out) {
     out << head;
     table->write(out, tis);
   };

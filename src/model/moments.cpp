@@ -177,6 +177,14 @@ int highest_moment(const PreparedModel& model) {
   return degree_of(azimuthal_terms(model));
 }
 
+bool is_its_own_mirror_image(const PreparedModel& model) {
+  require_one_azimuth(model);
+  return std::ranges::all_of(azimuthal_terms(model), [](const AzimuthalTerm& term) {
+    const bool odd_element = (term.element < 8) != (term.element % 4 < 2);
+    return (term.k < 0) == odd_element;
+  });
+}
+
 std::vector<FourierMoments> fourier_moments(const PreparedModel& model, std::span<const double> mu_incident,
                                             std::span<const double> mu_reflected) {
   require_one_azimuth(model);

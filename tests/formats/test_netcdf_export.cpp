@@ -51,6 +51,25 @@ TEST(NetcdfExport, IsReadBackAsTheModelWithItsUncertainty) {
   }
 }
 
+TEST(NetcdfExport, HasTheUncertaintyOfBothSidesOfAHandedModel) {
+  const Folder folder;
+  Model model = handed();
+  model.blocks[0].covariance = model.blocks[2].covariance = {1e-20};  // f11 is as good as exact
+  made(model, "netcdf", {.wavelengths = {0.5}, .error = 1}, folder / "x.nc");
+  const PreparedUncertainty prepared = prepare_uncertainty(model, 0.5);
+  long compared = 0;
+  for (const Sample& s : read_foreign_file(folder / "x.nc").samples) {
+    if (s.geometry.incident.theta < 0.5 || s.geometry.reflected.theta < 0.5) continue;
+    const Mueller expected = prepared.standard_uncertainty(s.geometry);
+    // The first row has no turned axes; what is read is u of f12 / f11.
+    ASSERT_NEAR(s.uncertainty(0, 1) * s.f11, expected(0, 1), 1e-12) << s.geometry.reflected.phi;
+    Geometry mirrored = s.geometry;
+    mirrored.reflected.phi = -mirrored.reflected.phi;
+    compared += std::abs(prepared.standard_uncertainty(mirrored)(0, 1) / expected(0, 1) - 1) > 0.1;
+  }
+  EXPECT_GT(compared, 100);
+}
+
 TEST(NetcdfExport, LeavesUnknownWhatWasNotMeasured) {
   const Folder folder;
   Model model = random_model(Family::isotropic, {3, 2}, 0, 1);

@@ -102,7 +102,7 @@ TEST(Vlidort, MomentsAndValuesAreThoseOfTheModelInTheSupplementsOrderAndSigns) {
   const Supplement read(written(model, "vlidort", {.wavelengths = {0.5}, .transfer = some_angles}));
   EXPECT_EQ(read.stokes, 4U);
   EXPECT_EQ(read.moments, 16U);  // m = 0 … 2 × 8 − 1: all that the model has, up to 5 + 4 + 2
-  EXPECT_EQ(read.azimuth, (std::vector<double>{0, 60, -175}));
+  EXPECT_EQ(read.azimuth, (std::vector<double>{0, 60, 185}));
   EXPECT_TRUE(std::ranges::is_sorted(read.cosines));
   for (std::size_t q = 1; q <= 16; ++q)
     for (const double phi : {0.0, 0.4, 2.0, -1.3}) {
@@ -163,6 +163,19 @@ TEST(Vlidort, SignsAreThoseOfItsOwnKernelOfAWavySea) {
   }
 }
 
+TEST(Vlidort, AzimuthsAreThoseThatItTakes) {
+  TransferAngles around = some_angles;
+  around.azimuths = {0, radians(90), radians(-10), radians(179.5), radians(-180), radians(360), radians(-360)};
+  const Supplement read(written(material("ptfe-532"), "vlidort", {.transfer = around}));
+  EXPECT_EQ(read.azimuth, (std::vector<double>{180, 270, 170, 359.5, 0, 180, 180}));  // 0 ... 360, 0 is forward
+}
+
+TEST(Vlidort, HasNoNegativeZero) {
+  const std::string text = written(diffuser({0.3 / pi}), "vlidort", {.wavelengths = {0.5}, .transfer = some_angles});
+  EXPECT_EQ(text.find("-0 "), std::string::npos);
+  EXPECT_EQ(text.find("-0\n"), std::string::npos);
+}
+
 TEST(Vlidort, SurfaceOfAPerfectDiffuserIsItsAlbedoInMomentZeroAlone) {
   const Supplement read(written(diffuser({0.3 / pi}), "vlidort", {.wavelengths = {0.5}, .transfer = some_angles}));
   for (std::size_t r = 0; r < 8; ++r)
@@ -206,10 +219,14 @@ TEST(Vlidort, RefusesWhatItCannotHold) {
   TransferAngles angles = some_angles;
   angles.moments = 17;
   EXPECT_TRUE(says(refusal(angles), {"17 moments", "8 cosines in each hemisphere carries at most 16"}));
+  angles.moments = -3;
+  EXPECT_TRUE(says(refusal(angles), {"-3 moments: must be 1 to 16, or 0 for all"}));
+  angles = some_angles, angles.azimuths = {1e300};
+  EXPECT_TRUE(says(refusal(angles), {"an azimuth = ", "degrees, must be in -360...360"}));
   angles = some_angles, angles.streams = 0;
   EXPECT_TRUE(says(refusal(angles), {"needs its number of streams"}));
   angles = some_angles, angles.suns = {};
-  EXPECT_TRUE(says(refusal(angles), {"polar angles of the sun"}));
+  EXPECT_TRUE(says(refusal(angles), {"needs suns, their polar angles"}));
   angles = some_angles, angles.azimuths = {};
   EXPECT_TRUE(says(refusal(angles), {"come together"}));
   angles = some_angles, angles.suns = {2};
@@ -219,6 +236,8 @@ TEST(Vlidort, RefusesWhatItCannotHold) {
   Model anisotropic = random_model(Family::anisotropic, {2, 1}, 0, 1);
   anisotropic.validity.wavelengths = {0.5};
   EXPECT_TRUE(says(refusal(some_angles, anisotropic), {"depends on the azimuth of the source"}));
+  EXPECT_TRUE(says(export_refusal(handed(), "vlidort", {.wavelengths = {0.5}, .transfer = some_angles}),
+                   {"a sample that is its own mirror image", "sines of phi_r - phi_i"}));
   EXPECT_TRUE(says(export_refusal(material("ptfe-532"), "astm", {.transfer = some_angles}), {"angles of its own"}));
 }
 
@@ -270,6 +289,7 @@ TEST(Sixs, RefusesWhatItCannotHold) {
   EXPECT_TRUE(says(refusal({}), {"for one sun, one view and the azimuth"}));
   EXPECT_TRUE(says(refusal({0, 0, {0.1, 0.2}, {0.1}, {0}}), {"for one sun, one view"}));
   EXPECT_TRUE(says(refusal({4, 0, {0.1}, {0.1}, {0}}), {"neither streams nor moments"}));
+  EXPECT_TRUE(says(refusal({0, 0, {0.1}, {0.1}, {radians(361)}}), {"an azimuth = 361 degrees", "in -360...360"}));
   EXPECT_TRUE(says(refusal({0, 0, {0.1}, {-0.1}, {0}}), {"the view = -5.7", "must be in 0...90"}));
 }
 

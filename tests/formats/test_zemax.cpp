@@ -251,6 +251,29 @@ TEST(Zemax, LeavesOutNoHalfThatIsOther) {
   }
 }
 
+TEST(Zemax, IsAsymmetricalOfAChannelThatHasTwoSides) {
+  const PreparedModel prepared = prepare(handed(), 0.5);
+  const Export table(handed(), export_format("zemax"), {.wavelengths = {0.5}, .channel = "f_ss", .error = 1});
+  EXPECT_TRUE(says(table.understood(), {"Asymmetrical, f_ss"}));
+  const Design design(exported(table));
+  EXPECT_EQ(design.said.at("Symmetry"), "Asymmetrical");
+  EXPECT_EQ(design.angles.at("ScatterAzimuth").back(), 360);
+  double sides = 0;
+  for (const double phi : {0.7, 2.0, 2.9}) {
+    double found[2];
+    for (const int side : {0, 1}) {
+      const double signed_phi = side == 0 ? phi : -phi;
+      const Mueller m = prepared.evaluate({{0.6, 0}, {0.9, signed_phi}}, Frame::sp);
+      found[side] = design(0.6, at(0.9, signed_phi));
+      EXPECT_NEAR(found[side], quantity("f_ss").value(m, {}), 3e-3 * m(0, 0));  // steps of 5 degrees
+    }
+    sides = std::max(sides, std::abs(found[0] / found[1] - 1));
+  }
+  EXPECT_GT(sides, 0.03);
+  const Export f11(handed(), export_format("zemax"), {.wavelengths = {0.5}, .error = 1});
+  EXPECT_EQ(Design(exported(f11)).said.at("Symmetry"), "PlaneSymmetrical");  // f11 has no sides
+}
+
 TEST(Zemax, IsNotWrittenOfWhatItCannotHold) {
   EXPECT_TRUE(says(export_refusal(material("ptfe"), "zemax", {.wavelengths = {0.45, 0.55}}),
                    {"450 and 550 nm: a Monochrome Zemax file has one wavelength"}));

@@ -56,6 +56,21 @@ inline Model diffuser(const std::vector<double>& values) {
   return model;
 }
 
+/// Of germer2017, not its own mirror image: element 12 has sines of φ_r − φ_i beside cosines, element 13 cosines. Element 12 is
+/// known as if by a fit that saw one side.
+inline Model handed() {
+  Model model;
+  model.name = "handed";
+  model.family = Family::germer2017;
+  model.blocks.push_back({blocks(model.family, std::vector<Mode>{{Function::m11, 0, 0, 0, 0}}).front(), {0.3}, {}});
+  for (const auto& [modes, coefficients] :
+       {std::pair{std::vector<Mode>{{Function::m12, 0, 2, 0, 2}, {Function::m12, 0, 2, 0, -2}}, std::vector{0.2, 0.3}},
+        std::pair{std::vector<Mode>{{Function::m13, 0, 2, 0, 2}}, std::vector{-0.2}}})
+    model.blocks.push_back({blocks(model.family, modes).front(), coefficients, {}});
+  model.blocks[1].covariance = {1e-4, 9e-5, 9e-5, 1e-4};
+  return model;
+}
+
 inline Geometry in_degrees(double theta_i, double phi_i, double theta_r, double phi_r) {
   return {{radians(theta_i), radians(phi_i)}, {radians(theta_r), radians(phi_r)}};
 }

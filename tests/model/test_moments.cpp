@@ -45,6 +45,37 @@ RC_GTEST_PROP(Moments, ResumToTheModelAtAnyAzimuths, ()) {
   RC_ASSERT(largest(found - expected) <= moment_error * std::max(std::abs(expected(0, 0)), largest(expected)));
 }
 
+/// The largest change of an element, as a part of f11, in the mirror image.
+double handedness(const PreparedModel& model, double mu_i, double mu_r, double phi) {
+  const Mueller one = model.evaluate({{std::acos(mu_i), 0}, {std::acos(mu_r), phi}}, Frame::sp),
+                other = model.evaluate({{std::acos(mu_i), 0}, {std::acos(mu_r), -phi}}, Frame::sp);
+  double result = 0;
+  for (std::size_t e = 0; e < 16; ++e) {
+    const bool odd = (e / 4 < 2) != (e % 4 < 2);
+    result = std::max(result, std::abs(other.elements[e] - (odd ? -1 : 1) * one.elements[e]));
+  }
+  return result / std::max(std::abs(one(0, 0)), largest(one));
+}
+
+RC_GTEST_PROP(Moments, AreOfAModelThatIsItsOwnMirrorImage, ()) {
+  const PreparedModel model = turnable();
+  RC_ASSERT(is_its_own_mirror_image(model));
+  RC_ASSERT(handedness(model, cosine(), cosine(), between(-4, 4)) <= moment_error);
+}
+
+TEST(Moments, OfAHandedModelAreNotThoseOfItsMirrorImage) {
+  const PreparedModel model = prepare(handed(), 0.5);
+  EXPECT_FALSE(is_its_own_mirror_image(model));
+  EXPECT_GT(handedness(model, 0.6, 0.4, 0.7), 0.01);
+  const FourierMoments moments = fourier_moments(model, 0.6, 0.4);
+  for (const double phi : {0.7, -0.7}) {
+    const Mueller expected = model.evaluate({{std::acos(0.6), 0}, {std::acos(0.4), phi}}, Frame::sp);
+    EXPECT_LE(largest(resummed(moments, phi) - expected), moment_error * expected(0, 0));
+  }
+  EXPECT_THROW(is_its_own_mirror_image(prepare(random_model(Family::anisotropic, {2, 1}, 0, 1), 0.5)),
+               std::invalid_argument);
+}
+
 RC_GTEST_PROP(Moments, AreTheIntegralsOfTheModelOverTheCircle, ()) {
   const PreparedModel model = turnable();
   const double mu_i = cosine(), mu_r = cosine();

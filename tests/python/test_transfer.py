@@ -2,6 +2,7 @@
 """Models as radiative transfer and Earth observation take them, read with the tools of the field."""
 import shutil
 import subprocess
+import warnings
 
 import numpy as np
 import pytest
@@ -23,9 +24,65 @@ def test_moments_add_up_to_the_model():
         np.testing.assert_allclose(f, PTFE.evaluate(532, theta_i, 50, theta_r, 50 + phi, frame="sp"), atol=1e-13)
 
 
-def test_moments_of_a_model_with_an_azimuth_of_its_own_are_refused():
+def test_moments_of_a_model_with_an_azimuth_of_its_own_are_refused(anisotropic):
+    for ask in [
+        lambda: anisotropic.fourier_moments(532, 0.5, 0.5),
+        lambda: mmbrdf.pythonic_disort_modes(anisotropic, 532, streams=8),
+    ]:
+        with pytest.raises(ValueError, match="depends on the azimuth of the source"):
+            ask()
+    with pytest.raises(ValueError, match="depends on the azimuth of the source"):
+        mmbrdf.py6s_surface(anisotropic, 532, sun_deg=30, view_deg=10, azimuth_deg=40)
+
+
+def test_cosines_are_those_of_a_hemisphere():
     with pytest.raises(ValueError, match="mu_incident = 1.5, a cosine must be in 0...1"):
         PTFE.fourier_moments(532, 1.5, 0.5)
+
+
+def warned(category, ask):
+    """What a call warns of, once each."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ask()
+    return [str(one.message) for one in caught if one.category is category]
+
+
+def test_radiative_transfer_warns_once_of_what_is_extrapolated():
+    for ask in [
+        lambda: PTFE.fourier_moments(100, 0.9, 0.9),
+        lambda: PTFE.fourier_moments(532, [0.9, 0.05], [0.9, 0.05]),
+        lambda: mmbrdf.pythonic_disort_modes(PTFE, 100, streams=16),
+        lambda: mmbrdf.pythonic_disort_modes(PTFE, 532, streams=16),
+        lambda: mmbrdf.py6s_surface(PTFE, 100, sun_deg=85, view_deg=10, azimuth_deg=40),
+        lambda: mmbrdf.py6s_surface(PTFE, 532, sun_deg=30, view_deg=10, azimuth_deg=40),
+    ]:
+        assert len(warned(mmbrdf.ExtrapolationWarning, ask)) == 1
+    assert not warned(mmbrdf.ExtrapolationWarning, lambda: PTFE.fourier_moments(532, [0.5, 1], [0.4, 0.9]))
+    [pairs] = warned(mmbrdf.ExtrapolationWarning, lambda: PTFE.fourier_moments(532, [0.9, 0.05], [0.9, 0.5, 0.4]))
+    assert "3 of 6 questions lie outside the fitted range (theta_i" in pairs
+    modes = mmbrdf.pythonic_disort_modes(PTFE, 532, streams=16)
+    assert len(warned(mmbrdf.ExtrapolationWarning, lambda: modes[3](0.05, 0.05))) == 1
+    assert not warned(mmbrdf.ExtrapolationWarning, lambda: modes[3](0.5, 0.5))
+
+
+def test_functions_for_pythonic_disort_say_how_many_are_left_out():
+    [said] = warned(UserWarning, lambda: mmbrdf.pythonic_disort_modes(PTFE, 532, streams=4))
+    assert "4 of the model's 14 moments" in said and "10 are left out" in said
+    for enough in [{"streams": 14}, {"streams": 4, "moments": 3}]:  # the second asks for it
+        assert not warned(UserWarning, lambda: mmbrdf.pythonic_disort_modes(PTFE, 532, **enough))
+
+
+def test_a_model_that_is_not_its_own_mirror_image_is_refused_where_it_has_no_place(tmp_path):
+    lines = ["1, 1, 0, 0, 0, 0, 0, 0.3", "1, 2, 0, 2, 0, -2, 0, 0.3", "1, 3, 0, 2, 0, 2, 0, -0.2"]
+    (tmp_path / "handed.csv").write_text("\n".join(lines) + "\n")
+    handed = mmbrdf.load(tmp_path / "handed.csv")
+    assert len(mmbrdf.pythonic_disort_modes(handed, 532, streams=8)) == 5  # f11 has no sides
+    with pytest.raises(ValueError, match="channel = 'f_ss': the model is not its own mirror image"):
+        mmbrdf.pythonic_disort_modes(handed, 532, streams=8, channel="f_ss")
+    with pytest.raises(ValueError, match="a sample that is its own mirror image"):
+        handed.export(tmp_path / "x.vlidort", wavelength_nm=532, streams=4, sun_deg=30)
+    assert not (tmp_path / "x.vlidort").exists()
 
 
 def test_functions_for_pythonic_disort_are_moments_about_the_forward_direction():
@@ -45,7 +102,8 @@ def test_functions_for_pythonic_disort_are_moments_about_the_forward_direction()
 
 
 def test_more_moments_than_the_quadrature_carries_are_refused():
-    assert len(mmbrdf.pythonic_disort_modes(PTFE, 532, streams=8)) == 8
+    with pytest.warns(UserWarning, match="8 of the model's 14 moments"):
+        assert len(mmbrdf.pythonic_disort_modes(PTFE, 532, streams=8)) == 8
     assert len(mmbrdf.pythonic_disort_modes(PTFE, 532, streams=32, moments=3)) == 3
     with pytest.raises(ValueError, match="9 moments: a quadrature of 8 streams"):
         mmbrdf.pythonic_disort_modes(PTFE, 532, streams=8, moments=9)

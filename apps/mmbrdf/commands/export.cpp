@@ -32,6 +32,15 @@ const ExportFormat& format_of(const Options& options) {
   }
 }
 
+/// Of the formats that take angles of radiative transfer.
+void require_transfer_options(const ExportFormat& format, const Options& o) {
+  const bool vlidort = format.name == "vlidort";
+  if (vlidort && o.streams == 0) throw missing("--streams");
+  if (o.suns_deg.empty()) throw missing("--sun");
+  if (o.views_deg.empty() && (!vlidort || !o.azimuths_deg.empty())) throw missing("--view");
+  if (o.azimuths_deg.empty() && !o.views_deg.empty()) throw missing("--azimuth");
+}
+
 std::vector<double> in_radians(const std::vector<double>& degrees) {
   std::vector<double> result;
   for (const double one : degrees) result.push_back(radians(one));
@@ -40,6 +49,7 @@ std::vector<double> in_radians(const std::vector<double>& degrees) {
 
 void export_model(const Options& options) {
   const ExportFormat& format = format_of(options);
+  if (format.takes_transfer) require_transfer_options(format, options);
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
   ExportOptions asked{.channel = options.channel, .error = options.error_percent / 100};

@@ -29,6 +29,11 @@ struct FourierMoments {
 /// anisotropic, and germer2017 as printed.
 int highest_moment(const PreparedModel& model);
 
+/// Whether M(−phi) = P M(phi) P, P = diag(1, 1, −1, −1): elements with one index in {1, 2} and one in {3, 4} are sums of
+/// sines of phi, all others of cosines. By its modes, whatever their coefficients. Those of isotropic and the published
+/// ones of germer2017 are so, and f11 always is; files of germer2017 may have others. Throws as highest_moment.
+bool is_its_own_mirror_image(const PreparedModel& model);
+
 /// At each pair of cosines of polar angles, those of the source rising fastest: moments[r × mu_incident.size() + i].
 /// Throws std::invalid_argument as highest_moment, and for a cosine that is not in [0, 1].
 std::vector<FourierMoments> fourier_moments(const PreparedModel& model, std::span<const double> mu_incident,
