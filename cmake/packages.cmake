@@ -35,6 +35,7 @@ function(debian component package summary)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION "${arg_SECTION}" PARENT_SCOPE)
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} RENAME copyright COMPONENT ${component})
 endfunction()
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
 math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
 debian(library libmmbrdf${so_version} "library" SECTION libs RECOMMENDS libnetcdf19)
 debian(development libmmbrdf-dev "headers for C and C++, modules for Fortran and Octave" SECTION libdevel
