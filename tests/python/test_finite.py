@@ -81,6 +81,8 @@ def make(models, samples):
         **dict.fromkeys(["theta_i_deg", "theta_r_deg", "theta_max_deg"], polar),
         **dict.fromkeys(["phi_i_deg", "phi_r_deg", "azimuth_deg", "angle_deg"], azimuth),
         "model": one_of(models),
+        **dict.fromkeys(["sun_deg", "view_deg"], polar),
+        "streams": lambda rng: int(rng.integers(1, 12)),
         "wavelength_nm": lambda rng: float(rng.choice([532, 351, 1064, 1e-3, 1e7, rng.uniform(300, 2000)])),
         "from_frame": one_of(frames),
         "to_frame": one_of(frames),
@@ -154,6 +156,9 @@ def required(name, one):
     """The names of the arguments that it must have, and of the angles and the light that it may have."""
     if name.startswith("Model."):
         return ["model", "wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg"]
+    if inspect.isfunction(one):  # of Python, which says what it takes
+        all_of_them = inspect.signature(one).parameters.values()
+        return [a.name for a in all_of_them if a.default is a.empty or a.name == "wavelength_nm"]
     arguments = re.search(r"\((.*)\)", one.__doc__.split("\n")[0]).group(1)
     arguments = re.sub(r"= \([^)]*\)", "=", arguments)
     arguments = re.sub(r"\[[^\]]*(\[[^\]]*\][^\]]*)*\]", "", arguments).split("*, ")[0].split(", ")
