@@ -332,7 +332,9 @@ class BirdLists {
   const std::vector<StatePair>& pairs_;
 };
 
-std::string geometries(std::size_t count) { return std::to_string(count) + (count == 1 ? " geometry" : " geometries"); }
+std::string counted_geometries(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " geometry" : " geometries");
+}
 
 /// What of the wavelengths and elements is not in it.
 std::string missing_text(const std::vector<BirdValues>& all, const Elements& elements) {
@@ -343,7 +345,7 @@ std::string missing_text(const std::vector<BirdValues>& all, const Elements& ele
     if (at.points.empty()) empty.push_back(at.wavelength);
   }
   std::string text;
-  if (negative > 0) text += "; " + geometries(negative) + " left out, where a value is negative";
+  if (negative > 0) text += "; " + counted_geometries(negative) + " left out, where a value is negative";
   if (!empty.empty()) text += "; no geometry left at " + nanometre_text(empty);
   if (elements.any())
     text += "; not written: " + element_names(elements) + ", which these states tell only with elements not measured";
@@ -355,7 +357,7 @@ std::string bird_understood(const std::vector<BirdValues>& all, std::size_t pair
   std::vector<double> wavelengths;
   for (const BirdValues& at : all)
     if (!at.points.empty()) points += at.points.size(), wavelengths.push_back(at.wavelength);
-  std::string text = geometries(points) + " at " + nanometre_text(wavelengths);
+  std::string text = counted_geometries(points) + " at " + nanometre_text(wavelengths);
   text += pairs == 1 ? ", f11 in sr^-1"
                      : ", values in sr^-1 between " + std::to_string(pairs) +
                            " pairs of states, s first, S4 > 0 right-handed, frame sp";
