@@ -13,7 +13,7 @@
 namespace mmbrdf {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Polar angle and azimuth of a place in the unit square.
 double theta_at(double u) { return u * u * pi / 2; }
