@@ -54,9 +54,14 @@ StatePair state_pair(std::size_t incident, std::size_t analyzed) {
   return result;
 }
 
+struct ToldPairs {
+  std::vector<StatePair> pairs;
+  Elements left_out{};  ///< known ones that are told by none of the pairs
+};
+
 /// Unpolarized light without an analyzer, and all pairs of s and p, ±45 degrees and both circular states, as far as the
 /// elements are known that these tell.
-std::vector<StatePair> told_pairs(const Elements& unknown) {
+ToldPairs told_pairs(const Elements& unknown) {
   std::vector<StatePair> pairs{state_pair(0, 0)};
   std::size_t components = 4;
   const auto told = [&] {
@@ -68,13 +73,17 @@ std::vector<StatePair> told_pairs(const Elements& unknown) {
   const std::size_t last = 2 * (components - 1);
   for (std::size_t analyzed = 1; analyzed <= last; ++analyzed)
     for (std::size_t incident = 1; incident <= last; ++incident) pairs.push_back(state_pair(incident, analyzed));
-  return pairs;
+  ToldPairs result{std::move(pairs)};
+  for (std::size_t e = 0; e < 16; ++e) result.left_out[e] = !unknown[e] && (e / 4 >= components || e % 4 >= components);
+  return result;
 }
 
-/// Degrees from 0 on, up to `most` (radians) and below 90.
-std::vector<double> polar_nodes(int step, double most) {
+/// Degrees from 0 on, up to what was fitted, which is among them, or 80.
+std::vector<double> polar_nodes(int step, const std::optional<double>& fitted) {
+  const double most = std::min(compared_theta, fitted.value_or(compared_theta));
   std::vector<double> result;
-  for (int angle = 0; angle < 90 && radians(angle) <= most + 1e-9; angle += step) result.push_back(angle);
+  for (int angle = 0; radians(angle) <= most + 1e-9; angle += step) result.push_back(angle);
+  if (const double last = std::round(in_degrees(most) * 1e9) / 1e9; last - result.back() > 1e-6) result.push_back(last);
   return result;
 }
 
@@ -89,19 +98,28 @@ struct PointInDegrees {
   Geometry geometry() const { return {direction_from_degrees(theta_i, phi_i), direction_from_degrees(theta_r, phi_r)}; }
 };
 
+struct PointSteps {
+  int theta_i, phi_i, theta_r, phi_r;  ///< degrees; phi_i = 0: a turn of the sample changes nothing
+};
+
 /// Directions within those of the fit. Along the normal there is one azimuth.
-std::vector<PointInDegrees> points_of(const PreparedModel& prepared, const Validity& validity, bool turns_matter) {
-  const int coarser = turns_matter ? 2 : 1;
+std::vector<PointInDegrees> points_of(const PreparedModel& prepared, const Validity& validity, const PointSteps& step) {
   std::vector<PointInDegrees> result;
-  for (const double theta_i : polar_nodes(15, std::min(compared_theta, validity.theta_i_max.value_or(compared_theta))))
-    for (const double phi_i : turns_matter ? round_nodes(45) : std::vector<double>{0})
-      for (const double theta_r :
-           polar_nodes(5 * coarser, std::min(compared_theta, validity.theta_r_max.value_or(compared_theta))))
-        for (const double phi_r : theta_r > 0 ? round_nodes(15 * coarser) : std::vector<double>{0}) {
+  for (const double theta_i : polar_nodes(step.theta_i, validity.theta_i_max))
+    for (const double phi_i : step.phi_i > 0 ? round_nodes(step.phi_i) : std::vector<double>{0})
+      for (const double theta_r : polar_nodes(step.theta_r, validity.theta_r_max))
+        for (const double phi_r : theta_r > 0 ? round_nodes(step.phi_r) : std::vector<double>{0}) {
           const PointInDegrees point{theta_i, phi_i, theta_r, phi_r};
           if ((prepared.outside(point.geometry()) & outside_directions) == 0) result.push_back(point);
         }
   return result;
+}
+
+/// The same, at the nodes of DirectionPairs if none of the usual points is supported.
+std::vector<PointInDegrees> points_of(const PreparedModel& prepared, const Validity& validity, bool turns_matter) {
+  const auto of = [&](const PointSteps& step) { return points_of(prepared, validity, step); };
+  std::vector<PointInDegrees> usual = of(turns_matter ? PointSteps{15, 45, 10, 30} : PointSteps{15, 0, 5, 15});
+  return usual.empty() ? of(turns_matter ? PointSteps{10, 20, 10, 20} : PointSteps{5, 0, 5, 10}) : usual;
 }
 
 /// Values of all pairs of states at points of one wavelength.
@@ -314,42 +332,66 @@ class BirdLists {
   const std::vector<StatePair>& pairs_;
 };
 
+std::string counted_geometries(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " geometry" : " geometries");
+}
+
+/// What of the wavelengths and elements is not in it.
+std::string missing_text(const std::vector<BirdValues>& all, const Elements& elements) {
+  std::size_t negative = 0;
+  std::vector<double> empty;
+  for (const BirdValues& at : all) {
+    negative += at.left_out;
+    if (at.points.empty()) empty.push_back(at.wavelength);
+  }
+  std::string text;
+  if (negative > 0) text += "; " + counted_geometries(negative) + " left out, where a value is negative";
+  if (!empty.empty()) text += "; no geometry left at " + nanometre_text(empty);
+  if (elements.any())
+    text += "; not written: " + element_names(elements) + ", which these states tell only with elements not measured";
+  return text;
+}
+
 std::string bird_understood(const std::vector<BirdValues>& all, std::size_t pairs, bool uncertain) {
-  std::size_t points = 0, left_out = 0;
-  for (const BirdValues& at : all) points += at.points.size(), left_out += at.left_out;
+  std::size_t points = 0;
   std::vector<double> wavelengths;
-  for (const BirdValues& at : all) wavelengths.push_back(at.wavelength);
-  std::string text = std::to_string(points) + " geometries at " + nanometre_text(wavelengths);
+  for (const BirdValues& at : all)
+    if (!at.points.empty()) points += at.points.size(), wavelengths.push_back(at.wavelength);
+  std::string text = counted_geometries(points) + " at " + nanometre_text(wavelengths);
   text += pairs == 1 ? ", f11 in sr^-1"
                      : ", values in sr^-1 between " + std::to_string(pairs) +
                            " pairs of states, s first, S4 > 0 right-handed, frame sp";
-  text += uncertain ? ", uBRDF with k = 1" : ", without uncertainties, which the model does not know";
-  if (left_out > 0) text += "; " + std::to_string(left_out) + " geometries left out, where a value is negative";
-  return text + "; values as the model has them, nothing is interpolated";
+  return text + (uncertain ? ", uBRDF with k = 1" : ", without uncertainties, which the model does not know");
+}
+
+/// Throws std::invalid_argument if no value at all is left, with the reason.
+void require_values(const std::vector<BirdValues>& all) {
+  if (std::ranges::any_of(all, [](const BirdValues& at) { return !at.points.empty(); })) return;
+  if (std::ranges::any_of(all, [](const BirdValues& at) { return at.left_out > 0; }))
+    throw std::invalid_argument(
+        "a BiRD file has no negative values, and this model has some at each of its geometries");
+  throw std::invalid_argument("no samples support any of the directions of a BiRD file");
 }
 
 }  // namespace
 
 Export::Made make_bird(const Model& model, const ExportOptions& options) {
   const bool turns_matter = depends_on_azimuth_of_source(model);
-  const std::vector<StatePair> pairs = told_pairs(unknown_elements(model, Frame::sp));
+  const auto [pairs, left_out] = told_pairs(unknown_elements(model, Frame::sp));
   std::vector<BirdValues> all;
   for (const double wavelength : options.wavelengths) all.push_back(values_at(model, wavelength, pairs, turns_matter));
-  if (std::ranges::all_of(all, [](const BirdValues& at) { return at.points.empty(); }))
-    throw std::invalid_argument(
-        "a BiRD file has no negative values, and this model has some at each of its geometries");
+  require_values(all);
   const bool uncertain = knows_uncertainty(model);
-  const std::string understood = bird_understood(all, pairs.size(), uncertain),
+  const std::string understood = bird_understood(all, pairs.size(), uncertain) + missing_text(all, left_out) +
+                                 "; values as the model has them, nothing is interpolated",
                     head = metadata_text(model, turns_matter, all);
   const auto shared = std::make_shared<const std::vector<BirdValues>>(std::move(all));
-  const auto write = [shared, pairs, head, uncertain](std::ostream& out) {
+  const auto write = [shared, pairs = pairs, head, uncertain](std::ostream& out) {
     out << "{\n\"metadata\": " << head << ",\n\"data\": ";
     BirdLists(out, *shared, pairs).write(uncertain, pairs.size() > 1);
     out << "\n}\n";
   };
-  const bool extrapolates = std::ranges::any_of(
-      options.wavelengths, [&](double w) { return leaves_known_range(outside(model.validity, w)); });
-  return {.write = write, .error = {}, .understood = understood, .extrapolates = extrapolates};
+  return {.write = write, .error = {}, .understood = understood, .extrapolates = false};
 }
 
 }  // namespace mmbrdf

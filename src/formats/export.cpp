@@ -20,6 +20,7 @@
 #include "formats/zemax.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/quantities.hpp"
+#include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
@@ -91,6 +92,29 @@ ExportOptions completed(const Model& model, const ExportFormat& format, ExportOp
   return options;
 }
 
+/// "; 100 and 200 nm lie beyond the fitted wavelengths; 450 nm lies between fitted wavelengths"
+std::string wavelengths_text(const Validity& validity, const std::vector<double>& wavelengths) {
+  std::vector<double> beyond, between;
+  for (const double wavelength : wavelengths) {
+    const Outside where = outside(validity, wavelength);
+    if (where & outside_wavelength) beyond.push_back(wavelength);
+    if (where & interpolated) between.push_back(wavelength);
+  }
+  const auto lie = [](const std::vector<double>& some, const std::string& where) {
+    return some.empty() ? "" : "; " + nanometre_text(some) + (some.size() == 1 ? " lies " : " lie ") + where;
+  };
+  return lie(beyond, "beyond the fitted wavelengths") + lie(between, "between fitted wavelengths");
+}
+
+/// Of the wavelength at which samples support the least.
+std::string unsupported_text(const Validity& validity, const std::vector<double>& wavelengths) {
+  const std::size_t count = validity.supported.size() > 1 ? wavelengths.size() : 1;  // one set holds for all
+  const double emptiest = *std::ranges::max_element(std::span(wavelengths).first(count), {},
+                                                    [&](double w) { return unsupported_share(validity, w); });
+  const std::string line = unsupported_line(validity, emptiest);
+  return line.empty() ? "" : "; " + line;
+}
+
 }  // namespace
 
 std::span<const ExportFormat> export_formats() { return written_formats; }
@@ -127,13 +151,21 @@ Export::Export(Made made)
 
 Export::Export(const Model& model, const ExportFormat& format, const ExportOptions& options)
     : Export(writer_of(format).make(model, completed(model, format, options))) {
-  if (const std::string range = fitted_range(model.validity); !range.empty() && extrapolates_)
+  const std::vector<double> wavelengths = completed(model, format, options).wavelengths;
+  const std::string at = wavelengths_text(model.validity, wavelengths);
+  const bool leaves =
+      std::ranges::any_of(wavelengths, [&](double w) { return leaves_known_range(outside(model.validity, w)); });
+  if (const std::string range = fitted_range(model.validity); !range.empty() && (extrapolates_ || leaves))
     understood_ += "; beyond its fitted range, " + range + ", the model is extrapolated";
+  understood_ += at;
+  if (extrapolates_) understood_ += unsupported_text(model.validity, wavelengths);
 }
 
 double compared_up_to(const Model& model) {
-  return std::max(radians(30), std::min({compared_theta, model.validity.theta_i_max.value_or(compared_theta),
-                                         model.validity.theta_r_max.value_or(compared_theta)}));
+  constexpr double some_degrees = radians(1);
+  const double fitted = std::min({compared_theta, model.validity.theta_i_max.value_or(compared_theta),
+                                  model.validity.theta_r_max.value_or(compared_theta)});
+  return fitted < some_degrees ? radians(30) : fitted;
 }
 
 void require_error(const ExportError& error, const ExportOptions& options, const std::string& table) {
@@ -152,8 +184,8 @@ bool depends_on_azimuth_of_source(const Model& model) {
 
 void require_isotropic(const Model& model, const std::string& format) {
   if (depends_on_azimuth_of_source(model))
-    throw std::invalid_argument(format + " file is of an isotropic sample, and this model depends on the " +
-                                "azimuth of the source: `convert --basis isotropic` makes one that does not");
+    throw std::invalid_argument(format + " file is of an isotropic sample, and " +
+                                azimuth_of_source_line(model.family));
 }
 
 Channel channel_of(const Model& model, const std::string& name) {

@@ -13,8 +13,8 @@
 
 namespace mmbrdf {
 
-/// Directions of a table are compared up to this polar angle: that of the fit, but 30 degrees at least, as a table is to
-/// be the model wherever that is from.
+/// Directions of a table are compared up to this polar angle: that of the fit, but compared_theta at most; 30 degrees of
+/// a fit to the normal alone (below 1 degree), where there would be nothing to compare.
 double compared_up_to(const Model& model);
 
 /// Whether a turn of the sample changes what the model says.

@@ -11,6 +11,7 @@
 #include "formats/new_netcdf.hpp"
 #include "formats/reader.hpp"
 #include "mmbrdf/model/batch.hpp"
+#include "mmbrdf/model/description.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "text/numbers.hpp"
 
@@ -61,9 +62,13 @@ class CosineTable {
     return sum;
   }
 
-  std::string bytes(const std::string& channel, double wavelength) const {
+  std::string bytes(const Model& model, const std::string& channel, double wavelength) const {
     NewNetcdf file;
-    file.attribute("title", channel + " at " + nanometre_text({&wavelength, 1}) + ", for mqdiffuse of eradiate");
+    const std::string range = fitted_range(model.validity);
+    file.attribute("title", channel + (model.name.empty() ? "" : " of " + printable(model.name, 200)) + " at " +
+                                nanometre_text({&wavelength, 1}) + ", for mqdiffuse of eradiate");
+    file.attribute("source", "mmbrdf model, " + basis_line(model));
+    file.attribute("fitted_range", range.empty() ? "not known" : range);
     file.axis("cos_theta_o", mu_,
               {{"units", "1"}, {"long_name", "cosine of the polar angle of the outgoing direction"}});
     file.axis("phi_d", phi_,
@@ -115,7 +120,8 @@ Export::Made make_mqdiffuse(const Model& model, const ExportOptions& options) {
     if (error.rms <= options.error || grid == &cosine_grids.back()) break;
   }
   require_error(error, options, to_string(*grid));
-  const auto bytes = std::make_shared<const std::string>(table->bytes(options.channel, options.wavelengths.front()));
+  const auto bytes =
+      std::make_shared<const std::string>(table->bytes(model, options.channel, options.wavelengths.front()));
   std::string understood = options.channel + " in sr^-1 at " + nanometre_text(options.wavelengths) + " over " +
                            to_string(*grid) + ", cosines from the horizon to the normal, pi is forward";
   if (table->negative() > 0) understood += "; " + std::to_string(table->negative()) + " values are negative";

@@ -225,8 +225,12 @@ Export::Made make_netcdf(const Model& model, const ExportOptions& options) {
       "f_ij in sr^-1 at " + nanometre_text(options.wavelengths) +
       ", polar angles of 0 to 90 and azimuths of 0 to 360 degrees in steps of " + shortest(step) +
       ", phi_i = 0, frame sp, convention germer2017" +
-      (u.empty() ? "; no uncertainties, which the model does not know" : ", with standard uncertainties") +
-      " and flags of what is extrapolated";
+      (u.empty() ? ", with flags of what is extrapolated, without uncertainties, which the model does not know"
+                 : ", with standard uncertainties and flags of what is extrapolated");
+  if (const auto negative = std::ranges::count_if(grid->matrices(), [](const Mueller& m) { return m(0, 0) < 0; });
+      negative > 0)
+    understood += "; f11 is negative at " + std::to_string(negative) + " of " +
+                  std::to_string(grid->matrices().size()) + " nodes";
   if (unknown.any()) understood += "; " + not_measured_line(model.not_measured);
   return {[bytes](std::ostream& out) { out.write(bytes->data(), static_cast<std::streamsize>(bytes->size())); }, error,
           understood};

@@ -155,7 +155,10 @@ std::vector<std::uint16_t> whole_nanometres(const std::vector<double>& wavelengt
     const double nm = in_nanometres(wavelength);
     if (!(std::abs(nm - std::round(nm)) < 1e-6 && nm > 0.5 && nm < 65535.5))
       throw std::invalid_argument("wavelength " + shortest(nm) + " nm: a .pbsdf file has whole nanometres up to 65535");
-    result.push_back(static_cast<std::uint16_t>(std::lround(nm)));
+    const auto whole = static_cast<std::uint16_t>(std::lround(nm));
+    if (!result.empty() && result.back() == whole)
+      throw std::invalid_argument("wavelength " + std::to_string(whole) + " nm is given twice, to whole nanometres");
+    result.push_back(whole);
   }
   return result;
 }

@@ -75,6 +75,13 @@ class RglTable {
                    NewTensor{.name = "jacobian", .shape = {1}, .bytes = "\1"}});
   }
 
+  /// "; 3 of 20 values are negative", of those above the horizon; or nothing.
+  std::string negative_text() const {
+    if (negative_ == 0) return "";
+    return "; " + std::to_string(negative_) + " of " + std::to_string(above_) +
+           " values above the horizon are negative";
+  }
+
   std::string grid_text() const {
     return std::to_string(theta_i_.size()) + " theta_i, " + std::to_string(side_) + " x " + std::to_string(side_) +
            " half directions";
@@ -106,6 +113,7 @@ class RglTable {
       for (std::size_t n = 0; n < cells; ++n) {
         // Beyond the horizon f cos goes on with the cosine, so that it is linear in the cells across it.
         const double f_cos = channel(matrices[n]) * cosine[n];
+        if (cosine[n] > 0) ++above_, negative_ += f_cos < 0 ? 1 : 0;
         spectra_[(t * wavelengths_ + w) * cells + n] = static_cast<float>(spectra_of_f_cos * f_cos);
         bright[n] += static_cast<float>(std::max(0.0, f_cos) * density[n]);
       }
@@ -124,7 +132,7 @@ class RglTable {
     return (1 - b) * ((1 - a) * value(0) + a * value(1)) + b * ((1 - a) * value(side_) + a * value(side_ + 1));
   }
 
-  std::size_t side_, wavelengths_;
+  std::size_t side_, wavelengths_, above_ = 0, negative_ = 0;
   std::vector<float> theta_i_, spectra_, luminance_;
 };
 
@@ -165,7 +173,7 @@ Export::Made make_rgl(const Model& model, const ExportOptions& options) {
   };
   return {write, error,
           table->grid_text() + ", f cos(theta_r) of " + options.channel + " at " + nanometre_text(options.wavelengths) +
-              ", isotropic; densities of normals are constants"};
+              ", isotropic; densities of normals are constants" + table->negative_text()};
 }
 
 }  // namespace mmbrdf

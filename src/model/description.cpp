@@ -49,6 +49,12 @@ std::string unknown_range_line(const std::string& model, const Validity& validit
   return model + " does not say to which " + what + " it was fitted; mmbrdf convert can record them";
 }
 
+std::string azimuth_of_source_line(Family family) {
+  return std::string("this model depends on the azimuth of the source: ") +
+         (family == Family::anisotropic ? "if the sample is isotropic, fit it anew with `--basis isotropic`"
+                                        : "`convert --basis isotropic` makes one that does not");
+}
+
 std::string outside_line(Outside reasons, const Validity& validity) {
   return "outside the fitted range (" + to_string(reasons) + "): fitted are " + fitted_range(validity) +
          (reasons & outside_directions ? ", and no samples support all of these directions together" : "");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mmbrdf/model/description.hpp"
 #include "model/kernel/plan.hpp"
 #include "text/numbers.hpp"
 
@@ -90,10 +91,10 @@ int degree_of(const std::vector<AzimuthalTerm>& terms) {
 }
 
 void require_one_azimuth(const PreparedModel& model) {
-  if (!Evaluation::pattern(model).isotropic_f11)
-    throw std::invalid_argument(
-        "Fourier moments are those of an isotropic sample, and this model depends on the azimuth of the source: "
-        "`convert --basis isotropic` makes one that does not");
+  const PreparedPattern& pattern = Evaluation::pattern(model);
+  if (!pattern.isotropic_f11)
+    throw std::invalid_argument("Fourier moments are those of an isotropic sample, and " +
+                                azimuth_of_source_line(pattern.family));
 }
 
 /// All K_n^k, k ≥ 0, at azimuth 0.

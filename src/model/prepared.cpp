@@ -34,6 +34,7 @@ PreparedModel prepare(const Model& model, double wavelength) {
   require_wavelength(wavelength);
   auto pattern = std::make_shared<PreparedModel::Pattern>();
   pattern->mapping = model.mapping;
+  pattern->family = model.family;
   pattern->plan = plan(model);
   for (int k = 0; k < zernike_count(pattern->plan.order); ++k) pattern->table_norms.push_back(table_norm(k));
   pattern->by_powers = by_powers(model);

@@ -398,6 +398,45 @@ TEST(Bird, IsWrittenWithoutWhatIsNegative) {
   EXPECT_TRUE(says(export_refusal(diffuser({-0.3}), "bird", {.wavelengths = {0.5}}), {"a BiRD file has no negative"}));
 }
 
+TEST(Bird, ThatIsWrittenSaysWhichWavelengthsAreInIt) {
+  // 0.55 − λ: negative at 600 nm everywhere.
+  const Export table(diffuser({0.55, -1}), export_format("bird"), {.wavelengths = {0.5, 0.6}});
+  const std::string text = table.understood();
+  EXPECT_NE(text.find(" geometries at 500 nm, "), std::string::npos) << text;
+  EXPECT_TRUE(says(text, {" left out, where a value is negative; no geometry left at 600 nm"}));
+}
+
+/// A diffuser fitted to what one pair of polar angles supports, in the plane of incidence.
+Model fitted_at(double theta_i, double theta_r, double theta_i_max) {
+  Model model = diffuser({0.3});
+  model.validity = {{0.5}, radians(theta_i_max), radians(theta_r), {{0.5, DirectionPairs()}}};
+  model.validity.supported[0].pairs.add(in_degrees(theta_i, 0, theta_r, 180));
+  return model;
+}
+
+TEST(Bird, IsWrittenAtTheAnglesThatWereFittedWhateverTheyAre) {
+  const auto data = [](const Model& model) { return exported_json(model)["data"]; };
+  EXPECT_EQ(data(fitted_at(40, 20, 40))["theta_i"]["values"][0], 40);  // the largest, beside those by 15 degrees
+  EXPECT_EQ(data(fitted_at(3, 3, 3))["theta_i"]["values"][0], 3);
+  const Model inner = fitted_at(20, 40, 60);  // the nodes of the samples, where no usual one is supported
+  EXPECT_EQ(data(inner)["theta_i"]["values"][0], 20);
+  EXPECT_TRUE(says(Export(inner, export_format("bird")).understood(), {"1 geometry at 500 nm"}));
+  Model none = inner;
+  none.validity.supported = {{0.5, DirectionPairs()}};
+  EXPECT_TRUE(says(export_refusal(none, "bird"), {"no samples support any of the directions of a BiRD file"}));
+}
+
+TEST(Bird, ThatIsWrittenSaysWhichElementsItLeavesOut) {
+  Model model = random_model(Family::isotropic, {2, 1}, 0, 1);
+  std::erase_if(model.blocks, [](const FittedBlock& fitted) {
+    return fitted.block.name != "11" && fitted.block.name != "12,13,21,31";
+  });
+  model.not_measured = ~Elements{};
+  for (const std::size_t e : {0U, 1U, 2U, 4U, 8U}) model.not_measured.reset(e);
+  const Export table(model, export_format("bird"), {.wavelengths = {0.5}});
+  EXPECT_TRUE(says(table.understood(), {"f11 in sr^-1", "; not written: 12, 13, 21 and 31, which these states tell"}));
+}
+
 TEST(Bird, IsWrittenOfAnisotropicSamplesAtAzimuthsOfTheSource) {
   const Model model = random_model(Family::anisotropic, {1, 0}, 0, 1);
   const json data = exported_json(model, {.wavelengths = {0.5}})["data"];

@@ -76,9 +76,20 @@ TEST(NetcdfExport, LeavesUnknownWhatWasNotMeasured) {
   std::erase_if(model.blocks, [](const FittedBlock& fitted) { return fitted.block.name.ends_with("34,42,43"); });
   for (const int index : {7, 11, 13, 14}) model.not_measured.set(static_cast<std::size_t>(index));
   const Export table = made(model, "netcdf", {.wavelengths = {0.5}, .error = 1}, folder / "x.nc");
-  EXPECT_TRUE(says(table.understood(), {"no uncertainties", "not measured: 24, 34, 42 and 43"}));
+  EXPECT_TRUE(says(table.understood(), {", with flags of what is extrapolated, without uncertainties, which",
+                                        "not measured: 24, 34, 42 and 43"}));
   for (const Sample& s : read_foreign_file(folder / "x.nc").samples)
     ASSERT_EQ(not_measured(s), unknown_elements(model, Frame::sp));
+}
+
+TEST(NetcdfExport, SaysAtHowManyNodesF11IsNegative) {
+  const auto text = [](const Model& model) {
+    return Export(model, export_format("netcdf"), {.wavelengths = {0.5, 0.6}, .error = 1}).understood();
+  };
+  // In steps of 10 degrees, at one of two wavelengths: 0.55 − λ.
+  const std::string nodes = std::to_string(10 * 10 * 37), all = std::to_string(2 * 10 * 10 * 37);
+  EXPECT_TRUE(says(text(diffuser({0.55, -1})), {"; f11 is negative at " + nodes + " of " + all + " nodes"}));
+  EXPECT_EQ(text(diffuser({0.3})).find("negative"), std::string::npos);
 }
 
 TEST(NetcdfExport, TakesTheCoarsestGridThatHasTheErrorAskedFor) {

@@ -288,6 +288,8 @@ TEST(Pbsdf, IsNotWrittenOfWhatItCannotHold) {
       says(export_refusal(material("ptfe"), "pbsdf", {.wavelengths = {0.5325}}), {"532.5 nm", "whole nanometres"}));
   EXPECT_TRUE(
       says(export_refusal(material("ptfe"), "pbsdf", {.wavelengths = {0.532, 0.532}}), {"532 nm is given twice"}));
+  EXPECT_TRUE(says(export_refusal(material("ptfe"), "pbsdf", {.wavelengths = {0.5319999999, 0.532}}),
+                   {"532 nm is given twice, to whole nanometres"}));
   EXPECT_TRUE(says(export_refusal(material("ptfe"), "pbsdf", {.error = 1e-9}),
                    {"the finest table, of 121 phi_d", "% asked for"}));
   EXPECT_TRUE(says(export_refusal(material("ptfe"), "pbsdf", {.channel = "f_ss"}), {"holds whole matrices"}));

@@ -382,6 +382,27 @@ TEST(Rgl, ThatIsWrittenHasADensityEvenOfWhatIsBlack) {
   for (const double bright : renderer.values.at("luminance")) ASSERT_EQ(bright, 1);
 }
 
+TEST(Rgl, ThatIsWrittenSaysHowManyOfItsValuesAreNegative) {
+  const auto text = [](const Model& model) {
+    return Export(model, export_format("rgl"), {.wavelengths = {0.5, 0.6}, .error = 1}).understood();
+  };
+  // Of two wavelengths both, or the second: 0.55 − λ.
+  const std::string dark = text(diffuser({-0.3})), half = text(diffuser({0.55, -1}));
+  const auto counts = [](const std::string& of) {
+    std::array<double, 2> result{};
+    const std::size_t at = of.find("; densities of normals are constants; ");
+    EXPECT_NE(at, std::string::npos) << of;
+    EXPECT_EQ(
+        std::sscanf(of.c_str() + at, "; densities of normals are constants; %lf of %lf values", &result[0], &result[1]),
+        2)
+        << of;
+    return result;
+  };
+  EXPECT_EQ(counts(dark)[0], counts(dark)[1]);
+  EXPECT_EQ(2 * counts(half)[0], counts(half)[1]);
+  EXPECT_EQ(text(diffuser({0.3})).find("negative"), std::string::npos);
+}
+
 TEST(Rgl, IsNotWrittenOfWhatItCannotHold) {
   EXPECT_TRUE(says(export_refusal(material("ptfe"), "rgl", {.error = 1e-9}),
                    {"the finest table, of 73 theta_i, 257 x 257 half directions"}));

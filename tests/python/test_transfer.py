@@ -176,6 +176,8 @@ def test_mqdiffuse_is_even_in_cosines_and_azimuths_without_the_end_of_the_circle
     path = tmp_path / "plaque.nc"
     written = PTFE.export(path, "mqdiffuse", wavelength_nm=532, error=5e-3)
     data = dataset(path)
+    assert data.attrs["title"] == "f11 of ptfe at 532 nm, for mqdiffuse of eradiate"
+    assert data.attrs["fitted_range"].startswith("theta_i <= 75, theta_r <= 81.87 degrees at 351,")
     f = data["brdf"]
     assert f.dims == ("cos_theta_o", "phi_d", "cos_theta_i") and f.attrs["units"] == "sr-1"
     for name in ["cos_theta_o", "cos_theta_i"]:

@@ -9,6 +9,7 @@
 #include "mmbrdf/files/write_file.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
+#include "options/polarimetry.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -48,6 +49,8 @@ std::vector<double> in_radians(const std::vector<double>& degrees) {
 }
 
 void export_model(const Options& options) {
+  if (is_standard_output(options.output))
+    throw WrongUsage("FILE", "\"-\": expected the name of a file; tables do not go to standard output");
   const ExportFormat& format = format_of(options);
   if (format.takes_transfer) require_transfer_options(format, options);
   require_model_kept(options.model, options.output);
@@ -64,7 +67,7 @@ void export_model(const Options& options) {
 std::string footer() {
   std::string text = "FILE is in the format that its ending says, or --as:\n";
   for (const ExportFormat& format : export_formats())
-    text += program::format("  %-9s %-8s %s\n", std::string(format.name).c_str(), std::string(format.ending).c_str(),
+    text += program::format("  %-9s %-10s %s\n", std::string(format.name).c_str(), std::string(format.ending).c_str(),
                             std::string(format.meaning).c_str());
   return text +
          "A note says which table was written and what those who read it find: programs interpolate in it, and the "
@@ -91,7 +94,7 @@ Run export_command(CLI::App& app, const CommandLine&) {
              "Wavelengths of the table, in nm [those of the fit]");
   add_text(app, "--channel", o->channel, "NAME",
            "What a format without polarization holds: f11, or a\nquantity of analyze in sr^-1, as f_ss [f11]");
-  add_option(app, "--error", o->error_percent, number, "PERCENT",
+  add_option(app, "--error", o->error_percent, positive_number, "PERCENT",
              "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]");
   add_option(app, "--streams", o->streams, whole_number, "N",
              "Of vlidort: cosines in a hemisphere, Gauss-Legendre on 0 to 1");

@@ -6,7 +6,8 @@
 ///   write_file("plaque.pbsdf", [&](std::ostream& out) { table.write(out); });
 ///
 /// A program that reads such a table interpolates in it. What that costs is measured, not estimated: at random
-/// directions up to compared_theta, or those of the fit, as the format's own reader would.
+/// directions up to compared_theta, or to the smaller angle of the fit (30 degrees of a fit below 1 degree), as the
+/// format's own reader would.
 #pragma once
 
 #include <functional>
@@ -74,7 +75,8 @@ class Export {
 
   const ExportError& error() const { return error_; }
 
-  /// What was written, in words: grid, units, frame and signs, where the model is extrapolated.
+  /// What was written, in words: grid, units, frame and signs, where the model is extrapolated (beyond the fitted angles, at
+  /// which wavelengths, and unsupported_line() of quantities/trust.hpp), and which wavelengths lie between fitted ones.
   const std::string& understood() const { return understood_; }
 
   /// Implemented by each format.
@@ -83,7 +85,7 @@ class Export {
     ExportError error;
     std::string understood;
     std::string cause = "interpolation";  ///< of the error
-    bool extrapolates = true;             ///< where it leaves the fitted range
+    bool extrapolates = true;             ///< it has directions beyond the fitted ones
   };
 
  private:
@@ -94,7 +96,7 @@ class Export {
   bool extrapolates_;
 };
 
-/// The largest polar angle (80 degrees) at which tables are compared with a model that says no smaller one: towards the
+/// The largest polar angle (80 degrees) at which tables are compared with a model that was fitted to no smaller one: towards the
 /// horizon what readers make of tables is decided by what they do with the last node.
 inline constexpr double compared_theta = 1.3962634015954636;
 

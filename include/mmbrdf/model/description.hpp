@@ -25,6 +25,10 @@ std::string fitted_range(const Validity& validity);
 /// What the model called `model` does not say about its range. Empty if it says all.
 std::string unknown_range_line(const std::string& model, const Validity& validity);
 
+/// "this model depends on the azimuth of the source: ", and how one of the same sample is made that does not: only models
+/// of the anisotropic family are not converted.
+std::string azimuth_of_source_line(Family family);
+
 /// "outside the fitted range (theta_i+wavelength): fitted are theta_i <= 75, theta_r <= 81.87 degrees at 351, 532 nm"
 std::string outside_line(Outside reasons, const Validity& validity);
 

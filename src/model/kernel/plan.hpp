@@ -46,6 +46,7 @@ struct PreparedPattern {
   std::vector<std::size_t> terms_end{0};  ///< terms of mode q: terms_end[q] … terms_end[q + 1]
   std::vector<double> table_norms;        ///< of K, which the kernel's table does not have
   DiscMapping mapping;
+  Family family;
   ReflectanceTable reflectance;
   Validity validity;
   Elements unknown;            ///< in the frame xy
