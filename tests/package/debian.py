@@ -7,6 +7,7 @@
 Needs root and mmdebstrap. The program comes first and alone, then all else with the compilers that use it. What is run is what
 README.md and docs/interfaces.md say, and each must print what they say.
 """
+import os
 import re
 import subprocess
 import sys
@@ -37,7 +38,10 @@ class Debian:
         (root / "etc/resolv.conf").write_text(Path("/etc/resolv.conf").read_text())
 
     def __call__(self, command):
-        return call("chroot", self.root, "sh", "-ec", f"cd /tmp/home; export DEBIAN_FRONTEND=noninteractive; {command}")
+        kept = [f"{name}={value}" for name, value in os.environ.items() if name.lower().endswith("_proxy")]
+        path = "PATH=/usr/sbin:/usr/bin:/sbin:/bin"
+        clean = ["env", "-i", path, "HOME=/tmp/home", "DEBIAN_FRONTEND=noninteractive", *kept]
+        return call("chroot", self.root, *clean, "sh", "-ec", f"cd /tmp/home; {command}")
 
     def install(self, *packages):
         self(f"apt-get install -y --no-install-recommends {' '.join(packages)}")

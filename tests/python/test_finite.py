@@ -17,8 +17,7 @@ SLOW = {"compare": 6, "projected_on_isotropic": 6, "optimal_angles": 4, "bihemis
 
 # What reads or writes files, or takes time: other tests have them.
 OTHERS = """load load_instrument load_model read_foreign read_samples calibrate reduce report select subsets plan choose fit symmetry_tests report_json
-    model_diagnostics sample_diagnostics outliers materials quantities material average average_uncertainty
-    py6s_surface pythonic_disort_modes""".split()
+    model_diagnostics sample_diagnostics outliers materials quantities material average average_uncertainty""".split()
 
 
 def size(rng):
@@ -192,22 +191,16 @@ def test_finite_numbers_give_finite_numbers(name, one, make):
     assert answered > 0
 
 
-def test_surfaces_of_radiative_transfer_are_finite(models):
+def test_moments_in_azimuth_are_finite(models):
     rng = np.random.default_rng(1)
     answered = 0
     for model in models:
         for nm in (532, 1e-3, 1e7):
             mu = [0.0, 1e-300, 1.0, *rng.random(2)]
-            angles = dict(sun_deg=angle(rng, 89), view_deg=angle(rng, 89), azimuth_deg=float(rng.uniform(-360, 360)))
-            for ask in (
-                lambda: model.fourier_moments(nm, mu, mu),
-                lambda: [mode(mu, mu) for mode in mmbrdf.pythonic_disort_modes(model, nm, streams=4)],
-                lambda: mmbrdf.py6s_surface(model, nm, **angles),
-            ):
-                try:
-                    result = ask()
-                except ValueError:
-                    continue
-                answered += 1
-                assert all(np.isfinite(number) for number in numbers(result))
-    assert answered > 20
+            try:
+                result = model.fourier_moments(nm, mu, mu)
+            except ValueError:
+                continue
+            answered += 1
+            assert all(np.isfinite(number) for number in numbers(result))
+    assert answered > 8
