@@ -1,4 +1,4 @@
-# Debian packages of what is installed, and an archive that runs from any folder: ./dev package, preset package.
+# Debian packages of what is installed: ./dev package, preset package.
 set(CPACK_PACKAGE_VENDOR "The mmbrdf contributors")
 set(CPACK_PACKAGE_CONTACT "The mmbrdf contributors <mmbrdf@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_FILE ${PROJECT_SOURCE_DIR}/cmake/description.txt)
@@ -9,7 +9,6 @@ set(CPACK_STRIP_FILES ON)
 
 set(CPACK_COMPONENTS_ALL library development program python r)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)   # ./dev leaves out python and r, which belong to an interpreter
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   set(CPACK_COMPONENT_${component}_GROUP ${component})
