@@ -36,6 +36,13 @@ class Debian:
             if file.suffix in (".deb", ".gz"):
                 (self.home / file.name).write_bytes(file.read_bytes())
         (root / "etc/resolv.conf").write_text(Path("/etc/resolv.conf").read_text())
+        call("mount", "-t", "proc", "proc", root / "proc")  # where a program learns in which folder it is
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        call("umount", self.root / "proc")
 
     def __call__(self, command):
         kept = [f"{name}={value}" for name, value in os.environ.items() if name.lower().endswith("_proxy")]
@@ -92,18 +99,18 @@ def checked_languages(debian):
 
 
 def checked_archive(debian):
-    """In a folder of any name, by one who is not root, with no package of ours."""
+    """In a folder of any name, with no package of ours."""
     debian(
         "apt-get purge -y '*mmbrdf*' && mkdir 'any where' && tar -xzf mmbrdf-*.tar.gz -C 'any where' --strip-components 1"
     )
     command, printed = first_result()
     debian.holds("the archive", f"'any where/bin/'{command}", printed)
+    debian("mv 'any where' anywhere")
+    find = "PKG_CONFIG_PATH=$(dirname $(find $PWD/anywhere -name mmbrdf.pc)); export PKG_CONFIG_PATH"
+    found = "LD_LIBRARY_PATH=$(dirname $PKG_CONFIG_PATH) ./a.out"
     debian.holds(
-        "C from the archive",
-        'PKG_CONFIG_PATH="$(dirname "$(find \'any where\' -name mmbrdf.pc)")"; export PKG_CONFIG_PATH; '
-        "mv 'any where' anywhere; PKG_CONFIG_PATH=$(dirname $(find $PWD/anywhere -name mmbrdf.pc)); "
-        "cc example.c $(pkg-config --cflags --libs mmbrdf) && "
-        "LD_LIBRARY_PATH=$(dirname $PKG_CONFIG_PATH) ./a.out",
+        "C from the archive, moved",
+        f"{find}; cc example.c $(pkg-config --cflags --libs mmbrdf) && {found}",
         example(SOURCE / "docs/interfaces.md", "C")[1],
     )
 
@@ -111,10 +118,10 @@ def checked_archive(debian):
 def main():
     folder = Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as name:
-        debian = Debian(Path(name) / "root", folder)
-        checked_program(debian)
-        checked_languages(debian)
-        checked_archive(debian)
+        with Debian(Path(name) / "root", folder) as debian:
+            checked_program(debian)
+            checked_languages(debian)
+            checked_archive(debian)
 
 
 if __name__ == "__main__":

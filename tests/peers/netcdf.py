@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import subprocess
 import tempfile
 
 import numpy as np
@@ -68,12 +69,16 @@ def check(name, variable, option, script, version, model, file, places):
         print(f"skipped: set {variable} to the program that runs {name}")
         return
     program = peer.command(variable, name)
+    there = subprocess.run(program + [option, version], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    if there.returncode:
+        print(f"skipped: {program[0]} does not have {name}")
+        return
     answers = peer.ask(program + [option, script.replace("NAME", str(file))], places)
     nm, theta_i, theta_r, phi_r, value = answers.T
     m = model.evaluate(nm, theta_i, 0, theta_r, phi_r, frame="sp")
     row, column = places[:, 4:].T
     deviations = (value - m[np.arange(len(m)), row, column]) / m[:, 0, 0]
-    peer.judge(f"{name} {peer.run(program + [option, version]).strip()}", "NetCDF, 16 elements", deviations, ROUNDING, ROUNDING)
+    peer.judge(f"{name} {there.stdout.strip()}", "NetCDF, 16 elements", deviations, ROUNDING, ROUNDING)
 
 
 def main():
