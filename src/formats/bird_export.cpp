@@ -385,13 +385,14 @@ Export::Made make_bird(const Model& model, const ExportOptions& options) {
   const std::string understood = bird_understood(all, pairs.size(), uncertain) + missing_text(all, left_out) +
                                  "; values as the model has them, nothing is interpolated",
                     head = metadata_text(model, turns_matter, all);
+  const bool knows_angles = model.validity.theta_i_max && model.validity.theta_r_max;  // else to where is a guess
   const auto shared = std::make_shared<const std::vector<BirdValues>>(std::move(all));
   const auto write = [shared, pairs = pairs, head, uncertain](std::ostream& out) {
     out << "{\n\"metadata\": " << head << ",\n\"data\": ";
     BirdLists(out, *shared, pairs).write(uncertain, pairs.size() > 1);
     out << "\n}\n";
   };
-  return {.write = write, .error = {}, .understood = understood, .extrapolates = false};
+  return {.write = write, .error = {}, .understood = understood, .extrapolates = !knows_angles};
 }
 
 }  // namespace mmbrdf

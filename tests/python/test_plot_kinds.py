@@ -549,3 +549,49 @@ def test_the_calls_of_the_documentation_run_as_they_stand(fitted, noisy, tmp_pat
         "plan",
         "subset_study",
     }
+
+
+def test_titles_say_where_a_model_was_not_fitted(ptfe):
+    plot = mmbrdf.plot
+    assert "beyond the fit" in plot.map(ptfe, "11", 2500, 45, samples=SAMPLES)[1].get_title()
+    assert "85°, beyond the fit" in plot.map(ptfe, "11", 532, 85, samples=SAMPLES)[1].get_title()
+    assert "450 nm, interpolated" in plot.map(ptfe, "11", 450, 45, samples=SAMPLES)[1].get_title()
+    assert "fit" not in plot.map(ptfe, "11", 532, 45, samples=SAMPLES)[1].get_title()
+    assert "85°, beyond the fit" in plot.in_plane_curves(ptfe, 532, 85)[1].get_title()
+    assert "2500 nm, beyond the fit" in plot.reflectance_factor(ptfe, 2500, bands=False)[1].get_title()
+
+
+def test_a_view_at_a_negative_angle_is_that_on_the_other_side(ptfe):
+    one = mmbrdf.plot.reflectance_factor(ptfe, 532, views=[(-30, 180)], bands=False)
+    other = mmbrdf.plot.reflectance_factor(ptfe, 532, views=[(30, 0)], bands=False)
+    np.testing.assert_allclose(one[1].lines[0].get_ydata(), other[1].lines[0].get_ydata(), rtol=1e-12)
+    assert "source side" in written(one[0]) and "source side" in written(other[0])
+    with pytest.raises(ValueError, match="must not be negative"):
+        mmbrdf.plot.in_plane_curves(ptfe, 532, -45)
+
+
+def test_orientations_differ_by_a_quarter_turn_at_most(ptfe):
+    _, axes = mmbrdf.plot.map(
+        ptfe,
+        "orientation_deg",
+        532,
+        45,
+        minus=mmbrdf.material("ptfe-532"),
+        stokes=(1, 0, 0, 0),
+        samples=SAMPLES,
+    )
+    assert np.abs(axes.images[0].get_array()).max() <= 90
+
+
+def test_what_makes_no_curve_and_no_band_is_refused(ptfe):
+    plot = mmbrdf.plot
+    for wrong, match in [
+        (lambda: plot.reflectance_factor(ptfe, 532, theta_i_deg=[45]), "two values"),
+        (lambda: plot.reflectance_against_angle(ptfe, 532, theta_i_deg=45), "two values"),
+        (lambda: plot.reflectance_against_wavelength(ptfe, 532), "two values"),
+        (lambda: plot.reflectance_factor(ptfe, 532, coverage=float("nan")), "coverage"),
+        (lambda: plot.in_plane_curves(ptfe, 532, coverage=-1), "coverage"),
+        (lambda: plot.map(ptfe, "11", 532, 45, terms={"scale": 0.003}), "terms"),
+    ]:
+        with pytest.raises(ValueError, match=match):
+            wrong()

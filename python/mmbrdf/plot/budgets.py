@@ -71,7 +71,8 @@ def uncertainty_parts(
         grey_beyond(axes, parts.limit, max(-span[0], span[1]))
         mark_plane(axes, incident)
     axes.set_ylabel(_label(quantity, relative))
-    axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, None if quantity == "dhr" else incident))
+    at = None if quantity == "dhr" else incident
+    axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, at, source=model))
     return axes.figure, axes
 
 

@@ -34,7 +34,11 @@ LAMBERTIAN = 1 / np.pi
 
 
 def in_plane(theta_i_deg: float, phi_i_deg: float, theta_r_deg) -> mmbrdf.Geometry:
-    """mmbrdf.in_plane(), turned to an azimuth of the source: isotropic samples look the same from all of them."""
+    """mmbrdf.in_plane(), turned to an azimuth of the source: isotropic samples look the same from all of them.
+
+    ValueError for a negative theta_i_deg, whose forward side would be the other one."""
+    if theta_i_deg < 0:
+        raise ValueError(f"theta_i_deg = {theta_i_deg:g}, must not be negative: turn the source by phi_i_deg")
     theta_i, phi_i, theta_r, phi_r = mmbrdf.in_plane(theta_i_deg, theta_r_deg)
     turn = phi_i_deg - phi_i
     return mmbrdf.Geometry(theta_i, phi_i + turn, theta_r, (phi_r + turn) % 360)
@@ -96,7 +100,7 @@ def in_plane_curves(
         for name in COMPONENTS:
             _draw_points(axes, points, name, coverage)
     if legend:
-        axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, theta_i_deg))
+        axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, theta_i_deg, source=model))
         handles = component_handles(linewidth, linestyle, points=points is not None)
         sizes.legend_below(axes, handles, _what_is_drawn(points, with_bands, coverage), columns=4)
     return axes.figure, axes
@@ -232,7 +236,12 @@ def polar_in_plane(
         fitted = np.abs(theta_r_deg) <= limit
         f11 = disc.evaluate(model, wavelength, in_plane(theta_i_deg, phi_i_deg, theta_r_deg))[..., 0, 0]
         style = dict(color=stroke.color, linestyle=stroke.style, linewidth=1.4)
-        axes.plot(np.radians(theta_r_deg), f11, label=labels.title(labels.plain(model.name), wavelength), **style)
+        axes.plot(
+            np.radians(theta_r_deg),
+            f11,
+            label=labels.title(labels.plain(model.name), wavelength, source=model),
+            **style,
+        )
         largest = max(largest, f11[fitted].max())
         first = f11 if first is None else first
         if below is not None:
@@ -252,7 +261,7 @@ def polar_in_plane(
     if below is not None:
         margin = 0.08 * (max(limits) - min(limits)) or 0.1
         below.set_ylim(min(limits) - margin, max(limits) + margin)
-        grey_beyond(below, limit)
+        grey_beyond(below, min(90.0 if m.theta_r_max_deg is None else m.theta_r_max_deg for m, _ in asked))
     if own:
         style = dict(frameon=False, ncol=2, borderpad=0, bbox_transform=axes.figure.transFigure)
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 0.01), **style)

@@ -115,7 +115,12 @@ def _measured(path, polarimeter) -> Iterator[tuple[str, float, NDArray[np.float6
         for row in csv.DictReader(file):
             try:
                 value = float(row["intensity"]) - float(row.get("dark") or 0)
-                value /= float(row.get("monitor") or 1) * float(row.get("gain") or 1)
+                scale = float(row.get("monitor") or 1) * float(row.get("gain") or 1)
+                if not scale > 0:
+                    raise ValueError(
+                        f"monitor and gain must be positive, not {row.get('monitor')} and {row.get('gain')}"
+                    )
+                value /= scale
                 start = row["reference"], float(row["angle_deg"] or 0), {}
                 _, _, readings = groups.setdefault(row["number"], start)
                 readings[int(row["generator_state"]) - 1, int(row["analyzer_state"]) - 1] = value

@@ -8,8 +8,11 @@ import warnings
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+
+import mmbrdf
 
 
 def plain(name: str) -> str:
@@ -17,10 +20,29 @@ def plain(name: str) -> str:
     return (" " if name.startswith("_") else "") + name.replace("$", r"\$")
 
 
-def title(name: str, wavelength_nm: float | None, theta_i_deg: float | None = None, frame: str | None = None) -> str:
-    """What is shown, as plain() gives it, at which wavelength and angle of incidence, in which frame: what of this is known."""
-    wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm"
+def not_fitted(source: Any, wavelength_nm: float | None, theta_i_deg: float = 0.0) -> str:
+    """ ", beyond the fit" or ", interpolated", of a model that is asked at another wavelength or source than it was fitted to."""
+    if wavelength_nm is None or not isinstance(source, mmbrdf.Model):
+        return ""
+    outside = mmbrdf.Outside(int(np.max(source.outside(wavelength_nm, theta_i_deg, 0, 0, 0))))
+    if (mmbrdf.Outside.WAVELENGTH | mmbrdf.Outside.THETA_I) & outside:
+        return ", beyond the fit"
+    return ", interpolated" if mmbrdf.Outside.INTERPOLATED in outside else ""
+
+
+def title(
+    name: str,
+    wavelength_nm: float | None,
+    theta_i_deg: float | None = None,
+    frame: str | None = None,
+    source: Any = None,
+) -> str:
+    """What is shown, as plain() gives it, at which wavelength and angle of incidence, in which frame: what of this is known;
+    and whether a model that is the ``source`` was fitted there."""
+    wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm{not_fitted(source, wavelength_nm)}"
     angle = "" if theta_i_deg is None else rf"$\theta_\mathrm{{i}}$ = {theta_i_deg:g}°"
+    if theta_i_deg is not None and not not_fitted(source, wavelength_nm):
+        angle += not_fitted(source, wavelength_nm, theta_i_deg)
     axes = "" if frame is None else f"frame {frame.replace('_', ' ')}"
     return ", ".join(part for part in (name, wavelength, angle, axes) if part)
 

@@ -129,6 +129,8 @@ def map(
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     if show not in _KINDS:
         raise ValueError(f"show = {show!r}, expected one of {', '.join(_KINDS)}")
+    if terms and show == "value":
+        raise ValueError("terms: they count in u, so show must be u or value / u")
     asked = scalar(quantity, frame, stokes)
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
     found = _shown(asked, source, minus, show, wavelength_nm, view, terms, samples)
@@ -144,7 +146,7 @@ def map(
             signed=True if minus is not None and show != "u" else None,
         )
     name = named(source, minus)
-    title = labels.title(name, wavelength_nm, theta_i_deg, asked.frame) if title is None else title
+    title = labels.title(name, wavelength_nm, theta_i_deg, asked.frame, source) if title is None else title
     return draw_map(found.image, scale, view, label or found.label, title, axes, colorbar, width_cm)
 
 
@@ -186,7 +188,7 @@ def _shown(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.Vi
         mueller = disc.evaluate(source, wavelength_nm, where, asked.frame)
         return _values(asked, mueller, source, minus, show, wavelength_nm, where, terms)
 
-    return Shown(disc.over_disc(samples or (201 if show == "value" else 61), over), label, False)
+    return Shown(disc.over_disc((201 if show == "value" else 61) if samples is None else samples, over), label, False)
 
 
 def _values(asked: Scalar, mueller, source, minus, show: str, wavelength_nm, where, terms) -> NDArray[np.float64]:
@@ -196,6 +198,8 @@ def _values(asked: Scalar, mueller, source, minus, show: str, wavelength_nm, whe
         raise ValueError(f"quantity: gives an array of the shape {values.shape} of matrices of {mueller.shape}")
     if minus is not None:
         values = values - np.asarray(asked.values(disc.evaluate(minus, wavelength_nm, where, asked.frame)), float)
+        if asked.name == "orientation_deg":  # of an ellipse, which half a turn leaves as it is
+            values = (values + 90) % 180 - 90
     if show == "value":
         return values
     variance = np.zeros(values.shape)
@@ -311,7 +315,7 @@ def realizability_map(
     if limits is None:
         said = "red: cannot exist" if (values[np.isfinite(values)] < 0).any() else "range of the disc"
         scale = scale._replace(norm=Normalize(max(scale.norm.vmin, 0.0), scale.norm.vmax), said=said)
-    title = labels.title(named(source), wavelength_nm, theta_i_deg)
+    title = labels.title(named(source), wavelength_nm, theta_i_deg, source=source)
     return draw_map(found.image, scale, view, SYMBOLS["eigenvalue_min"], title, axes, colorbar, width_cm)
 
 

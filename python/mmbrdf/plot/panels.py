@@ -79,9 +79,10 @@ def hemisphere(
     image = image._replace(values=disc.normalized(image.values))
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
     if scale == "paper":
-        f11_limits, limit = f11_limits or PAPER_F11, limit or PAPER_OTHERS
+        f11_limits = PAPER_F11 if f11_limits is None else f11_limits
+        limit = PAPER_OTHERS if limit is None else limit
     bars = _bars(image, view, isinstance(source, mmbrdf.Dataset), f11_limits, limit, scale == "paper")
-    title = labels.title(named(source), wavelength_nm, theta_i_deg, frame) if title is None else title
+    title = labels.title(named(source), wavelength_nm, theta_i_deg, frame, source) if title is None else title
     return _sixteen(image, view, bars, title, figure, decorated, width_cm)
 
 
@@ -143,7 +144,7 @@ def residual_map(
     image = disc.sample_cells(chosen, values)
     view = disc.View(theta_i_deg, phi_i_deg, model.theta_r_max_deg)
     bars = _residual_bars(values, over_u, f11_limit, limit)
-    title = labels.title(named(data, model), wavelength_nm, theta_i_deg, frame) if title is None else title
+    title = labels.title(named(data, model), wavelength_nm, theta_i_deg, frame, model) if title is None else title
     return _sixteen(image, view, bars, title, figure, decorated, width_cm)
 
 
@@ -162,7 +163,7 @@ def _uncertainties(model: Model, data: Dataset, wavelength_nm, frame: str) -> ND
 def _residual_bars(values: NDArray[np.float64], over_u: bool, f11_limit, limit) -> list[_Bar]:
     others = {(row, column) for row, column in np.ndindex(4, 4)} - {(0, 0)}
     if over_u:
-        end = limit or 3.0
+        end = 3.0 if limit is None else limit
         scale = chosen_scale(values, np.isfinite(values), measured=True, limits=(-end, end), signed=True)
         return [_Bar(scale, "residual / u", others | {(0, 0)})]
     names = "residual of\n$f_{\\mathrm{r},11}$ / sr$^{-1}$", "residual\nof $m_{ij}$"

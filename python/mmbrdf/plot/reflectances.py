@@ -51,13 +51,14 @@ def reflectance_factor(
     or between those of the fit. Returns the figure and its axes; lines go by wavelength, then by view.
     """
     require("model", model, mmbrdf.Model)
-    angles = np.arange(0.0, 86.0) if theta_i_deg is None else np.asarray(theta_i_deg, float)
+    angles = np.arange(0.0, 86.0) if theta_i_deg is None else _several("theta_i_deg", theta_i_deg)
     wavelengths = [own_wavelength(model, each) for each in np.atleast_1d(wavelength_nm)]
+    views = [_view(*each) for each in views]
     factor = float(mmbrdf.reflectance_factor(1.0))
     axes = _axes(axes, width_cm, ZENITH_LABEL, r"reflectance factor $\pi f_{\mathrm{r},11}\;\mathrm{sr}$")
     for nm, stroke in zip(wavelengths, series(len(wavelengths))):
         for (theta_r, azimuth), style in zip(views, _styles(len(views))):
-            where = angles, phi_i_deg, number("views", theta_r), phi_i_deg + number("views", azimuth)
+            where = angles, phi_i_deg, theta_r, phi_i_deg + azimuth
             value, u = _with_uncertainty(
                 model.has_covariance if bands is None else bands,
                 lambda: factor * model.evaluate(nm, *where)[..., 0, 0],
@@ -66,7 +67,7 @@ def reflectance_factor(
             band(axes, angles, value, u, coverage, stroke._replace(style=style))
     name = labels.plain(model.name)
     wavelength = wavelengths[0] if len(wavelengths) == 1 else None
-    axes.set(title=labels.title(name, wavelength), xlim=(angles.min(), angles.max()))
+    axes.set(title=labels.title(name, wavelength, source=model), xlim=(angles.min(), angles.max()))
     grey_beyond(axes, model.theta_i_max_deg, angles.max(), both=False)
     _scale_to(axes, angles, model.theta_i_max_deg)
     handles = _wavelength_handles(model, wavelengths) if len(wavelengths) > 1 else []
@@ -80,6 +81,12 @@ def reflectance_factor(
 
 def _styles(count: int) -> list[Any]:
     return [STYLES[n % len(STYLES)] for n in range(count)]
+
+
+def _view(theta_r_deg: float, azimuth_deg: float) -> tuple[float, float]:
+    """A negative polar angle means the opposite azimuth."""
+    theta_r_deg, azimuth_deg = number("views", theta_r_deg), number("views", azimuth_deg)
+    return abs(theta_r_deg), azimuth_deg + (180 if theta_r_deg < 0 else 0)
 
 
 def _side(theta_r_deg: float, azimuth_deg: float) -> str:
@@ -133,17 +140,18 @@ def _legend_below(axes: Axes, handles: list[Line2D], words: str) -> None:
 def _wavelength_handles(model: Model, wavelengths: Sequence[float | None]) -> list[Line2D]:
     """A line for each wavelength; those that were not fitted are said to be so."""
     return [
-        Line2D([], [], color=stroke.color, linewidth=2.4, label=f"{nm:g} nm{_not_fitted(model, nm)}")
+        Line2D([], [], color=stroke.color, linewidth=2.4, label=f"{nm:g} nm{labels.not_fitted(model, nm)}")
         for nm, stroke in zip(wavelengths, series(len(wavelengths)))
         if nm is not None
     ]
 
 
-def _not_fitted(model: Model, nm: float) -> str:
-    outside = mmbrdf.Outside(int(np.max(model.outside(nm, 0, 0, 0, 0))))
-    if mmbrdf.Outside.WAVELENGTH in outside:
-        return ", beyond the fit"
-    return ", interpolated" if mmbrdf.Outside.INTERPOLATED in outside else ""
+def _several(name: str, values: Any) -> NDArray:
+    """Abscissae of a curve. ValueError for fewer than two."""
+    result = np.atleast_1d(np.asarray(values, float))
+    if result.ndim != 1 or result.size < 2:
+        raise ValueError(f"{name}: a curve needs two values at least")
+    return result
 
 
 def _scale_to(axes: Axes, x, limit: float | None) -> None:
@@ -178,7 +186,7 @@ def reflectance_against_angle(
     wavelength (nm), with bands as those of ``reflectance_factor``. ``theta_i_deg`` are 0 to 85 degrees in steps of 2.5
     without it. Returns the figure and its axes."""
     require("model", model, mmbrdf.Model)
-    angles = np.arange(0.0, 86.0, 2.5) if theta_i_deg is None else np.asarray(theta_i_deg, float)
+    angles = np.arange(0.0, 86.0, 2.5) if theta_i_deg is None else _several("theta_i_deg", theta_i_deg)
     wavelengths = [own_wavelength(model, each) for each in np.atleast_1d(wavelength_nm)]
     axes = _axes(
         axes, width_cm, r"angle of incidence $\theta_\mathrm{i}$ / °", "directional-hemispherical\nreflectance"
@@ -187,13 +195,13 @@ def reflectance_against_angle(
         value, u = _dhr(model, nm, angles, phi_i_deg, terms, bands)
         band(axes, angles, value, u, coverage, stroke)
     single = wavelengths[0] if len(wavelengths) == 1 else None
-    axes.set(title=labels.title(labels.plain(model.name), single), xlim=(angles.min(), angles.max()))
+    axes.set(title=labels.title(labels.plain(model.name), single, source=model), xlim=(angles.min(), angles.max()))
     grey_beyond(axes, model.theta_i_max_deg, angles.max(), both=False)
     _scale_to(axes, angles, model.theta_i_max_deg)
     handles = []
     if len(wavelengths) > 1:
         handles = [
-            Line2D([], [], color=stroke.color, linestyle=stroke.style, label=f"{nm:g} nm{_not_fitted(model, nm)}")
+            Line2D([], [], color=stroke.color, linestyle=stroke.style, label=f"{nm:g} nm{labels.not_fitted(model, nm)}")
             for nm, stroke in zip(wavelengths, series(len(wavelengths)))
             if nm is not None
         ]
@@ -234,7 +242,7 @@ def reflectance_against_wavelength(
         if fitted.size < 2:
             raise ValueError("wavelength_nm: the model was not fitted to several wavelengths, give those to draw")
         wavelength_nm = np.linspace(fitted.min(), fitted.max(), 61)
-    nm = np.asarray(wavelength_nm, float)
+    nm = _several("wavelength_nm", wavelength_nm)
     nm = np.unique(np.concatenate([nm, fitted[(fitted >= nm.min()) & (fitted <= nm.max())]]))
     angles = [number("theta_i_deg", angle) for angle in np.atleast_1d(theta_i_deg)]
     axes = _axes(axes, width_cm, r"wavelength $\lambda$ / nm", "directional-hemispherical\nreflectance")

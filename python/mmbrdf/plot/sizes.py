@@ -53,6 +53,8 @@ def sized(draw: Draw) -> Draw:
     @functools.wraps(draw)
     def drawn(*arguments: Any, **options: Any) -> Any:
         width_cm = options.get("width_cm")
+        if not number("coverage", options.get("coverage", 1.0)) > 0:
+            raise ValueError(f"coverage = {options['coverage']}, must be positive")
         if width_cm is None:
             with rc_context(_SCREEN):
                 return draw(*arguments, **options)
