@@ -30,8 +30,7 @@ class Debian:
     def __init__(self, root, folder):
         call("mmdebstrap", "--variant=apt", "--skip=cleanup/apt/lists", "bookworm", root)
         self.root = root
-        self.home = root / "tmp/home"
-        self.home.mkdir()
+        self.home = root / "srv"  # which every Debian has, empty
         for file in folder.iterdir():
             if file.suffix in (".deb", ".gz"):
                 (self.home / file.name).write_bytes(file.read_bytes())
@@ -42,13 +41,13 @@ class Debian:
         return self
 
     def __exit__(self, *_):
-        call("umount", self.root / "proc")
+        call("umount", "-l", self.root / "proc")  # whatever still runs there
 
     def __call__(self, command):
         kept = [f"{name}={value}" for name, value in os.environ.items() if name.lower().endswith("_proxy")]
         path = "PATH=/usr/sbin:/usr/bin:/sbin:/bin"
-        clean = ["env", "-i", path, "HOME=/tmp/home", "DEBIAN_FRONTEND=noninteractive", *kept]
-        return call("chroot", self.root, *clean, "sh", "-ec", f"cd /tmp/home; {command}")
+        clean = ["env", "-i", path, "HOME=/srv", "DEBIAN_FRONTEND=noninteractive", *kept]
+        return call("chroot", self.root, *clean, "sh", "-ec", f"cd /srv; {command}")
 
     def install(self, *packages):
         self(f"apt-get install -y --no-install-recommends {' '.join(packages)}")
