@@ -31,7 +31,7 @@ DatasetPointer of_same(const Dataset& data, std::vector<Sample> samples) {
   return result;
 }
 
-/// mueller as measured (sr⁻¹) in a frame → f11 and normalised elements in the xy frame. Uncertainties are of those.
+/// mueller as measured (sr⁻¹) in a frame → samples. Uncertainties are of f11 and of normalised elements, in that frame.
 DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, const Given& phi_i, const Given& theta_r,
                            const Given& phi_r, const Given& mueller, const std::string& frame_name,
                            const std::optional<Given>& uncertainty) {
@@ -40,8 +40,6 @@ DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, con
   operands.push_back({"wavelength_nm", wavelength_nm});
   operands.push_back({"mueller", mueller, {4, 4}});
   if (uncertainty) operands.push_back({"uncertainty", *uncertainty, {4, 4}});
-  if (uncertainty && frame != Frame::xy)
-    throw std::invalid_argument("uncertainty: needs frame='xy', since it says nothing of correlations");
   const Broadcast broadcast(operands);
   return without_gil([&] {
     std::vector<Sample> samples(broadcast.size());
@@ -49,10 +47,11 @@ DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, con
       Sample& sample = samples[i];
       sample.geometry = geometry(broadcast, 0, i);
       sample.wavelength = micrometres(broadcast.number(4, i));
-      const Mueller m = change_frame(broadcast.mueller(5, i), sample.geometry, frame, Frame::xy);
+      const Mueller m = broadcast.mueller(5, i);
       sample.f11 = m(0, 0);
       sample.normalized = normalized(m);
       if (uncertainty) sample.uncertainty = broadcast.mueller(6, i);
+      if (frame != Frame::xy) sample = from_frame(sample, frame);
     }
     require_valid(samples);
     return pointer(std::move(samples));
@@ -172,8 +171,38 @@ DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wa
       [&] { return pointer(simulate(model.model(), micrometres(wavelengths_nm), geometries, speckle, seed)); });
 }
 
-DatasetPointer unpickled(const py::bytes& bytes) {
-  std::vector<Sample> samples = from_bits<Sample>("Dataset", bytes);
+/// A sample without what was measured in another frame, which is pickled apart.
+struct InXy {
+  double wavelength;
+  Geometry geometry;
+  double f11;
+  Mueller normalized, uncertainty;
+};
+struct Apart {
+  std::size_t sample;
+  AsMeasured as_measured;
+};
+
+py::tuple pickled(const Dataset& data) {
+  std::vector<InXy> in_xy;
+  std::vector<Apart> apart;
+  for (const Sample& s : data.samples) {
+    if (s.as_measured) apart.push_back({in_xy.size(), *s.as_measured});
+    in_xy.push_back({s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty});
+  }
+  return py::make_tuple(bits<InXy>("Dataset", in_xy), bits<Apart>("Dataset as measured", apart));
+}
+
+DatasetPointer unpickled(const py::tuple& state) {
+  if (state.size() != 2) throw std::invalid_argument("Dataset: not pickled by this version of mmbrdf");
+  std::vector<Sample> samples;
+  for (const InXy& s : from_bits<InXy>("Dataset", state[0]))
+    samples.push_back({s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty});
+  for (const auto& [sample, as_measured] : from_bits<Apart>("Dataset as measured", state[1])) {
+    if (sample >= samples.size() || (as_measured.frame != Frame::sp && as_measured.frame != Frame::scattering_plane))
+      throw std::invalid_argument("Dataset: the pickle is damaged");
+    samples[sample].as_measured = std::make_shared<const AsMeasured>(as_measured);
+  }
   require_valid(samples);
   return pointer(std::move(samples));
 }
@@ -224,11 +253,15 @@ void bind_class(py::module_& m) {
       "Measured or simulated samples: N matrices, each at its own wavelength and geometry. It does not change.\n\n"
       "From read_samples(), simulate(), or arrays that broadcast to N: mueller (..., 4, 4) in sr^-1 in the frame "
       "named,\n"
-      "and uncertainty (..., 4, 4): element 11 of f11 in sr^-1, the others of f_ij / f11, in the xy frame. An element "
-      "that\n"
-      "was not measured is nan, here as in models: f11 must be there. Frames that turn axes mix 12 with 13, 21 with "
-      "31,\n"
-      "24 with 34, 42 with 43, and 22, 23, 32 and 33: of these all are lost where one is.\n"
+      "and uncertainty (..., 4, 4), in that frame, too: element 11 of f11 in sr^-1, the others of f_ij / f11; they are "
+      "turned\n"
+      "as if errors of elements were independent. An element that was not measured is nan, here as in models: f11 must "
+      "be "
+      "there.\n"
+      "Frames that turn axes mix 12 with 13, 21 with 31, 24 with 34, 42 with 43, and 22, 23, 32 and 33: in "
+      "`normalized`, "
+      "in xy,\n"
+      "all of these are unknown where one is. fit() in the isotropic basis takes what was measured as it was.\n"
       "data[0:100], data[mask] and data[numbers] are datasets of fewer samples.");
   c.def(py::init(&from_arrays), py::arg("wavelength_nm"), py::arg("theta_i_deg"), py::arg("phi_i_deg"),
         py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::arg("mueller"), py::arg("frame") = "xy",
@@ -266,7 +299,7 @@ void bind_class(py::module_& m) {
             write_samples(path, d.samples, d.reduction);
           },
           py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
-      .def(py::pickle([](const Dataset& d) { return bits<Sample>("Dataset", d.samples); }, &unpickled));
+      .def(py::pickle(&pickled, &unpickled));
 }
 
 void bind_samples(py::module_& m) {

@@ -95,6 +95,7 @@ bool SampleReader::next(Sample& sample) {
     }
   } while (table_.skip_incomplete && !complete() && ++passed_over_ > 0);
   ++rows_;
+  sample.as_measured.reset();  // that of the row before
   sample.wavelength = geometry_.wavelength(reader_);
   sample.geometry = geometry_.geometry(reader_);
   elements_->read(reader_, sample);
@@ -140,8 +141,10 @@ std::string SampleReader::understood() const {
   if (table_.convention != StokesConvention::germer2017) list(text, "convention " + to_string(table_.convention));
   if (!unread.empty()) list(text, "not read: " + unread);
   if (lost_ > 0)
-    list(text, std::to_string(lost_) + " of " + std::to_string(rows_) +
-                   " samples lose elements that out of plane are mixed with some that were not measured");
+    list(text,
+         std::to_string(lost_) + " of " + std::to_string(rows_) +
+             " samples have elements that out of plane are unknown in xy, mixed with some that were not measured: "
+             "fits in the isotropic basis take them as they were measured");
   if (passed_over_ > 0)
     list(text, std::to_string(passed_over_) + " incomplete row" + (passed_over_ > 1 ? "s" : "") + " passed over");
   return text;

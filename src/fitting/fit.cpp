@@ -13,6 +13,8 @@
 #include "fitting/row_variance.hpp"
 #include "fitting/undetermined.hpp"
 #include "mmbrdf/fitting/weights.hpp"
+#include "mmbrdf/model/at_wavelengths.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "numerics/svd_cache.hpp"
@@ -41,6 +43,26 @@ std::string nanometre_number(double wavelength) { return shortest(in_nanometres(
 Mueller ones() {
   Mueller result;
   result.elements.fill(1);
+  return result;
+}
+
+/// Of the rows of a fit, in the frames that they have; f11 over the reflectance.
+std::vector<Mueller> residuals_of_rows(std::span<const Sample> samples, const FitResult& fitted) {
+  const Model& model = fitted.model;
+  const PreparedModel first = prepare(model, 1);
+  AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
+  std::vector<Mueller> result = fitted.residuals;
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const auto& [wavelength, geometry, f11, normalized, u, as_measured] = samples[s];
+    if (as_measured && rows_turn(model.family)) {
+      const Mueller m = prepared(wavelength).evaluate(geometry, as_measured->frame);
+      for (std::size_t e = 1; e < 16; ++e)
+        result[s].elements[e] = as_measured->normalized.elements[e] - m.elements[e] / m(0, 0);
+    } else if (turns(model.family, model.rotation)) {
+      result[s] = turned(result[s], -geometry.incident.phi);
+    }
+    result[s](0, 0) /= model.reflectance.at(wavelength);
+  }
   return result;
 }
 
@@ -277,6 +299,8 @@ ElementFit FitAccumulator::element_fit(std::size_t element, std::span<const doub
   return fit;
 }
 
+bool rows_turn(Family family) { return family == Family::isotropic; }
+
 FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
                                    Weights weights) {
   FitAccumulator accumulator(basis);
@@ -298,10 +322,9 @@ FitResult FitAccumulator::of_noise(std::span<const Sample> samples, const Basis&
   result.residuals = residuals(result.model, samples);
   if (options.covariance == Covariance::sandwich) {
     list.resize(samples.size(), ones());
+    const std::vector<Mueller> left = residuals_of_rows(samples, result);
     for (std::size_t s = 0; s < samples.size(); ++s) {
-      const double phi_i = samples[s].geometry.incident.phi;
-      Mueller r = accumulator.turns() ? turned(result.residuals[s], -phi_i) : result.residuals[s];
-      r(0, 0) /= result.model.reflectance.at(samples[s].wavelength);
+      const Mueller& r = left[s];
       for (std::size_t e = 0; e < 16; ++e)
         list[s].elements[e] *= std::isnan(r.elements[e]) ? 0 : list[s].elements[e] * r.elements[e] * r.elements[e];
     }

@@ -50,15 +50,35 @@ void require_moderate(std::span<const Sample> samples, std::span<const Mueller> 
     }
 }
 
-/// What was not measured of each sample, as it is turned; nothing if all was.
-std::vector<Elements> unknown_of(std::span<const Sample> samples, bool turns) {
+/// What of each sample has no row in xy, as it is turned; nothing if all has. What is as_measured has rows of its own.
+std::vector<Elements> unknown_of(std::span<const Sample> samples, const Basis& basis) {
   std::vector<Elements> result;
   for (const Sample& sample : samples) {
-    const double turn = turns ? sample.geometry.incident.phi : 0;
-    const Elements elements = not_measured(sample);
+    const double turn = turns(basis) ? sample.geometry.incident.phi : 0;
+    const Elements elements = sample.as_measured && rows_turn(basis.family) ? Elements{}.set() : not_measured(sample);
     result.push_back(turn == 0 || elements.none() ? elements : turned_into(elements, turn, -turn));
   }
   if (std::ranges::none_of(result, [](const Elements& elements) { return elements.any(); })) result.clear();
+  return result;
+}
+
+/// What each element in xy becomes in the frame in which a sample was measured.
+std::array<Mueller, 16> turned_from_xy(const Sample& sample) {
+  const FrameAngles angles = angles_to_xy(sample.geometry, sample.as_measured->frame);
+  std::array<Mueller, 16> result;
+  for (std::size_t e = 0; e < 16; ++e) {
+    Mueller unit{};
+    unit.elements[e] = 1;
+    result[e] = rotated(unit, -angles.scattered, -angles.incident);
+  }
+  return result;
+}
+
+/// The same in the rows that a sample has.
+Elements unknown_in_rows(const Sample& sample, const Elements& in_xy) {
+  if (!sample.as_measured || !in_xy.all()) return in_xy;
+  Elements result = unknown_elements(sample.as_measured->normalized);
+  result[0] = std::isnan(sample.f11);
   return result;
 }
 
@@ -150,11 +170,86 @@ struct FitAccumulator::Folding {
   void deliver(const Share& share) const;
 };
 
+/// Some samples of one wavelength as they were measured in another frame: each row is a sum of the rows in xy of the
+/// elements that are mixed there, which are of one block.
+struct FitAccumulator::Turned {
+  const FitAccumulator& into;
+  std::span<const Sample> samples;
+  std::span<const Mueller> weights;
+  std::span<const std::size_t> members;
+
+  void fold(AtWavelength& at) const {
+    FunctionTables tables(std::max(into.basis_.orders.f11, into.basis_.orders.other), into.basis_.mapping,
+                          members.size());
+    std::vector<std::array<Mueller, 16>> turns;
+    for (std::size_t r = 0; r < members.size(); ++r) {
+      tables.set(r, samples[members[r]].geometry);
+      turns.push_back(turned_from_xy(samples[members[r]]));
+    }
+    const std::array<const Design*, 16> designs = design_of_each();
+    std::vector<RowColumns> in_xy;
+    for (const Design* design : designs) {
+      in_xy.emplace_back(design->modes, members.size());
+      Rows::add(design->terms, tables.of(members.size()), in_xy.back().column(0), in_xy.back().stride());
+    }
+    for (std::size_t e = 0; e < 16; ++e) add_element(e, turns, in_xy, at);
+  }
+
+ private:
+  std::array<const Design*, 16> design_of_each() const {
+    std::array<const Design*, 16> result{};
+    for (const Design& design : *into.designs_)
+      for (const std::size_t e : design.elements) result[e] = &design;
+    return result;
+  }
+
+  double value(std::size_t e, std::size_t row) const {
+    const Sample& sample = samples[members[row]];
+    return e == 0 ? sample.f11 : sample.as_measured->normalized.elements[e];
+  }
+
+  void add_element(std::size_t e, std::span<const std::array<Mueller, 16>> turns, std::vector<RowColumns>& in_xy,
+                   AtWavelength& at) const {
+    std::vector<std::size_t> known;
+    for (std::size_t r = 0; r < members.size(); ++r)
+      if (!std::isnan(value(e, r))) known.push_back(r);
+    if (known.empty()) return;
+    const std::size_t modes = in_xy[e].columns();
+    RowColumns rows(modes + 1, known.size());
+    for (std::size_t from = 0; from < 16; ++from)
+      for (std::size_t k = 0; k < known.size(); ++k)
+        if (const double part = turns[known[k]][from].elements[e]; part != 0)
+          for (std::size_t j = 0; j < modes; ++j) rows.column(j)[k] += part * in_xy[from].column(j)[known[k]];
+    clear_rounding(rows, modes, known.size());
+    long counted = 0;
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      rows.column(modes)[k] = value(e, known[k]);
+      const double weight = weights.empty() ? 1 : weights[members[known[k]]].elements[e];
+      for (std::size_t j = 0; j <= modes; ++j) rows.column(j)[k] *= std::sqrt(weight);
+      at.weight[e] += weight;
+      counted += weight != 0 ? 1 : 0;
+    }
+    LeastSquares triangle(static_cast<int>(modes));
+    triangle.add(rows, counted);
+    at.elements[e].merge(triangle);
+  }
+};
+
+void FitAccumulator::add_as_measured(std::span<const Sample> samples, std::span<const Mueller> weights) {
+  std::map<AtWavelength*, std::vector<std::size_t>> members;
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    if (samples[s].as_measured) members[&slot(samples[s].wavelength)].push_back(s);
+  for (auto& [at, list] : members)
+    for (std::size_t first = 0; first < list.size(); first += rows_at_once)
+      Turned{*this, samples, weights, std::span(list).subspan(first, std::min(rows_at_once, list.size() - first))}.fold(
+          *at);
+}
+
 void FitAccumulator::add(std::span<const Sample> samples, std::span<const Mueller> weights) {
   require_valid(samples);
   require_weights(weights, samples.size());
   require_moderate(samples, weights);
-  const std::vector<Elements> unknown = unknown_of(samples, turns());
+  const std::vector<Elements> unknown = unknown_of(samples, basis_);
   std::map<AtWavelength*, std::vector<std::size_t>> members;
   for (std::size_t s = 0; s < samples.size(); ++s) members[&slot(samples[s].wavelength)].push_back(s);
   std::vector<Folding> all;
@@ -165,10 +260,12 @@ void FitAccumulator::add(std::span<const Sample> samples, std::span<const Muelle
     found->groups.push_back({at, std::move(list)});
   }
   for (const Folding& folding : all) folding.fold(*this);
+  if (rows_turn(basis_.family)) add_as_measured(samples, weights);
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Geometry& geometry = samples[s].geometry;
     sides_ = static_cast<Sides>(sides_ | side(geometry));
-    const Elements elements = unknown.empty() ? ~Elements{} : with_their_blocks(~unknown[s]);
+    const Elements elements =
+        unknown.empty() ? ~Elements{} : with_their_blocks(~unknown_in_rows(samples[s], unknown[s]));
     Measured& measured = measured_of(slot(samples[s].wavelength), elements.to_ulong());
     measured.pairs.add(geometry);
     measured.theta_i_max = std::max(measured.theta_i_max, geometry.incident.theta);

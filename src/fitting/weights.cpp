@@ -47,12 +47,17 @@ std::vector<Mueller> weights_of(std::span<const Sample> samples, const Model& mo
   return result;
 }
 
-Mueller data_weights_of(const Sample& sample, double reflectance) {
+/// Of the rows that a fit makes of a sample.
+Mueller data_weights_of(const Sample& sample, const Basis& basis, double reflectance) {
+  const bool rows_are_turned = sample.as_measured && rows_turn(basis.family);
+  const Sample in_xy = turns(basis) ? at_zero_azimuth(sample) : sample;
+  Elements unknown = rows_are_turned ? unknown_elements(sample.as_measured->normalized) : not_measured(in_xy);
+  unknown[0] = std::isnan(sample.f11);
+  const Mueller& uncertainty = rows_are_turned ? sample.as_measured->uncertainty : in_xy.uncertainty;
   Mueller weights;
-  const Elements unknown = not_measured(sample);
   for (std::size_t e = 0; e < 16; ++e) {
     if (unknown[e]) continue;
-    const double u = sample.uncertainty.elements[e] / (e == 0 ? reflectance : 1);
+    const double u = uncertainty.elements[e] / (e == 0 ? reflectance : 1);
     if (!(u > 0)) throw std::invalid_argument("the uncertainty of " + sample_element(e) + " is not known");
     weights.elements[e] = 1 / (u * u);
   }
@@ -94,8 +99,7 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
   std::vector<Mueller> weights;
   for (const Sample& sample : samples) {
     try {
-      weights.push_back(
-          data_weights_of(turns(basis) ? at_zero_azimuth(sample) : sample, reflectance.at(sample.wavelength)));
+      weights.push_back(data_weights_of(sample, basis, reflectance.at(sample.wavelength)));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }

@@ -168,6 +168,8 @@ Sample from_frame(const Sample& sample, Frame frame) {
   result.normalized = rotated(sample.normalized, angles.scattered, angles.incident);
   if (has_uncertainty(sample))
     result.uncertainty = rotated_uncertainty(sample.uncertainty, angles.scattered, angles.incident);
+  if ((not_measured(result) & ~not_measured(sample)).any())
+    result.as_measured = std::make_shared<const AsMeasured>(AsMeasured{frame, sample.normalized, sample.uncertainty});
   return result;
 }
 

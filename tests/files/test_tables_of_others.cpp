@@ -306,10 +306,12 @@ TEST(TablesOfOthers, HaveBrdfsOfSAndP) {
   EXPECT_EQ(p_first.normalized(0, 1), s.normalized(0, 1));  // s is s in any convention
   const Read out_of_plane = read(first + "\n532,45,0,30,120,0.2,0.1,0.12,0.18\n532,45,0,30,0,0.2,0.1,0.12,0.18\n");
   EXPECT_TRUE(std::isnan(out_of_plane.samples[0].normalized(1, 1)));
-  EXPECT_EQ(
-      out_of_plane.understood,
-      "f11, m12, m21, m22 of f_ss ... f_pp, frame sp, 1 of 2 samples lose elements that out of plane are mixed with "
-      "some that were not measured");
+  EXPECT_EQ(out_of_plane.understood,
+            "f11, m12, m21, m22 of f_ss ... f_pp, frame sp, 1 of 2 samples have elements that out of plane are unknown "
+            "in xy, "
+            "mixed with some that were not measured: fits in the isotropic basis take them as they were measured");
+  ASSERT_TRUE(out_of_plane.samples[0].as_measured && !out_of_plane.samples[1].as_measured);
+  EXPECT_NEAR(out_of_plane.samples[0].as_measured->normalized(1, 1), s.normalized(1, 1), 1e-15);
   const Sample u =
       read(first + ",u_f_ss,u_f_sp,u_f_ps,u_f_pp\n532,45,0,30,180,0.2,0.1,0.12,0.18,0.01,0,0,0\n").samples[0];
   EXPECT_DOUBLE_EQ(u.uncertainty(0, 0), 0.005);

@@ -303,7 +303,7 @@ TEST(NotMeasured, ElementsOfThePublishedGridLeaveTheBlocksOfTheOthersAsTheyAre) 
 }
 
 // A noiseless model and other elements missing in each sample: what is left of 1500 directions determines every coefficient.
-// In the frames sp and scattering_plane a missing element makes unknown those that the turn to xy mixes it with.
+// In the frames sp and scattering_plane the rows of the model are turned.
 TEST(NotMeasured, ElementsOfAnyKindInAnyFrameLeaveANoiselessModelToBeFound) {
   const Model truth = material("ptfe-532");
   for (const Frame frame : frames) {
@@ -321,6 +321,123 @@ TEST(NotMeasured, ElementsOfAnyKindInAnyFrameLeaveANoiselessModelToBeFound) {
       for (std::size_t k = 0; k < truth.blocks[b].coefficients.size(); ++k)
         EXPECT_NEAR(found.blocks[b].coefficients[k], truth.blocks[b].coefficients[k], 1e-11)
             << to_string(frame) << ' ' << truth.blocks[b].block.name << ' ' << k;
+  }
+}
+
+TEST(NotMeasured, RowsTurnWhereBlocksHoldAllThatRotationMixes) {
+  for (const Family family : {Family::isotropic, Family::germer2017, Family::anisotropic}) {
+    bool together = true;
+    for (const Block& block : blocks(family, {7, 4})) {
+      Elements elements;
+      for (const Element& element : block.elements) elements.set(element.index());
+      together = together && turned_into(elements) == elements;
+    }
+    EXPECT_EQ(rows_turn(family), together) << to_string(family);
+  }
+}
+
+namespace {
+
+/// The samples of xy, whole, as if they had been measured in another frame, where parts of each are lost.
+std::vector<Sample> in_frame(std::vector<Sample> samples, Frame frame, const auto& lose) {
+  for (Sample& sample : samples) {
+    sample.normalized = change_frame(sample.normalized, sample.geometry, Frame::xy, frame);
+    lose(sample.normalized);
+    sample = from_frame(sample, frame);
+  }
+  return samples;
+}
+
+}  // namespace
+
+// Intensities of s and p are four elements of sixteen, and leave 4 and 10 combinations of modes open that do not show in them.
+// Five samples of all linear states settle those; alone they have 20 rows for 24 and 30 modes.
+TEST(NotMeasured, StatesSAndPOutOfPlaneCountBesideAFewSamplesOfAllLinearStates) {
+  const Model truth = material("ptfe-532");
+  const std::vector<Sample> whole = simulate(truth, std::array{0.532}, random_geometries(1500, 7), 0, 1);
+  std::size_t sample = 0;
+  const std::vector<Sample> samples = in_frame(whole, Frame::sp, [&](Mueller& m) {
+    const bool linear = sample++ < 5;
+    for (std::size_t e = 1; e < 16; ++e)
+      if (row_and_column_4[e] || (!linear && e != 1 && e != 4 && e != 5))
+        m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  });
+  const Basis basis{truth.family, orders(truth)};
+  const FitResult fitted = fit(samples, basis);
+  for (const std::size_t e : {0U, 1U, 4U, 5U}) EXPECT_EQ(fitted.elements[e].rows, 1500) << e;
+  for (const std::size_t e : {2U, 6U, 8U, 9U, 10U}) EXPECT_EQ(fitted.elements[e].rows, 5) << e;
+  EXPECT_EQ(fitted.model.not_measured, row_and_column_4);
+  const PreparedModel found = prepare(fitted.model, 0.532), expected = prepare(truth, 0.532);
+  for (const Geometry& g : random_geometries(300, 8, radians(70))) {
+    const Mueller a = found.evaluate(g), b = expected.evaluate(g);
+    for (const std::size_t e : {0U, 1U, 2U, 4U, 5U, 6U, 8U, 9U, 10U})
+      EXPECT_NEAR(a.elements[e], b.elements[e], 1e-9) << e;
+  }
+  EXPECT_THROW(fit(std::span(samples).subspan(5), basis), std::invalid_argument);
+}
+
+// A whole sample that says where it was measured has the same rows, turned: an orthogonal matrix within each block.
+TEST(NotMeasured, RowsInAnotherFrameFitAsThoseInXy) {
+  const std::vector<Sample> in_xy = of_ptfe();
+  for (const Frame frame : {Frame::sp, Frame::scattering_plane})
+    for (const Covariance covariance : {Covariance::residuals, Covariance::given})
+      for (const Weights weights : {Weights::none, Weights::speckle, Weights::data}) {
+        if (covariance == Covariance::given && weights != Weights::data) continue;
+        std::vector<Sample> turned_rows = in_xy;
+        std::vector<Sample> plain = in_xy;
+        for (std::size_t s = 0; s < plain.size(); ++s) {
+          plain[s].uncertainty.elements.fill(0.003 + 1e-5 * static_cast<double>(s));
+          const Mueller m = change_frame(plain[s].normalized, plain[s].geometry, Frame::xy, frame);
+          turned_rows[s].as_measured = std::make_shared<const AsMeasured>(AsMeasured{frame, m, plain[s].uncertainty});
+          turned_rows[s].uncertainty = plain[s].uncertainty;
+        }
+        FitOptions options;
+        options.covariance = covariance;
+        const FitResult a = fit(plain, {}, options, weights), b = fit(turned_rows, {}, options, weights);
+        for (std::size_t block = 0; block < a.model.blocks.size(); ++block) {
+          const FittedBlock &x = a.model.blocks[block], &y = b.model.blocks[block];
+          for (std::size_t k = 0; k < x.coefficients.size(); ++k)
+            EXPECT_NEAR(x.coefficients[k], y.coefficients[k], 1e-11) << x.block.name << ' ' << to_string(weights);
+          ASSERT_EQ(x.covariance.size(), y.covariance.size());
+          for (std::size_t k = 0; k < x.covariance.size(); ++k) EXPECT_NEAR(x.covariance[k], y.covariance[k], 1e-13);
+        }
+      }
+}
+
+// What is lost is lost alone: seven elements of ten are missing, each by itself, and none of the others with it.
+TEST(NotMeasured, AMissingElementCostsOnlyItself) {
+  std::mt19937_64 engine(3);
+  std::bernoulli_distribution missing(0.7);
+  std::array<long, 16> known{};
+  const auto lose = [&](Mueller& m) {
+    for (std::size_t e = 1; e < 16; ++e)
+      if (missing(engine))
+        m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+      else
+        ++known[e];
+    ++known[0];
+  };
+  const Model truth = material("ptfe-532");
+  const auto whole = simulate(truth, std::array{0.532}, random_geometries(1000, 9), 0.006, 1);
+  for (const Covariance covariance : {Covariance::residuals, Covariance::sandwich}) {
+    known = {};
+    FitOptions options;
+    options.covariance = covariance;
+    const FitResult fitted = fit(in_frame(whole, Frame::sp, lose), {}, options, Weights::speckle);
+    for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(fitted.elements[e].rows, known[e]) << e;
+    EXPECT_TRUE(fitted.model.not_measured.none());
+    // Its noise is known, 0.6 % at normal directions: u says what it is off by.
+    const PreparedUncertainty u = prepare_uncertainty(fitted.model, 0.532);
+    const PreparedModel found = prepare(fitted.model, 0.532), expected = prepare(truth, 0.532);
+    double squares = 0, count = 0;
+    for (const Geometry& g : random_geometries(200, 11, radians(65)))
+      for (const std::size_t e : {1, 2, 5, 6, 10, 15}) {
+        const double off = found.evaluate(g).elements[e] - expected.evaluate(g).elements[e];
+        squares += off * off / u.evaluate(g)(e, e);
+        ++count;
+      }
+    EXPECT_GT(squares / count, 0.5) << to_string(covariance);
+    EXPECT_LT(squares / count, 2) << to_string(covariance);
   }
 }
 

@@ -73,8 +73,24 @@ def test_uncertainties_of_a_dataset_are_kept(ptfe, tmp_path):
     data.save(tmp_path / "data.csv")
     for one in (data, mmbrdf.load(tmp_path / "data.csv")):
         np.testing.assert_array_equal(one.uncertainty, np.broadcast_to(u, (20, 4, 4)))
-    with pytest.raises(ValueError, match="frame='xy'"):
-        mmbrdf.Dataset(532, *geometry, ptfe.evaluate(532, *geometry), frame="sp", uncertainty=u)
+    in_sp = mmbrdf.Dataset(532, *geometry, ptfe.evaluate(532, *geometry, frame="sp"), frame="sp", uncertainty=u)
+    np.testing.assert_allclose(in_sp.mueller, data.mueller, atol=1e-15)
+    np.testing.assert_allclose(
+        in_sp.uncertainty[:, 0], 0.01, rtol=1e-12
+    )  # equal ones stay equal: the turn is orthogonal
+
+
+def test_states_s_and_p_out_of_plane_are_fitted_as_they_were_measured(ptfe):
+    geometry = mmbrdf.random_geometries(600, seed=2)
+    m = ptfe.evaluate(532, *geometry, frame="sp")
+    m[:, 3, :] = m[:, :, 3] = np.nan
+    m[10:, 2, :] = m[10:, :, 2] = np.nan  # ten samples of all linear states, else s and p
+    data = mmbrdf.Dataset(532, *geometry, m, frame="sp")
+    assert np.isnan(data.normalized[10:, 1, 1]).any()
+    for one in (data, pickle.loads(pickle.dumps(data)), data[:]):
+        found = mmbrdf.fit(one, uncertainty="noise").model
+        seen, truth = (model.evaluate(532, 40, 0, 50, 77)[:3, :3] for model in (found, ptfe))
+        np.testing.assert_allclose(seen, truth, rtol=0, atol=1e-9)
 
 
 def test_invalid_samples_are_refused(ptfe):

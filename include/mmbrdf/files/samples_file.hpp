@@ -44,7 +44,7 @@ class SampleReader {
   bool next(Sample& sample);
 
   /// What of the table is not as in the project's own, in words: what separates, other names, what f11 was made of, what
-  /// was not read, rows that were passed over, and that lost measured elements to the frame. Empty if there is nothing to
+  /// was not read, rows that were passed over, and that have elements unknown in xy. Empty if there is nothing to
   /// say.
   std::string understood() const;
 

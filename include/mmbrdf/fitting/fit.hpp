@@ -2,7 +2,7 @@
 /// From samples to a model, by linear least squares.
 ///
 /// f11 is fitted directly (divided by the reflectance where there is one), the other elements as m_ij = f_ij / f11.
-/// What was not measured (samples.hpp) has weight 0; a block without a row is not in the model, which then does not know
+/// What was not measured (samples.hpp) has weight 0, in the frame in which it was not measured where rows_turn(); a block without a row is not in the model, which then does not know
 /// its elements. Elements that reciprocity or the basis ties together are fitted together, block by block. With y the samples of a
 /// block, X its modes at their geometries and W the weights, the coefficients minimise ‖W^½ (X a − y)‖, and
 ///
@@ -45,6 +45,10 @@ struct Basis {
   friend bool operator==(const Basis&, const Basis&) = default;
 };
 inline bool turns(const Basis& basis) { return turns(basis.family, basis.rotation); }
+
+/// Whether rows can be turned into the frame in which a sample was measured (Sample::as_measured): where each block has
+/// all the elements that rotation mixes. So it is in the isotropic family. Else samples are taken in xy.
+bool rows_turn(Family family);
 
 enum class Weights {
   none,  ///< every row counts the same
@@ -129,7 +133,7 @@ class FitAccumulator {
   explicit FitAccumulator(const Basis& basis);
 
   /// Weights, one matrix for each sample: element 11 is the weight of f11 / reflectance, the others those of m_ij (of
-  /// the turned m_ij where samples are turned). Empty means 1. Throws std::invalid_argument for an invalid sample or
+  /// the turned m_ij where samples are turned, of those as_measured where rows are). Empty means 1. Throws std::invalid_argument for an invalid sample or
   /// weight, before anything is added.
   void add(std::span<const Sample> samples, std::span<const Mueller> weights = {});
 
@@ -170,6 +174,8 @@ class FitAccumulator {
 
   struct Design;   // modes of elements: fit_rows.cpp
   struct Folding;  // of samples into triangles: there too
+  struct Turned;   // samples as they were measured in another frame: there too
+  void add_as_measured(std::span<const Sample> samples, std::span<const Mueller> weights);
   static std::shared_ptr<const std::vector<Design>> designs(std::span<const Block> blocks, Family family);
   AtWavelength& slot(double wavelength);
   friend FitResult fit(std::span<const Sample>, const Basis&, const FitOptions&, Weights);

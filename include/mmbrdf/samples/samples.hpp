@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,14 @@
 
 namespace mmbrdf {
 
+/// Elements as they were measured in one of the frames of the plane of incidence, `sp` or `scattering_plane`, which turn
+/// with the beams. As in a Sample, but for element 11 of `normalized`, which is 1.
+struct AsMeasured {
+  Frame frame = Frame::sp;
+  Mueller normalized;     ///< NaN: not measured
+  Mueller uncertainty{};  ///< 0: not known
+};
+
 /// One measured matrix, in the xy frame.
 struct Sample {
   double wavelength = 0;  ///< micrometres
@@ -20,6 +29,9 @@ struct Sample {
   Mueller normalized;  ///< f_ij / f11; element 11 is 1; NaN: not measured
   /// Standard uncertainties: element 11 of f11 in sr⁻¹, the others of f_ij / f11. 0: not known.
   Mueller uncertainty{};
+  /// Only of a sample that loses elements on the way to xy: fits take it as it was measured where their rows can be turned
+  /// (rows_turn() of fit.hpp).
+  std::shared_ptr<const AsMeasured> as_measured{};
 };
 
 /// What is not measured in a sample, or in none of several.
@@ -71,8 +83,8 @@ Sample turned(const Sample& sample, double angle);
 /// u'² = Σ c² u², c the coefficients of the rotation. Where one that counts is not known, neither is the result.
 Sample at_zero_azimuth(const Sample& sample);
 
-/// The sample whose matrix is in a frame, in the xy frame. What is unknown leaves unknown what it is mixed with, and
-/// uncertainties are turned as at_zero_azimuth() does.
+/// The sample whose matrix is in a frame, in the xy frame. What is unknown leaves unknown what it is mixed with, and is then
+/// kept `as_measured`; uncertainties are turned as at_zero_azimuth() does.
 Sample from_frame(const Sample& sample, Frame frame);
 
 /// The group of each value, counted from 0 in rising order: values belong together if no gap between them exceeds the
