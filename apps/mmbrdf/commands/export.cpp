@@ -9,7 +9,6 @@
 #include "mmbrdf/files/write_file.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
-#include "options/polarimetry.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {

@@ -53,6 +53,12 @@ double number(const std::string& text) {
   return value;
 }
 
+double positive_number(const std::string& text) {
+  const double value = number(text);
+  if (!(value > 0)) throw wrong(text, "a positive number");
+  return value;
+}
+
 int whole_number(const std::string& text) {
   int value = 0;
   if (!read(text, value) || value < 0) throw wrong(text, "a whole number of 0 or more");

@@ -19,7 +19,8 @@ namespace mmbrdf::program {
 // Reading text. All throw std::invalid_argument, naming the text, if it has another form; that is wrong usage. Whether
 // a number makes sense (an angle of 95 degrees does not) is asked later, and is bad input.
 
-double number(const std::string& text);     ///< finite
+double number(const std::string& text);  ///< finite
+double positive_number(const std::string& text);
 int whole_number(const std::string& text);  ///< 0 or more
 int thread_count(const std::string& text);  ///< 0 to 1024
 unsigned long seed(const std::string& text);

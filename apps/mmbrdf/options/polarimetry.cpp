@@ -133,12 +133,6 @@ ReadingNoise noise_from(const std::string& text) {
   return noise;
 }
 
-double positive_number(const std::string& text) {
-  const double value = number(text);
-  if (!(value > 0)) throw std::invalid_argument("\"" + text + "\": expected a positive number");
-  return value;
-}
-
 void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise) {
   add_option(app, "--noise", noise, noise_from, "LAW", "Of the readings B: dark:X,shot:Y,relative:Z [relative:0.001]");
   add_option(app, "--saturation", saturation, positive_number, "LIMIT", "Refuse intensities from this one on");
