@@ -39,11 +39,19 @@ constexpr std::array writers{
     Writer{{"astm", ".astm", "ASTM E2387 text: one number at each geometry of an isotropic sample", true}, make_astm},
     Writer{{"zemax", ".bsdf", "Zemax tabular BSDF text: one number at each geometry, one wavelength", true},
            make_zemax},
-    Writer{{"bird", ".brdf", "BiRD JSON v1.0: values between polarization states, with uncertainties", false},
+    Writer{{.name = "bird",
+            .ending = ".brdf",
+            .meaning = "BiRD JSON v1.0: values between polarization states, with uncertainties",
+            .takes_channel = false,
+            .takes_error = false},
            make_bird},
     Writer{{"rgl", ".bsdf", "RGL material for Mitsuba's measured and pbrt: one number at each geometry", true},
            make_rgl},
-    Writer{{"klems", ".xml", "Radiance's XML: means of one number over Klems' 145 patches, one wavelength", true},
+    Writer{{.name = "klems",
+            .ending = ".xml",
+            .meaning = "Radiance's XML: means of one number over Klems' 145 patches, one wavelength",
+            .takes_channel = true,
+            .takes_error = false},
            make_klems},
     Writer{
         {"netcdf", ".nc", "self-describing NetCDF-4: Mueller matrices of an isotropic sample, with u and flags", false},
@@ -52,9 +60,9 @@ constexpr std::array writers{
             true},
            make_mqdiffuse},
     Writer{{"vlidort", ".vlidort", "VLIDORT's BRDF supplement: Fourier moments of all elements at its streams", false,
-            true},
+            true, false},
            make_vlidort},
-    Writer{{"6s", ".6s", "6S's user-defined surface: reflectances for one sun and one view", true, true}, make_sixs},
+    Writer{{"6s", ".6s", "6S's user-defined surface: reflectances for one sun and one view", true, true, false}, make_sixs},
 };
 
 constexpr auto written_formats = [] {
