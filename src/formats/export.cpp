@@ -62,7 +62,8 @@ constexpr std::array writers{
     Writer{{"vlidort", ".vlidort", "VLIDORT's BRDF supplement: Fourier moments of all elements at its streams", false,
             true, false},
            make_vlidort},
-    Writer{{"6s", ".6s", "6S's user-defined surface: reflectances for one sun and one view", true, true, false}, make_sixs},
+    Writer{{"6s", ".6s", "6S's user-defined surface: reflectances for one sun and one view", true, true, false},
+           make_sixs},
 };
 
 constexpr auto written_formats = [] {

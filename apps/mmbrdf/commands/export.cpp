@@ -97,7 +97,8 @@ Run export_command(CLI::App& app, const CommandLine&) {
   add_text(app, "--channel", o->channel, "NAME",
            "What a format without polarization holds: f11, or a\nquantity of analyze in sr^-1, as f_ss [f11]");
   add_option(app, "--error", o->error_percent, positive_number, "PERCENT",
-             "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]; not of bird, klems,\nvlidort and 6s, whose grids are given");
+             "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]; not of bird, "
+             "klems,\nvlidort and 6s, whose grids are given");
   add_option(app, "--streams", o->streams, whole_number, "N",
              "Of vlidort: cosines in a hemisphere, Gauss-Legendre on 0 to 1");
   add_option(app, "--moments", o->moments, whole_number, "M", "Of vlidort: how many, at most 2 N [2 N]");
