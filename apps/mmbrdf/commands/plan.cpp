@@ -14,7 +14,7 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 #include "streams/geometry_rows.hpp"
 
 namespace mmbrdf::program {
@@ -99,6 +99,20 @@ std::string geometries_csv(const std::vector<Geometry>& list) {
   return text;
 }
 
+void print(const Table& table, Format format) {
+  if (format == Format::csv) {
+    std::cout << csv(table);
+    return;
+  }
+  if (format == Format::json) return program::print(json_of(table));
+  Page page;
+  page.add(
+      "expected standard uncertainties, root mean square over the elements of a block up to 70 degrees; errors that\n"
+      "all readings share are not in them\n\n");
+  page.add(table);
+  std::cout << page.written(format);
+}
+
 void plan(const Options& options) {
   for (const std::string& path : options.designs) require_kept(path, options.output, "geometries");
   require_kept(options.candidates, options.output, "candidates");
@@ -124,15 +138,7 @@ void plan(const Options& options) {
     if (!options.output.empty()) write_text(options.output, geometries_csv(picks));
   }
   const Table table = table_of(known, list, all);
-  if (options.format == Format::csv) {
-    std::cout << csv(table);
-  } else if (options.format == Format::json) {
-    print(json_of(table));
-  } else {
-    std::cout << "expected standard uncertainties, root mean square over the elements of a block up to 70 degrees; "
-                 "errors that\nall readings share are not in them\n\n"
-              << text(table);
-  }
+  print(table, options.format);
   if (options.like.empty())
     note(
         "the variances are those of sintered PTFE: for another material an order of magnitude; fit a small series and "
@@ -166,7 +172,7 @@ Run plan_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--choose", o->choose, whole_number, "N", "Choose N more readings");
   add_file(app, "--from", o->candidates, "CANDIDATES.csv", "Directions to choose from");
   add_output_file(app, "-o,--output", o->output, "CHOSEN.csv", "Write what is chosen");
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");
   set_footer(app, footer);
   return [o] { plan(*o); };
 }
