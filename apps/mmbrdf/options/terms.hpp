@@ -15,7 +15,7 @@ namespace mmbrdf::program {
 struct Terms {
   std::vector<std::string> texts;
   bool budget = false;
-  std::optional<double> coverage;  ///< k, beside that of 95 %
+  std::optional<double> coverage = {};  ///< k, beside that of 95 %
 };
 void add_terms(CLI::App& app, Terms& terms);
 
