@@ -233,9 +233,9 @@ void require_within(double tolerance, const Comparison& comparison) {
   const Difference most = largest(comparison);
   if (most.largest <= tolerance) return;
   const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(most);
-  throw std::runtime_error("the largest difference / f11, " + brief(most.largest) + " at " + brief(nm) +
-                           " nm, incident " + brief(theta_i) + "," + brief(phi_i) + ", reflected " + brief(theta_r) +
-                           "," + brief(phi_r) + ", is more than " + shortest(tolerance));
+  const std::string where = format(" nm, incident %.6g,%.6g, reflected %.6g,%.6g", theta_i, phi_i, theta_r, phi_r);
+  throw std::runtime_error("the largest difference / f11, " + format("%.4g", most.largest) + " at " + brief(nm) +
+                           where + ", is more than " + shortest(tolerance));
 }
 
 void require_valid(const Options& options) {
