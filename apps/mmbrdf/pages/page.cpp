@@ -7,14 +7,17 @@ namespace mmbrdf::program {
 
 namespace {
 
+// A budget of a dozen causes fits A4.
 constexpr const char* style =
-    "body{font-family:sans-serif;max-width:60em;margin:2em auto;padding:0 1em}"
+    "body{font-family:sans-serif;margin:2em}"
     "pre{white-space:pre-wrap}"
-    "table{border-collapse:collapse;margin:1em 0;font-variant-numeric:tabular-nums}"
-    "th,td{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}"
-    "th{border-bottom:1px solid #000}"
+    "table{border-collapse:collapse;margin:1em 0;font-size:.85em;font-variant-numeric:tabular-nums}"
+    "th,td{padding:.15em .4em;text-align:right;border-bottom:1px solid #ddd}"
+    "th{border-bottom:1px solid #000;vertical-align:bottom}"
     "th:first-child,td:first-child{text-align:left}"
-    "tr{break-inside:avoid}";
+    "td:first-child{white-space:nowrap}"
+    "tr{break-inside:avoid}"
+    "@media print{@page{margin:12mm}body{margin:0;font-size:8pt}pre{font-size:7pt}}";
 
 /// Without empty lines around it.
 std::string trimmed(const std::string& lines) {
