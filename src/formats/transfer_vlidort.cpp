@@ -50,10 +50,11 @@ int components_known(const Elements& unknown) {
   return 1;
 }
 
-/// VLIDORT counts azimuths from forward and takes 0 ... 360 degrees.
+/// VLIDORT counts azimuths from forward and takes 0 ... 360 degrees. Without the digits that a difference such as
+/// 370.1 - 360 ends in.
 double degrees_from_forward(double azimuth) {
   const double turned = std::fmod(in_degrees(azimuth) + 180, 360);  // -180 ... 540 are in 0 ... 360
-  const double positive = turned < 0 ? turned + 360 : turned;
+  const double positive = std::round((turned < 0 ? turned + 360 : turned) * 1e10) / 1e10;
   return positive < 360 ? positive : 0;
 }
 

@@ -35,6 +35,27 @@ void divide(Difference& total, const std::string& name) {
     throw std::invalid_argument("the differences of " + name + " are too large to be squared");
 }
 
+/// A difference where f11 of the first is so large.
+void add(Comparison& total, const Mueller& d, double f11, const Sample& sample) {
+  ++total.samples;
+  add(total.f11, d(0, 0), sample);
+  if (!(f11 > 0)) {
+    ++total.dark;
+    return;
+  }
+  add(total.f11_relative, d(0, 0) / f11, sample);
+  for (std::size_t e = 1; e < 16; ++e) add(total.normalized[e], d.elements[e], sample);
+}
+
+Comparison divided(Comparison total, const std::string& first) {
+  if (total.samples == total.dark)
+    throw std::invalid_argument("f11 of " + first + " is positive at none of the samples");
+  divide(total.f11, "f11");
+  divide(total.f11_relative, "f11");
+  for (std::size_t e = 1; e < 16; ++e) divide(total.normalized[e], "element " + element_name(e));
+  return total;
+}
+
 }  // namespace
 
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples) {
@@ -58,23 +79,23 @@ Comparison compare(const Model& model, std::span<const Sample> samples) {
   const PreparedModel first = prepare(model, 1);
   AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
   Comparison result;
-  result.samples = static_cast<long>(samples.size());
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    const Mueller& d = differences[s];
-    const double f11 = prepared(samples[s].wavelength).f11(samples[s].geometry);
-    add(result.f11, d(0, 0), samples[s]);
-    if (!(f11 > 0)) {
-      ++result.dark;
-      continue;
-    }
-    add(result.f11_relative, d(0, 0) / f11, samples[s]);
-    for (std::size_t e = 1; e < 16; ++e) add(result.normalized[e], d.elements[e], samples[s]);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    add(result, differences[s], prepared(samples[s].wavelength).f11(samples[s].geometry), samples[s]);
+  return divided(result, "the model");
+}
+
+Comparison compare(std::span<const Sample> first, std::span<const Sample> second) {
+  if (first.empty()) throw std::invalid_argument("no samples");
+  if (first.size() != second.size()) throw std::invalid_argument("samples to compare must be as many");
+  require_valid(first);
+  require_valid(second);
+  Comparison result;
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    Mueller difference = second[s].normalized - first[s].normalized;
+    difference(0, 0) = second[s].f11 - first[s].f11;
+    add(result, difference, std::isnan(first[s].f11) ? 1 : first[s].f11, second[s]);
   }
-  if (result.samples == result.dark) throw std::invalid_argument("f11 of the model is positive at none of the samples");
-  divide(result.f11, "f11");
-  divide(result.f11_relative, "f11");
-  for (std::size_t e = 1; e < 16; ++e) divide(result.normalized[e], "element " + element_name(e));
-  return result;
+  return divided(result, "the first");
 }
 
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,

@@ -34,7 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const double number : program::range_from(text)) fuzz::require(std::isfinite(number), "ranges are finite");
         break;
       case 2:
-        program::direction_degrees(text);
+        fuzz::require(std::isfinite(program::incident_degrees(text).theta), "sources are finite");
+        program::reflected_degrees(text);
         break;
       case 3:
         program::declared_from(text);

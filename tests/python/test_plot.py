@@ -211,6 +211,12 @@ def test_the_depolarization_map_shows_the_parameter(ptfe):
     assert "Bernabeu" in written(figure) and "351 nm" in written(figure)
 
 
+@pytest.mark.parametrize("limit", [0, -0.1, float("nan")])
+def test_limits_to_both_sides_of_zero_are_positive(ptfe, limit):
+    with pytest.raises(ValueError, match="limit = .*: expected a positive number"):
+        mmbrdf.plot.hemisphere(ptfe, 532, 45, limit=limit)
+
+
 def test_maps_take_limits_and_axes(ptfe):
     axes = Figure().add_subplot()
     figure, returned = mmbrdf.plot.depolarization_map(

@@ -74,9 +74,17 @@ def test_a_file_has_the_format_of_its_ending_and_is_the_same_each_time(files):
     assert xml.parse(files / "a.SVG").getroot().tag.endswith("svg")
 
 
-def test_the_same_picture_as_in_python(files):
-    assert called("map ptfe -w 532 -i 60 --quantity purity --width 8 --dpi 100 -o shell.png") == 0
-    figure, _ = mmbrdf.plot.map(mmbrdf.material("ptfe"), "purity", 532, 60, width_cm=8)
+@pytest.mark.parametrize(
+    "words, asked",
+    [
+        ("--quantity purity", {"quantity": "purity"}),
+        ("--quantity f11", {"quantity": "11"}),
+        ("--quantity scattered_S2 --stokes 1,0.5,0,-0.1", {"quantity": "scattered_S2", "stokes": [1, 0.5, 0, -0.1]}),
+    ],
+)
+def test_the_same_picture_as_in_python(files, words, asked):
+    assert called(f"map ptfe -w 532 -i 60 {words} --width 8 --dpi 100 -o shell.png") == 0
+    figure, _ = mmbrdf.plot.map(mmbrdf.material("ptfe"), wavelength_nm=532, theta_i_deg=60, width_cm=8, **asked)
     figure.savefig("python.png", dpi=100)
     np.testing.assert_array_equal(imread("shell.png"), imread("python.png"))
 
@@ -107,6 +115,12 @@ def test_wrong_usage_is_said_with_status_2(files, capsys, words, message):
         ("in-plane-curves data.csv -o a.png", "data.csv: expected a model"),
         ("reflectance-factor ptfe -w 532 --view 30 -o a.png", "--view 30: expected 2 numbers"),
         ("reflectance-factor ptfe -w 532 --term scale -o a.png", "--term scale: expected NAME=VALUE"),
+        (
+            "reflectance-factor ptfe -w 532 --term scale=0.3% --term scale=0.4% -o a.png",
+            "--term scale=0.4%: scale is given twice",
+        ),
+        ("map ptfe -w 532 --quantity scattered_S1 -o a.png", "needs stokes"),
+        ("map ptfe -w 532 --quantity scattered_S1 --stokes 1,0 -o a.png", "--stokes 1,0: expected 4 numbers"),
         ("map ptfe -w 532 --quantity f12 -o a.png", "quantity = 'f12': expected one of 11, 12"),
         ("hemisphere model.json -o nowhere/a.png", "nowhere/a.png"),
     ],

@@ -68,6 +68,47 @@ TEST(Significance, IsTheDifferenceOverTheUncertaintiesOfBoth) {
   EXPECT_EQ(found[5].geometry.incident.theta, 0.8);
 }
 
+/// Samples of the truth with noise of 1 %, which they know.
+std::vector<Sample> measured(unsigned long seed, const std::vector<Geometry>& at) {
+  std::vector<Sample> samples = simulate(material("ptfe-532"), green, at, 0.01, seed);
+  for (Sample& s : samples)
+    for (std::size_t e = 0; e < 16; ++e) s.uncertainty.elements[e] = 0.01 * (e == 0 ? s.f11 : 1);
+  return samples;
+}
+
+// Of 1000 independent differences: the root mean square of d / u is 1 +- 0.022, and 4.6 +- 0.7 % are beyond 2 u. The noise of
+// simulate() has the factor cos θr / cos θi of speckle, so at the same angle of both. Five of these u for sixteen elements.
+TEST(Significance, OfTwoMeasurementsIsThatOfTheirNoise) {
+  std::vector<Geometry> at = random_geometries(1000, 4, radians(60));
+  for (Geometry& g : at) g.reflected.theta = g.incident.theta;
+  for (const Significance& s : significance(measured(1, at), measured(2, at))) {
+    EXPECT_EQ(s.samples, 1000);
+    EXPECT_NEAR(s.rms, 1, 0.11);
+    EXPECT_NEAR(s.beyond, 0.046, 0.035);
+  }
+}
+
+TEST(Significance, OfSamplesCountsTheirUncertaintyAndThatOfTheModelAndTerms) {
+  const Model model = least_squares("ptfe-532");
+  const Geometry g{{0.8, 0.1}, {0.5, 2.6}};
+  const std::vector<Sample> samples = measured(1, {g});
+  const std::vector<TypeBTerm> terms{{"plaque", ErrorOf::scale, 0.003}};
+  const Mueller f = prepare(model, 0.532).evaluate(g);
+  const double u = standard_uncertainty(prepare_uncertainty(model, 0.532).normalized(g))(0, 0);
+  const double of_sample = 0.01 * samples[0].f11;
+  EXPECT_NEAR(significance(model, samples)[0].u, std::hypot(u, of_sample), 1e-12);
+  EXPECT_NEAR(significance(model, samples, terms)[0].u, std::hypot(u, of_sample, 0.003 * f(0, 0)), 1e-12);
+  EXPECT_NEAR(significance(model, samples, terms)[5].u, significance(model, samples)[5].u, 1e-12);  // a ratio
+}
+
+TEST(Significance, LeavesOutWhatHasNoUncertainty) {
+  std::vector<Sample> samples = measured(1, {{{0.8, 0.1}, {0.5, 2.6}}});
+  samples[0].uncertainty.elements[5] = 0;
+  EXPECT_EQ(significance(least_squares("ptfe-532"), samples)[5].samples, 0);
+  EXPECT_EQ(significance(least_squares("ptfe-532"), samples)[6].samples, 1);
+  EXPECT_EQ(significance(samples, samples)[5].samples, 0);
+}
+
 TEST(Significance, NeedsTheUncertaintiesOfBoth) {
   Model unknown = least_squares("ptfe-532");
   for (FittedBlock& block : unknown.blocks) block.covariance.clear();

@@ -26,6 +26,20 @@ std::vector<Sample> simulated(const Model& model, int count) {
   return simulate(model, green, random_geometries(count, 3));
 }
 
+TEST(Comparison, OfSamplesIsThatOfAModelThatHasTheFirst) {
+  const Model model = material("ptfe-532");
+  std::vector<Sample> samples = simulated(model, 100);
+  const std::vector<Sample> first = samples;
+  samples[17].f11 *= 1.5;
+  samples[42].normalized(2, 1) -= 0.25;
+  const Comparison pairs = compare(first, samples), of_model = compare(model, samples);
+  EXPECT_EQ(pairs.samples, 100);
+  EXPECT_NEAR(pairs.f11_relative.rms, of_model.f11_relative.rms, 1e-14);
+  EXPECT_NEAR(polarization_rms(pairs), polarization_rms(of_model), 1e-14);
+  EXPECT_EQ(largest(pairs).geometry, samples[17].geometry);
+  EXPECT_THROW(compare(std::span(first).first(3), samples), std::invalid_argument);
+}
+
 TEST(Comparison, FindsWhatWasAddedToOneSampleAndWhere) {
   const Model model = material("ptfe-532");
   std::vector<Sample> samples = simulated(model, 100);

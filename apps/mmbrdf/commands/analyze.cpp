@@ -11,6 +11,7 @@
 #include "options/scan.hpp"
 #include "options/terms.hpp"
 #include "pages/analyze_report.hpp"
+#include "pages/describe.hpp"
 #include "pages/output.hpp"
 #include "streams/npy.hpp"
 
@@ -64,23 +65,47 @@ Answers answers_of(const Model& model, const Options& options, bool parts) {
   }
 }
 
-void analyze_one(const Options& options) {
-  const Model model = model_of(options);
-  const double wavelength = wavelength_from(options.wavelength_nm, model);
-  const Answers answers = answers_of(model, options, true);
-  const Place place = place_of(model, options, wavelength);
-  const Geometry geometry = geometry_of(options);
-  if (options.format == Format::csv) {
-    const AddedColumns columns = analyzed_columns(answers, options.strict);
-    const AddedFields added = columns.fields(wavelength, {&geometry, 1}).front();
-    warn_if_outside(place.model, added.outside, model.validity);
-    std::cout << place_columns << columns.names << '\n' << fields(place) << added.text << '\n';
-    return;
+std::string written(const std::vector<AnalysisReport>& reports, Format format) {
+  if (format == Format::json) {
+    std::vector<Json> all;
+    for (const AnalysisReport& report : reports) all.push_back(json_of(report));
+    return printed_all(all);
   }
-  const AnalysisReport report{options, place, answers, answers.at(wavelength).at(geometry), options.terms.budget};
-  if (options.strict) require_inside(report.answer.outside, model.validity);
-  warn_if_outside(place.model, report.answer.outside, model.validity);
-  (options.format == Format::json ? print_json : print_text)(report);
+  Page page;
+  for (const AnalysisReport& report : reports) {
+    if (&report != &reports.front()) page.add("\n");
+    page.add(page_of(report));
+  }
+  return page.written(format);
+}
+
+void analyze_one(Options options) {
+  const Model model = model_of(options);
+  complete_azimuths(options, model);
+  const Answers answers = answers_of(model, options, true);
+  const AddedColumns columns = analyzed_columns(answers, options.strict);
+  const Geometry geometry = geometry_of(options);
+  const bool csv = options.format == Format::csv;
+  std::string rows = place_columns + columns.names + "\n";
+  std::vector<AnalysisReport> reports;
+  for (const std::optional<double>& wavelength_nm : wavelengths_asked(options)) {
+    options.wavelength_nm = wavelength_nm;
+    const double wavelength = wavelength_from(wavelength_nm, model);
+    const Place place = place_of(model, options, wavelength);
+    Outside here = inside;
+    if (csv) {
+      const AddedFields added = columns.fields(wavelength, {&geometry, 1}).front();
+      rows += fields(place) + added.text + "\n";
+      here = added.outside;
+    } else {
+      reports.push_back(
+          {options, place, answers, answers.at(wavelength).at(geometry), options.terms.budget, options.terms.coverage});
+      here = reports.back().answer.outside;
+      if (options.strict) require_inside(here, model.validity);
+    }
+    warn_if_outside(place.model, here, model.validity);
+  }
+  std::cout << (csv ? rows : written(reports, options.format.value_or(Format::text)));
 }
 
 /// Rows of a scan that have one wavelength.
@@ -123,10 +148,15 @@ RangeCount write_scan(std::ostream& out, const Model& model, const Options& opti
   return range;
 }
 
-void analyze_scan(const Options& options) {
+void analyze_scan(Options options) {
+  if (options.wavelengths_nm && options.wavelengths_nm->size() > 1)
+    options.scans.insert(options.scans.begin(), wavelength_scan(*options.wavelengths_nm));
+  else if (options.wavelengths_nm)
+    options.wavelength_nm = options.wavelengths_nm->front();
   require_complete(options.scans, options);
   require_model_kept(options.model, options.output);
   const Model model = model_of(options);
+  complete_azimuths(options, model);
   wavelength_from(at_row(options.scans, options, 0).wavelength_nm, model);
   const Answers answers = answers_of(model, options, false);
   const AddedColumns columns = analyzed_columns(answers, options.strict);
@@ -149,7 +179,7 @@ void analyze(Options& options) {
   if (rows && options.format && *options.format != Format::csv)
     throw WrongUsage("--format", "only csv goes with --geometries and --scan");
   if (options.terms.budget && (rows || options.format == Format::csv))
-    throw WrongUsage("--budget", "goes with one geometry, as text or json");
+    throw WrongUsage("--budget", "goes with one geometry, as text, json or html");
   if (options.asked.light) require_possible(*options.asked.light);
   if (!rows && !options.output.empty()) throw WrongUsage("--output", "needs --geometries or --scan");
   if (!options.geometries.empty()) return analyze_file(options);
@@ -180,7 +210,8 @@ constexpr const char* examples =
     "\n"
     "Examples:\n"
     "  mmbrdf analyze ptfe -w 532 -i 45,0 -r 30,180 --term plaque:scale=0.3% --term theta_r=0.02deg\n"
-    "  mmbrdf analyze ptfe -w 532 -i 45,0 --scan theta_r=-75:75:1 -o scan.csv\n"
+    "  mmbrdf analyze ptfe -w 443,555,670 -i 45 -r 0 --term scale=0.3% --budget --coverage 2\n"
+    "  mmbrdf analyze ptfe -w 532 -i 45 --scan theta_r=-75:75:1 -o scan.csv\n"
     "  mmbrdf analyze ptfe --geometries directions.csv --monte-carlo 1000 -o values.csv";
 
 std::string quantity_lines() {
@@ -208,7 +239,7 @@ Run analyze_command(CLI::App& app, const CommandLine&) {
   add_flag(app, "--strict", o->strict, "Refuse what is not known to be inside the fitted range");
   add_as_printed(app, *o);
   add_option(app, "--format", o->format, format_from, "FORMAT",
-             "text, csv or json for one geometry [text]; csv for files and scans");
+             "text, csv, json or html for one geometry [text]; csv for\nfiles and scans");
   set_footer(app, columns + quantity_lines() + footer + terms_help + examples);
   return [o] { analyze(*o); };
 }

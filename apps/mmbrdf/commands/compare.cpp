@@ -11,12 +11,14 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/significance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
+#include "mmbrdf/samples/matching.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
+#include "options/terms.hpp"
+#include "pages/compare_report.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
 
 namespace mmbrdf::program {
 
@@ -27,7 +29,9 @@ struct Options {
   std::optional<Grid> grid;
   std::optional<std::vector<double>> wavelengths_nm;
   SampleTable table;
-  std::optional<double> theta_max_deg, tolerance;
+  std::optional<double> theta_max_deg, tolerance, match_deg;
+  std::optional<Matching> partners;
+  Terms terms;
   unsigned long seed = 0;
   Format format = Format::text;
   bool as_printed = false;
@@ -74,13 +78,6 @@ std::vector<Sample> samples_of(const Model& first, const Model& second, const Op
   }
 }
 
-/// What the first model is compared with, and what to call it.
-struct Second {
-  std::vector<Sample> samples;
-  std::string name;
-  std::optional<std::array<Significance, 16>> significance = {};  ///< of two models whose uncertainties are known
-};
-
 /// Of samples, a fit as `mmbrdf fit` makes it by default.
 Model model_of(const std::string& name, const Options& options) {
   if (!is_samples(name)) return open_model(name);
@@ -91,128 +88,154 @@ Model model_of(const std::string& name, const Options& options) {
   }
 }
 
-std::optional<std::array<Significance, 16>> significance_of(const Model& first, const Model& second,
-                                                            const std::vector<Sample>& samples) {
-  if (!knows_uncertainty(first) || !knows_uncertainty(second)) return {};
-  return significance(first, second, samples);
+/// Without what lies beyond the fitted angles of a model, unless --theta-max says how far to go. Counts it.
+std::size_t leave_out_beyond(const Model& model, std::vector<Sample>& samples, const Options& options) {
+  if (options.theta_max_deg) return 0;
+  constexpr unsigned beyond = outside_theta_i | outside_theta_r | outside_directions;
+  return std::erase_if(samples,
+                       [&](const Sample& s) { return outside(model.validity, s.wavelength, s.geometry) & beyond; });
+}
+
+void require_some(const std::vector<Sample>& samples, const Options& options) {
+  if (!samples.empty()) return;
+  throw std::invalid_argument(options.theta_max_deg
+                                  ? "--theta-max " + shortest(*options.theta_max_deg) + ": no geometry is within"
+                                  : "no direction is within the fitted ranges of both: give --theta-max");
+}
+
+/// What u is of: "the model, the samples and scale, taken as independent"
+std::string uncertain_words(std::vector<std::string> parts, const Options& options) {
+  for (const TypeBTerm& term : terms_from(options.terms)) parts.push_back(term.name);
+  const std::string last = parts.back();
+  parts.pop_back();
+  return "of " + (parts.empty() ? "" : joined(parts) + " and ") + last + ", taken as independent";
+}
+
+/// That of `name` is not known.
+std::string unknown_words(const std::string& name, const Options& options) {
+  if (!options.terms.texts.empty())
+    throw WrongUsage("--term", "needs uncertainties of both, and those of " + name + " are not known");
+  return "uncertainties of " + name + " are not known: differences are not set beside them";
 }
 
 const char* if_printed(const Model& model) { return model.rotation == Rotation::as_printed ? " as printed" : ""; }
 
-Second second_of(const Model& first, const Options& options) {
-  if (is_samples(options.second) && !is_samples(options.first)) {
-    if (options.grid)
-      throw WrongUsage("--grid", "goes with two models; " + data_name(options.second) + " has its own geometries");
-    std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm, options.table);
-    std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
-    return {std::move(samples), data_name(options.second)};
+/// Bad geometries are the model's.
+void compare_with(const Model& first, const std::vector<Sample>& samples, CompareReport& report,
+                  const Options& options) {
+  try {
+    report.comparison = compare(first, samples);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(base_name(options.first) + ": " + error.what());
   }
+  report.wavelengths = wavelengths(samples);
+  report.rotation = first.rotation;
+}
+
+/// A model and samples.
+CompareReport with_samples(const Model& first, const Options& options) {
+  const std::string name = data_name(options.second);
+  if (options.grid) throw WrongUsage("--grid", "goes with two models; " + name + " has its own geometries");
+  std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm, options.table);
+  const std::size_t all = samples.size();
+  std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
+  if (const std::size_t left_out = leave_out_beyond(first, samples, options); left_out > 0)
+    note(std::to_string(left_out) + " of " + counted(static_cast<long>(all), "sample") + " beyond the fitted range, " +
+         fitted_range(first.validity) + ", left out: --theta-max 90 takes all");
+  require_some(samples, options);
+  CompareReport report{.first = data_name(options.first), .second = name};
+  compare_with(first, samples, report, options);
+  if (!knows_uncertainty(first) || std::ranges::none_of(samples, has_uncertainty)) {
+    report.uncertain = unknown_words(knows_uncertainty(first) ? name : report.first, options);
+  } else {
+    report.significance = significance(first, samples, terms_from(options.terms));
+    report.uncertain = uncertain_words({"the model", "the samples"}, options);
+  }
+  warn_if_outside(first, samples, base_name(options.first));
+  return report;
+}
+
+CompareReport with_model(const Model& first, const Options& options) {
   const Model second = model_of(options.second, options);
+  const std::string name = data_name(options.second);
   std::vector<Sample> samples = samples_of(first, second, options);
-  if (samples.empty() && !options.theta_max_deg)
-    throw std::runtime_error("no direction is within the fitted ranges of both: give --theta-max");
-  warn_if_outside(second, samples, data_name(options.second));
-  auto found = significance_of(first, second, samples);
-  return {std::move(samples), data_name(options.second) + if_printed(second), std::move(found)};
-}
-
-/// Wavelength in nm, and the four angles in degrees, of the largest difference.
-std::array<double, 5> place(const Difference& d) {
-  return {nanometres(d.wavelength), degrees(d.geometry.incident.theta), degrees(d.geometry.incident.phi),
-          degrees(d.geometry.reflected.theta), degrees(d.geometry.reflected.phi)};
-}
-
-struct Report {
-  std::string first, second;
-  std::vector<double> wavelengths;
-  const Comparison& comparison;
-  const std::optional<std::array<Significance, 16>>& significance;
-  Rotation rotation;
-};
-
-/// |difference| / u of each element, in a table of its own, or in columns behind the others.
-std::vector<Column> significance_columns(unsigned where) {
-  return {{.name = "mean_over_u", .format = "%12.2f", .heading = "mean |d|/u", .where = where},
-          {.name = "largest_over_u", .format = "%14.2f", .heading = "largest |d|/u", .where = where},
-          {.name = "within_95", .format = "%12.1f", .heading = "within 95 %", .where = where}};
-}
-
-void append(Table::Row& row, const std::optional<std::array<Significance, 16>>& all, std::size_t e, double unit) {
-  if (all) row.insert(row.end(), {(*all)[e].mean, (*all)[e].largest, unit * (*all)[e].within});
-}
-
-std::string significance_text(const std::array<Significance, 16>& all) {
-  Table table{{{"element", "%-8s"}, {"unit", "%-6s"}}};
-  for (const Column& column : significance_columns(in_text)) table.columns.push_back(column);
-  for (std::size_t e = 0; e < 16; ++e) {
-    if (all[e].samples == 0) continue;
-    Table::Row& row = table.rows.emplace_back(Table::Row{element_name(e), e == 0 ? "sr^-1" : "f11"});
-    append(row, all, e, 100);
+  leave_out_beyond(first, samples, options);
+  leave_out_beyond(second, samples, options);
+  require_some(samples, options);
+  warn_if_outside(second, samples, name);
+  CompareReport report{.first = data_name(options.first), .second = name + if_printed(second)};
+  compare_with(first, samples, report, options);
+  if (!knows_uncertainty(first) || !knows_uncertainty(second)) {
+    report.uncertain = unknown_words(knows_uncertainty(first) ? name : report.first, options);
+  } else {
+    report.significance = significance(first, second, samples, terms_from(options.terms));
+    report.uncertain = uncertain_words({"both models"}, options);
   }
-  return "\nd / u, the fits being independent: 0.8 in the mean and 95 % within 1.96 if they differ by chance\n" +
-         text(table);
+  warn_if_outside(first, samples, base_name(options.first));
+  return report;
 }
 
-Table table(const Comparison& comparison, const std::optional<std::array<Significance, 16>>& significance) {
-  Table table{{{"element", "%-8s"},
-               {"unit", "%-6s"},
-               {"rms", "%11.6g"},
-               {"mean", "%12.6g"},
-               {"largest", "%12.6g"},
-               {.name = "wavelength_nm", .format = "%7.6g", .heading = "at nm", .digits = shortest}}};
-  for (const std::string angle : {"theta_i", "phi_i", "theta_r", "phi_r"})
-    table.columns.push_back({.name = angle + "_deg", .format = "%8.2f", .heading = angle, .digits = shortest});
-  if (significance)
-    for (const Column& column : significance_columns(in_csv | in_json)) table.columns.push_back(column);
-  const auto add = [&](std::size_t e, const std::string& unit, const Difference& d) {
-    Table::Row& row = table.rows.emplace_back(Table::Row{element_name(e), unit});
-    if (d.samples == 0) return;  // not measured
-    row.insert(row.end(), {d.rms, d.mean, d.largest});
-    std::ranges::copy(place(d), std::back_inserter(row));
-    append(row, significance, e, 1);
+std::string matched_words(const MatchedSamples& found, std::size_t all, const Options& options) {
+  std::string text = "matched within " + shortest(*options.match_deg) +
+                     " degrees: " + std::to_string(found.second.size()) + " of " +
+                     counted(static_cast<long>(all), "sample") + " of " + data_name(options.second);
+  if (found.images > 0) text += ", " + std::to_string(found.images) + " of them by an image";
+  return text + "\n";
+}
+
+/// Two files of samples, row by row.
+CompareReport matched_samples(const Options& options) {
+  const std::string first = data_name(options.first), second = data_name(options.second);
+  if (options.grid || options.as_printed || !options.terms.texts.empty())
+    throw WrongUsage("--match", "samples beside samples have no --grid, --as-printed or --term");
+  const auto read = [&](const std::string& name) {
+    std::vector<Sample> samples = samples_at(name, options.wavelengths_nm, options.table);
+    std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
+    return samples;
   };
-  add(0, "sr^-1", comparison.f11);
-  add(0, "f11", comparison.f11_relative);
-  for (std::size_t e = 1; e < 16; ++e) add(e, "f11", comparison.normalized[e]);
-  return table;
+  const std::vector<Sample> of_second = read(options.second);
+  Matching matching = options.partners.value_or(Matching{});
+  matching.tolerance = radians(*options.match_deg);
+  const MatchedSamples found = matched(read(options.first), of_second, matching);
+  if (found.first.empty())
+    throw std::runtime_error("no sample of " + second + " is within " + shortest(*options.match_deg) +
+                             " degrees of one of " + first + ": without --match their fits are compared");
+  CompareReport report{.first = first,
+                       .second = second,
+                       .wavelengths = wavelengths(found.second),
+                       .comparison = compare(found.first, found.second),
+                       .matched = matched_words(found, of_second.size(), options)};
+  for (const auto& [samples, name] : {std::pair(&found.first, first), std::pair(&found.second, second)})
+    if (std::ranges::none_of(*samples, has_uncertainty)) {
+      report.uncertain = unknown_words(name, options);
+      return report;
+    }
+  report.significance = significance(found.first, found.second);
+  report.uncertain = uncertain_words({"both samples"}, options);
+  return report;
 }
 
-std::string text(const Report& report) {
-  const auto others = std::ranges::count_if(std::span(report.comparison.normalized).subspan(1),
-                                            [](const Difference& d) { return d.samples > 0; });
-  return report.second + " - " + report.first + (report.rotation == Rotation::as_printed ? " as printed" : "") + ": " +
-         counted(report.comparison.samples, "sample") + " at " + nanometre_list(report.wavelengths) + ", frame xy\n\n" +
-         text(table(report.comparison, report.significance)) +
-         (report.significance ? significance_text(*report.significance) : "") +
-         (others == 0 ? "\n"
-                      : format("\n%-35s%.6g\n", ("rms of the " + std::to_string(others) + " others / f11").c_str(),
-                               polarization_rms(report.comparison))) +
-         format("largest difference / f11           %.6g\n", largest(report.comparison).largest);
-}
-
-std::string csv(const Report& report) {
-  Table all = table(report.comparison, report.significance);
-  all.rows.push_back({"polarization", "f11", polarization_rms(report.comparison)});
-  return csv(all);
-}
-
-std::string json(const Report& report) {
-  Json json{{"model", report.first}, {"compared_with", report.second},       {"rotation", to_string(report.rotation)},
-            {"frame", "xy"},         {"samples", report.comparison.samples}, {"dark_samples", report.comparison.dark}};
-  for (const double wavelength : report.wavelengths) json["wavelengths_nm"].push_back(nanometres(wavelength));
-  json["elements"] = json_of(table(report.comparison, report.significance));
-  json["rms_polarization"] = polarization_rms(report.comparison);
-  json["largest"] = largest(report.comparison).largest;
-  return printed(json);
+CompareReport compared(const Options& options) {
+  const bool first_samples = is_samples(options.first), second_samples = is_samples(options.second);
+  if (options.match_deg) {
+    if (!first_samples || !second_samples) throw WrongUsage("--match", "goes with two files of samples");
+    return matched_samples(options);
+  }
+  Model first = model_of(options.first, options);
+  if (options.as_printed) {
+    note_unless_printed(first, base_name(options.first));
+    first = as_printed(std::move(first));
+  }
+  return second_samples && !first_samples ? with_samples(first, options) : with_model(first, options);
 }
 
 void require_within(double tolerance, const Comparison& comparison) {
   const Difference most = largest(comparison);
   if (most.largest <= tolerance) return;
   const auto [nm, theta_i, phi_i, theta_r, phi_r] = place(most);
-  throw std::runtime_error("the largest difference / f11, " + brief(most.largest) + " at " + brief(nm) +
-                           " nm, incident " + brief(theta_i) + "," + brief(phi_i) + ", reflected " + brief(theta_r) +
-                           "," + brief(phi_r) + ", is more than " + shortest(tolerance));
+  const std::string where = format(" nm, incident %.6g,%.6g, reflected %.6g,%.6g", theta_i, phi_i, theta_r, phi_r);
+  throw std::runtime_error("the largest difference / f11, " + format("%.4g", most.largest) + " at " + brief(nm) +
+                           where + ", is more than " + shortest(tolerance));
 }
 
 void require_valid(const Options& options) {
@@ -229,32 +252,25 @@ void require_valid(const Options& options) {
     throw std::invalid_argument("standard input can be read once only");
 }
 
-Comparison compared(const Model& first, const std::vector<Sample>& samples, const Options& options) {
-  try {
-    return compare(first, samples);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(base_name(options.first) + ": " + error.what());
-  }
-}
-
 void compare_them(const Options& options) {
   require_valid(options);
-  Model first = model_of(options.first, options);
-  if (options.as_printed) {
-    note_unless_printed(first, base_name(options.first));
-    first = as_printed(std::move(first));
+  const CompareReport report = compared(options);
+  write_text(options.output, written(report, options.format));
+  if (report.comparison.dark > 0) warn(base_name(options.first) + ": " + dark_line(report.comparison));
+  if (options.tolerance) require_within(*options.tolerance, report.comparison);
+}
+
+/// mirror, reciprocal or both.
+Matching partners_from(const std::string& text) {
+  Matching result;
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(',', begin);
+    const std::string name = text.substr(begin, end == std::string::npos ? end : end - begin);
+    if (name != "mirror" && name != "reciprocal")
+      throw std::invalid_argument("\"" + name + "\": expected mirror, reciprocal or mirror,reciprocal");
+    (name == "mirror" ? result.mirrored : result.exchanged) = true;
   }
-  const auto [samples, second, significance] = second_of(first, options);
-  if (samples.empty())
-    throw std::invalid_argument("--theta-max " + shortest(*options.theta_max_deg) + ": no geometry is within");
-  const Comparison comparison = compared(first, samples, options);
-  const Report report{data_name(options.first), second, wavelengths(samples), comparison, significance, first.rotation};
-  write_text(options.output, (options.format == Format::text  ? text
-                              : options.format == Format::csv ? csv
-                                                              : json)(report));
-  if (comparison.dark > 0) warn(base_name(options.first) + ": " + dark_line(comparison));
-  warn_if_outside(first, samples, base_name(options.first));
-  if (options.tolerance) require_within(*options.tolerance, comparison);
+  return result;
 }
 
 double tolerance_from(const std::string& text) {
@@ -269,17 +285,24 @@ constexpr const char* footer =
     "its own. largest is without sign, and stands with the wavelength and the angles where it is.\n"
     "\n"
     "Samples are compared where they were taken. Two models are compared at the wavelengths to which both were\n"
-    "fitted, on the published grid or at random directions, uniform in projected solid angle within 75 degrees, as "
-    "far\n"
-    "as both were fitted to these angles, unless --theta-max says otherwise. Of two files of samples each is fitted "
-    "as\n"
-    "mmbrdf fit does it by default, and the fits are compared. Where the uncertainties of both are known each\n"
-    "difference is set beside its own, that of independent fits: mean and largest |d| / u, and how many are within\n"
-    "1.96 u.\n"
+    "fitted, on the published grid or at random directions, uniform in projected solid angle within 75 degrees. What\n"
+    "lies beyond the fitted angles of a model is left out, unless --theta-max says how far to go. Of two files of\n"
+    "samples each is fitted as mmbrdf fit does it by default, and the fits are compared; with --match each sample of "
+    "B\n"
+    "is set beside the nearest of A instead.\n"
+    "\n"
+    "Where the uncertainties of both are known each difference d is set beside its own, u, as if both were "
+    "independent:\n"
+    "the root mean square of d / u, the largest, and how many are beyond 2 u. A model and the samples that it was "
+    "fitted\n"
+    "to are not independent. --term adds an error that neither knows: KIND is scale (relative), theta_i, theta_r or\n"
+    "azimuth (degrees), calibration (of each element divided by f11), each the same at all geometries.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf compare ptfe-532 data.csv --wavelength 532\n"
-    "  mmbrdf compare ptfe new.json --grid random:10000 --tolerance 0.01";
+    "  mmbrdf compare ptfe new.json --grid random:10000 --tolerance 0.01\n"
+    "  mmbrdf compare ptfe sample.json --term scale=0.3%\n"
+    "  mmbrdf compare monday.csv friday.csv --match 0.1 --partners mirror";
 
 }  // namespace
 
@@ -295,10 +318,19 @@ Run compare_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--theta-max", o->theta_max_deg, number, "DEG", "Only where both polar angles are at most this");
   add_flag(app, "--as-printed", o->as_printed,
            "Published coefficients of A: the sum at the azimuths\ngiven, not at phi_i = 0 and turned");
+  const Option match = add_option(app, "--match", o->match_deg, positive_number, "DEG",
+                                  "For two files of samples: compare those whose directions\nare within DEG degrees of "
+                                  "each other");
+  add_option(app, "--partners", o->partners, partners_from, "NAME[,NAME]",
+             "Match also with the mirror image in the plane of\nincidence, the reciprocal geometry, or both: mirror,\n"
+             "reciprocal")
+      .needs(match);
+  add_term(app, o->terms,
+           "Add a standard uncertainty of the difference, as in\nscale=0.3%, theta_r=0.02deg; repeatable");
   add_option(app, "--tolerance", o->tolerance, tolerance_from, "T",
              "Exit with status 1 if a difference / f11 is larger");
   add_file(app, "-o,--output", o->output, "OUT", "Where the table goes; - is standard output [-]");
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");
   set_footer(app, footer);
   return [o] { compare_them(*o); };
 }

@@ -9,7 +9,6 @@
 #include "mmbrdf/files/write_file.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
-#include "options/polarimetry.hpp"
 #include "pages/output.hpp"
 
 namespace mmbrdf::program {
@@ -19,7 +18,7 @@ namespace {
 struct Options {
   std::string model, output, format, channel = "f11";
   std::optional<std::vector<double>> wavelengths_nm;
-  double error_percent = 0.05;
+  std::optional<double> error_percent;
   int streams = 0, moments = 0;
   std::vector<double> suns_deg, views_deg, azimuths_deg;
 };
@@ -53,9 +52,12 @@ void export_model(const Options& options) {
     throw WrongUsage("FILE", "\"-\": expected the name of a file; tables do not go to standard output");
   const ExportFormat& format = format_of(options);
   if (format.takes_transfer) require_transfer_options(format, options);
+  if (options.error_percent && !format.takes_error)
+    throw WrongUsage("--error", "a " + std::string(format.name) + " file has a grid of its own: leave it out");
   require_model_kept(options.model, options.output);
   const Model model = open_model(options.model);
-  ExportOptions asked{.channel = options.channel, .error = options.error_percent / 100};
+  ExportOptions asked{.channel = options.channel};
+  if (options.error_percent) asked.error = *options.error_percent / 100;
   if (options.wavelengths_nm) asked.wavelengths = micrometres(*options.wavelengths_nm);
   asked.transfer = {options.streams, options.moments, in_radians(options.suns_deg), in_radians(options.views_deg),
                     in_radians(options.azimuths_deg)};
@@ -95,7 +97,8 @@ Run export_command(CLI::App& app, const CommandLine&) {
   add_text(app, "--channel", o->channel, "NAME",
            "What a format without polarization holds: f11, or a\nquantity of analyze in sr^-1, as f_ss [f11]");
   add_option(app, "--error", o->error_percent, positive_number, "PERCENT",
-             "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]");
+             "Largest rms error of what is interpolated in the\ntable, in percent of f11 [0.05]; not of bird, "
+             "klems,\nvlidort and 6s, whose grids are given");
   add_option(app, "--streams", o->streams, whole_number, "N",
              "Of vlidort: cosines in a hemisphere, Gauss-Legendre on 0 to 1");
   add_option(app, "--moments", o->moments, whole_number, "M", "Of vlidort: how many, at most 2 N [2 N]");

@@ -266,7 +266,7 @@ Run fit_command(CLI::App& app, const CommandLine& line) {
   add_data_options(app, o);
   add_text(app, "--name", o->name, "NAME", "Name of the model [file name]");
   add_text(app, "--attribution", o->attribution, "TEXT", "Whose data these are, kept in the model");
-  add_option(app, "--format", o->format, format_from, "FORMAT", "Of the table: text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "Of the table: text, csv, json or html [text]");
   set_footer(app, footer);
   return [o, line] { fit_data(*o, line); };
 }

@@ -14,7 +14,7 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/output.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -86,18 +86,19 @@ nlohmann::ordered_json facts(const Inspection& seen, const std::vector<Sample>& 
   return json;
 }
 
-void print_text(const Inspection& seen, const std::vector<Sample>& samples, const Options& options,
-                const CommandLine& line) {
-  std::cout << printable(data_name(options.data), longest_text) << ": "
-            << counted(static_cast<long>(samples.size()), "sample") << " at " << nanometre_list(wavelengths(samples))
-            << "\n\n";
-  for (const auto& [name, text] : inspection_rows(seen, samples))
-    std::cout << format("%-13s", name.c_str()) << text << '\n';
-  std::cout << '\n';
-  for (const Finding& one : seen.findings) std::cout << printable(to_string(one), 4 * longest_text) << '\n';
-  for (const Untested& one : seen.untested) std::cout << printable(to_string(one), 4 * longest_text) << '\n';
-  if (const std::string verdict = verdict_line(seen); !verdict.empty()) std::cout << verdict << '\n';
-  std::cout << '\n' << next_command(options, line) << '\n';
+Page page_of(const Inspection& seen, const std::vector<Sample>& samples, const Options& options,
+             const CommandLine& line) {
+  std::string text = printable(data_name(options.data), longest_text) + ": " +
+                     counted(static_cast<long>(samples.size()), "sample") + " at " +
+                     nanometre_list(wavelengths(samples)) + "\n\n";
+  for (const auto& [name, said] : inspection_rows(seen, samples)) text += format("%-13s", name.c_str()) + said + "\n";
+  text += "\n";
+  for (const Finding& one : seen.findings) text += printable(to_string(one), 4 * longest_text) + "\n";
+  for (const Untested& one : seen.untested) text += printable(to_string(one), 4 * longest_text) + "\n";
+  if (const std::string verdict = verdict_line(seen); !verdict.empty()) text += verdict + "\n";
+  Page page;
+  page.add(text + "\n" + next_command(options, line) + "\n");
+  return page;
 }
 
 void inspect_data(const Options& options, const CommandLine& line) {
@@ -106,13 +107,7 @@ void inspect_data(const Options& options, const CommandLine& line) {
   if (options.format == Format::json)
     std::cout << printed(facts(seen, samples, data_name(options.data)));
   else
-    print_text(seen, samples, options, line);
-}
-
-Format inspect_format_from(const std::string& name) {
-  if (name == "text") return Format::text;
-  if (name == "json") return Format::json;
-  throw std::invalid_argument("\"" + name + "\": expected text or json");
+    std::cout << page_of(seen, samples, options, line).written(options.format);
 }
 
 constexpr const char* footer =
@@ -137,7 +132,7 @@ Run inspect_command(CLI::App& app, const CommandLine& line) {
   add_file(app, "DATA.csv", o->data, " ", "Samples; - is standard input").required();
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Only these wavelengths, in nm");
   add_table_options(app, o->table);
-  add_option(app, "--format", o->format, inspect_format_from, "FORMAT", "text or json [text]");
+  add_option(app, "--format", o->format, format_without_csv, "FORMAT", "text, json or html [text]");
   set_footer(app, footer);
   return [o, line] { inspect_data(*o, line); };
 }

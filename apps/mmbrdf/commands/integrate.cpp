@@ -234,6 +234,7 @@ Integrated integrated(const Model& model, Integral quantity, const Options& opti
   result.uncertain = uncertain_of(model);
   result.not_in_it = missing_from_uncertainty(model);
   for (const TypeBTerm& term : terms_from(options.terms)) result.terms.push_back(term.name);
+  result.coverage = options.terms.coverage;
   result.polarization = options.polarization.value_or(Polarization{}).text;
   if (options.geometry) {
     result.source = description(options.geometry->source, source_phi_deg);
@@ -341,7 +342,7 @@ Run integrate_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--tolerance", o->tolerance, number, "T", "Of the quadrature, relative [1e-10]");
   add_terms(app, o->terms);
   add_flag(app, "--strict", o->strict, "Refuse what lies outside the fitted range");
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");
   add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");
   set_footer(app, footer);
   return [o] { integrate(*o); };

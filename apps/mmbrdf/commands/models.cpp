@@ -12,7 +12,7 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -56,25 +56,25 @@ Table blocks(const Model& model) {
   return table;
 }
 
-void print_line(const std::string& name, const std::string& value) {
-  std::cout << format("%-12s ", printable(name, 100).c_str()) << printable(value, longest_text) << '\n';
+std::string line(const std::string& name, const std::string& value) {
+  return format("%-12s ", printable(name, 100).c_str()) + printable(value, longest_text) + "\n";
 }
 
-void print_text(const Model& model) {
+Page page_of(const Model& model) {
   const Validity& validity = model.validity;
-  print_line("name", model.name);
-  print_line("basis", basis_line(model));
-  print_line("wavelengths", validity.wavelengths.empty() ? "not known" : nanometre_list(validity.wavelengths));
-  print_line("angles", angles_line(validity));
-  print_line("reflectance", model.reflectance.values.empty()
-                                ? "none: f11 is that of the coefficients"
-                                : "f11 is multiplied by " + reflectance_line(model.reflectance));
-  print_line("DHR(0)", normal_reflectance_line(model));
-  print_line("frame", frame_line);
-  print_line("convention", convention_line);
-  print_line("units", unit_line);
-  std::cout << '\n' << text(blocks(model)) << (model.provenance.empty() ? "" : "\n");
-  for (const auto& [key, value] : model.provenance) print_line(key, value);
+  Page page;
+  page.add(line("name", model.name) + line("basis", basis_line(model)) +
+           line("wavelengths", validity.wavelengths.empty() ? "not known" : nanometre_list(validity.wavelengths)) +
+           line("angles", angles_line(validity)) +
+           line("reflectance", model.reflectance.values.empty()
+                                   ? "none: f11 is that of the coefficients"
+                                   : "f11 is multiplied by " + reflectance_line(model.reflectance)) +
+           line("DHR(0)", normal_reflectance_line(model)) + line("frame", frame_line) +
+           line("convention", convention_line) + line("units", unit_line) + "\n");
+  page.add(blocks(model));
+  page.add(model.provenance.empty() ? "" : "\n");
+  for (const auto& [key, value] : model.provenance) page.add(line(key, value));
+  return page;
 }
 
 Json degrees_json(const std::optional<double>& angle) { return angle ? Json(degrees(*angle)) : Json(); }
@@ -99,13 +99,9 @@ void print_json(const Model& model) {
 }
 
 void info(const Options& options) {
-  (options.format == Format::json ? print_json : print_text)(open_model(options.model));
-}
-
-Format text_or_json(const std::string& name) {
-  const Format format = format_from(name);
-  if (format == Format::csv) throw std::invalid_argument("\"csv\": expected text or json");
-  return format;
+  const Model model = open_model(options.model);
+  if (options.format == Format::json) return print_json(model);
+  std::cout << page_of(model).written(options.format);
 }
 
 void list_materials() {
@@ -122,7 +118,7 @@ void list_materials() {
 Run info_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->model);
-  add_option(app, "--format", o->format, text_or_json, "FORMAT", "text or json [text]");
+  add_option(app, "--format", o->format, format_without_csv, "FORMAT", "text, json or html [text]");
   set_footer(
       app,
       "Angles are in degrees, wavelengths in nm, reflectances without unit. The last lines say where the model is "

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <ostream>
+#include <span>
 
 #include "command.hpp"
 #include "mmbrdf/model/description.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 struct Options {
   std::string model, output = "-";
-  std::optional<double> wavelength_nm;
+  std::optional<std::vector<double>> wavelengths_nm;
   std::optional<std::vector<double>> mu_i, mu_r;
   int streams = 0, moments = 0;
 };
@@ -65,50 +66,69 @@ std::size_t moments_asked(const Options& options, std::size_t there) {
   return options.streams > 0 ? std::min(there, most) : there;
 }
 
-void write_header(std::ostream& out, const std::string& name, double wavelength, const Cosines& cosines) {
-  out << "# model " << printable(name, longest_text) << " at " << nanometre_list({&wavelength, 1})
+/// Of one wavelength.
+struct Moments {
+  double wavelength = 0;
+  std::vector<FourierMoments> all;
+  std::size_t count = 0;  // to be printed
+  std::size_t there = 0;  // that there are
+};
+
+void write_header(std::ostream& out, const std::string& name, std::span<const double> wavelengths,
+                  const Cosines& cosines) {
+  out << "# model " << printable(name, longest_text) << " at " << nanometre_list(wavelengths)
       << ", f in sr^-1, frame sp: f(phi) = sum of c cos(m phi) + s sin(m phi), phi = phi_r - phi_i, 180 is forward\n";
   if (!cosines.words.empty()) out << "# cosine:weight, Gauss-Legendre on 0 to 1: " << cosines.words << '\n';
-  out << "mu_i,mu_r,m";
+  out << (wavelengths.size() > 1 ? "wavelength_nm," : "") << "mu_i,mu_r,m";
   for (const char part : {'c', 's'})
     for (std::size_t e = 0; e < 16; ++e) out << ',' << part << element_name(e);
   out << '\n';
 }
 
-void write_moments(std::ostream& out, const Cosines& cosines, const std::vector<FourierMoments>& all,
-                   std::size_t count) {
+/// Each line behind `first`.
+void write_moments(std::ostream& out, const std::string& first, const Cosines& cosines, const Moments& moments) {
   for (std::size_t i = 0; i < cosines.incident.size(); ++i)
     for (std::size_t r = 0; r < cosines.reflected.size(); ++r)
-      for (std::size_t m = 0; m < count; ++m) {
-        const FourierMoments& one = all[r * cosines.incident.size() + i];
-        std::string line = exact(cosines.incident[i]) + "," + exact(cosines.reflected[r]) + "," + std::to_string(m);
+      for (std::size_t m = 0; m < moments.count; ++m) {
+        const FourierMoments& one = moments.all[r * cosines.incident.size() + i];
+        std::string line =
+            first + exact(cosines.incident[i]) + "," + exact(cosines.reflected[r]) + "," + std::to_string(m);
         append_elements(line, m < one.cosine.size() ? one.cosine[m] : Mueller{});
         append_elements(line, m < one.sine.size() ? one.sine[m] : Mueller{});
         out << line << '\n';
       }
 }
 
-void print_moments(const Options& options) {
-  require_model_kept(options.model, options.output);
-  const Cosines cosines = cosines_of(options);
-  const Model model = open_model(options.model);
-  const double wavelength = wavelength_from(options.wavelength_nm, model);
+/// Warns of what lies beyond the fit.
+Moments moments_at(const Model& model, double wavelength, const Cosines& cosines, const Options& options) {
   const PreparedModel prepared = prepare(model, wavelength);
   const auto there = static_cast<std::size_t>(highest_moment(prepared)) + 1;
-  const std::size_t count = moments_asked(options, there);
-  const std::vector<FourierMoments> all = fourier_moments(prepared, cosines.incident, cosines.reflected);
+  Moments result{wavelength, {}, moments_asked(options, there), there};
+  result.all = fourier_moments(prepared, cosines.incident, cosines.reflected);
   RangeCount range;
   for (const double mu_i : cosines.incident)
     for (const double mu_r : cosines.reflected)
       range.add(static_cast<Outside>(outside(model.validity, wavelength, {{std::acos(mu_i), 0}, {std::acos(mu_r), 0}}) &
                                      ~unsigned{outside_directions}));  // of all azimuths
   if (const std::string line = range.line("pair"); !line.empty()) warn(options.model + ": " + line);
-  if (count < there)
+  return result;
+}
+
+void print_moments(const Options& options) {
+  require_model_kept(options.model, options.output);
+  const Cosines cosines = cosines_of(options);
+  const Model model = open_model(options.model);
+  const std::vector<double> wavelengths =
+      options.wavelengths_nm ? micrometres(*options.wavelengths_nm) : std::vector{wavelength_from({}, model)};
+  std::vector<Moments> all;
+  for (const double wavelength : wavelengths) all.push_back(moments_at(model, wavelength, cosines, options));
+  if (const auto& [wavelength, moments, count, there] = all.front(); count < there)  // the same at all wavelengths
     note("the model has moments up to m = " + std::to_string(there - 1) + ", of which " +
          std::to_string(there - count) + " are left out");
   write_output(options.output, [&](std::ostream& out) {
-    write_header(out, model.name, wavelength, cosines);
-    write_moments(out, cosines, all, count);
+    write_header(out, model.name, wavelengths, cosines);
+    for (const Moments& one : all)
+      write_moments(out, all.size() > 1 ? shortest(nanometres(one.wavelength)) + "," : "", cosines, one);
   });
 }
 
@@ -117,8 +137,8 @@ void print_moments(const Options& options) {
 Run moments_command(CLI::App& app, const CommandLine&) {
   const auto o = std::make_shared<Options>();
   add_model(app, o->model);
-  add_option(app, "-w,--wavelength", o->wavelength_nm, number, "NM",
-             "Wavelength, in nm [that of the fit, if it is one]");
+  add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]",
+             "Wavelengths, in nm; of several a column says which [that of\nthe fit, if it is one]");
   add_option(app, "--mu-i", o->mu_i, numbers, "COS[,COS...]", "Cosines of the polar angle of the source");
   add_option(app, "--mu-r", o->mu_r, numbers, "COS[,COS...]", "Cosines of the polar angle of the detector");
   add_option(app, "--streams", o->streams, whole_number, "N",

@@ -10,11 +10,14 @@
 #include <optional>
 
 #include "command.hpp"
+#include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
+#include "options/terms.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 #include "streams/geometry_rows.hpp"
 
 namespace mmbrdf::program {
@@ -25,6 +28,7 @@ struct Options {
   std::vector<std::string> designs, targets;
   std::string like, candidates, output;
   std::optional<double> wavelength_nm, noise;
+  Terms terms;
   int choose = 0;
   Format format = Format::text;
 };
@@ -75,8 +79,40 @@ std::vector<NamedDesign> designs(const Options& options) {
   return result;
 }
 
+/// What errors that all readings share add to a target: their effects on a sample like this.
+double shared_uncertainty(const PlanTarget& target, const Model& sample, double wavelength,
+                          const std::vector<TypeBTerm>& terms) {
+  if (target.kind == PlanTarget::Kind::block) return 0;
+  std::vector<Contribution> parts;
+  if (target.kind == PlanTarget::Kind::dhr) {
+    parts = directional_hemispherical_budget(uncertain(sample, wavelength, terms), target.geometry.incident);
+    parts.erase(parts.begin(), parts.end() - static_cast<std::ptrdiff_t>(terms.size()));  // those of the sample
+  } else {
+    const PreparedModel prepared = prepare(sample, wavelength);
+    for (const TypeBTerm& term : terms)
+      for (const Mueller& change : effects(term, prepared, target.geometry))
+        parts.push_back({term.name, std::abs(change(0, 0)), term.freedom});
+  }
+  return standard_uncertainty(parts);
+}
+
+/// Of each target, with --term.
+std::vector<double> shared_uncertainties(const std::vector<NamedTarget>& wanted, const Options& options) {
+  const std::vector<TypeBTerm> terms = terms_from(options.terms);
+  std::vector<double> result(wanted.size(), 0);
+  if (terms.empty()) return result;
+  if (options.targets.empty()) throw WrongUsage("--term", "goes with --target: it is in none of the blocks");
+  const Model sample = options.like.empty() ? material("ptfe-532") : open_model(options.like);
+  const double wavelength =
+      options.wavelength_nm ? micrometres(*options.wavelength_nm) : sample.validity.wavelengths.front();
+  std::ranges::transform(wanted, result.begin(), [&](const NamedTarget& one) {
+    return shared_uncertainty(one.target, sample, wavelength, terms);
+  });
+  return result;
+}
+
 Table table_of(const VarianceComponents& components, const std::vector<NamedDesign>& designs,
-               const std::vector<NamedTarget>& wanted) {
+               const std::vector<NamedTarget>& wanted, const std::vector<double>& shared) {
   Table table{{{"design", "%-60s"}, {"readings", "%8s"}}};
   std::vector<PlanTarget> targets;
   for (const NamedTarget& one : wanted) {
@@ -85,7 +121,8 @@ Table table_of(const VarianceComponents& components, const std::vector<NamedDesi
   }
   for (const NamedDesign& design : designs) {
     Table::Row row{design.name, design.geometries.size()};
-    for (const double u : expected_uncertainties(components, design.geometries, targets)) row.push_back(u);
+    const std::vector<double> own = expected_uncertainties(components, design.geometries, targets);
+    for (std::size_t t = 0; t < own.size(); ++t) row.push_back(std::hypot(own[t], shared[t]));
     table.rows.push_back(row);
   }
   return table;
@@ -97,6 +134,21 @@ std::string geometries_csv(const std::vector<Geometry>& list) {
     text += exact(in_degrees(i.theta)) + "," + exact(in_degrees(i.phi)) + "," + exact(in_degrees(r.theta)) + "," +
             exact(in_degrees(r.phi)) + "\n";
   return text;
+}
+
+void print(const Table& table, const Terms& terms, Format format) {
+  if (format == Format::csv) {
+    std::cout << csv(table);
+    return;
+  }
+  if (format == Format::json) return program::print(json_of(table));
+  Page page;
+  page.add(
+      "expected standard uncertainties, root mean square over the elements of a block up to 70 degrees; errors that\n"
+      "all readings share are not in them" +
+      std::string(terms.texts.empty() ? "" : ", but for those of --term in the targets") + "\n\n");
+  page.add(table);
+  std::cout << page.written(format);
 }
 
 void plan(const Options& options) {
@@ -123,16 +175,7 @@ void plan(const Options& options) {
     list.push_back(std::move(more));
     if (!options.output.empty()) write_text(options.output, geometries_csv(picks));
   }
-  const Table table = table_of(known, list, all);
-  if (options.format == Format::csv) {
-    std::cout << csv(table);
-  } else if (options.format == Format::json) {
-    print(json_of(table));
-  } else {
-    std::cout << "expected standard uncertainties, root mean square over the elements of a block up to 70 degrees; "
-                 "errors that\nall readings share are not in them\n\n"
-              << text(table);
-  }
+  print(table_of(known, list, all, shared_uncertainties(all, options)), options.terms, options.format);
   if (options.like.empty())
     note(
         "the variances are those of sintered PTFE: for another material an order of magnitude; fit a small series and "
@@ -151,6 +194,7 @@ constexpr const char* footer =
     "\n"
     "Examples:\n"
     "  mmbrdf plan scan.csv --like sample.json --target dhr:0,45,60 --target f:0:45\n"
+    "  mmbrdf plan scan.csv --target dhr:8 --term scale=0.3%\n"
     "  mmbrdf plan scan.csv --choose 50 --from candidates.csv -o next.csv";
 
 }  // namespace
@@ -163,10 +207,11 @@ Run plan_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--noise", o->noise, number, "S", "Of a reading, at normal directions [of the fit; 0.007]");
   add_texts(app, "--target", o->targets, "TARGET",
             "What is to be known: dhr:THETA[,THETA...] or\nf:THETA_I:THETA_R[:PHI_R], in degrees");
+  add_term(app, o->terms, "Add to each target an error that all readings share, as in\nscale=0.3%; repeatable");
   add_option(app, "--choose", o->choose, whole_number, "N", "Choose N more readings");
   add_file(app, "--from", o->candidates, "CANDIDATES.csv", "Directions to choose from");
   add_output_file(app, "-o,--output", o->output, "CHOSEN.csv", "Write what is chosen");
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");
   set_footer(app, footer);
   return [o] { plan(*o); };
 }

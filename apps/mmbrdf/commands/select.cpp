@@ -95,7 +95,7 @@ Run select_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--reflectance", o->selection.reflectance, reflectance_from, "NM:R[,...]|FILE",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_weights_option(app, o->weights);
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");
   set_footer(app, footer);
   return [o] { select(*o); };
 }

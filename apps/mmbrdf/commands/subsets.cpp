@@ -11,7 +11,7 @@
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -211,7 +211,11 @@ void study(Options o) {
   if (const std::size_t left_out = splits.front().statistics.left_out; left_out > 0)
     warn("the reference is not positive at " + std::to_string(left_out) + " of " +
          std::to_string(o.theta_r_deg.size()) + " angles: what is divided by it leaves them out");
-  write_text(o.output, (o.format == Format::text ? text : o.format == Format::csv ? csv : json)(q, o, splits));
+  if (o.format == Format::csv) return write_text(o.output, csv(q, o, splits));
+  if (o.format == Format::json) return write_text(o.output, json(q, o, splits));
+  Page page;
+  page.add(text(q, o, splits));
+  write_text(o.output, page.written(o.format));
 }
 
 constexpr const char* footer =
@@ -249,7 +253,7 @@ Run subsets_command(CLI::App& app, const CommandLine&) {
       .description(
           "What the fits are divided by: built-in name, JSON model or\ncoefficient CSV [the fit to all samples]");
   add_file(app, "-o,--output", o->output, "OUT", "Where the result goes; - is standard output [-]");
-  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv or json [text]");
+  add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");
   set_footer(app, footer);
   return [o] { study(*o); };
 }

@@ -53,6 +53,12 @@ double number(const std::string& text) {
   return value;
 }
 
+double positive_number(const std::string& text) {
+  const double value = number(text);
+  if (!(value > 0)) throw wrong(text, "a positive number");
+  return value;
+}
+
 int whole_number(const std::string& text) {
   int value = 0;
   if (!read(text, value) || value < 0) throw wrong(text, "a whole number of 0 or more");
@@ -73,9 +79,19 @@ unsigned long seed(const std::string& text) {
   return value;
 }
 
-DirectionDegrees direction_degrees(const std::string& text) {
+DirectionDegrees incident_degrees(const std::string& text) {
   const auto values = two_numbers(text);
-  if (!values) throw wrong(text, "THETA,PHI in degrees");
+  double theta = 0;
+  if (!values && read(text, theta) && std::isfinite(theta)) return {theta, 0, false};
+  if (!values) throw wrong(text, "THETA or THETA,PHI in degrees");
+  return {values->first, values->second};
+}
+
+DirectionDegrees reflected_degrees(const std::string& text) {
+  const auto values = two_numbers(text);
+  double theta = 1;
+  if (!values && read(text, theta) && theta == 0) return {0, 0, false};
+  if (!values) throw wrong(text, "THETA,PHI in degrees, where PHI = phi_i + 180 is forward, or 0");
   return {values->first, values->second};
 }
 
@@ -181,7 +197,13 @@ Format format_from(const std::string& name) {
   if (name == "text") return Format::text;
   if (name == "csv") return Format::csv;
   if (name == "json") return Format::json;
-  throw wrong(name, "text, csv or json");
+  if (name == "html") return Format::html;
+  throw wrong(name, "text, csv, json or html");
+}
+
+Format format_without_csv(const std::string& name) {
+  if (name != "text" && name != "json" && name != "html") throw wrong(name, "text, json or html");
+  return format_from(name);
 }
 
 double micrometres(double wavelength_nm) {

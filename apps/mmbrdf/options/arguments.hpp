@@ -19,17 +19,20 @@ namespace mmbrdf::program {
 // Reading text. All throw std::invalid_argument, naming the text, if it has another form; that is wrong usage. Whether
 // a number makes sense (an angle of 95 degrees does not) is asked later, and is bad input.
 
-double number(const std::string& text);     ///< finite
+double number(const std::string& text);  ///< finite
+double positive_number(const std::string& text);
 int whole_number(const std::string& text);  ///< 0 or more
 int thread_count(const std::string& text);  ///< 0 to 1024
 unsigned long seed(const std::string& text);
 
-/// THETA,PHI in degrees, as typed.
+/// THETA,PHI in degrees, as typed, or THETA where azimuths do not matter.
 struct DirectionDegrees {
   double theta = 0;
   double phi = 0;
+  bool has_phi = true;
 };
-DirectionDegrees direction_degrees(const std::string& text);
+DirectionDegrees incident_degrees(const std::string& text);   ///< THETA[,PHI]
+DirectionDegrees reflected_degrees(const std::string& text);  ///< THETA,PHI, or 0
 
 /// THETA_I,THETA_R in degrees, as typed: the largest polar angles.
 struct AnglesDegrees {
@@ -54,6 +57,7 @@ struct Grid {
 Grid grid_from(const std::string& text);
 
 Format format_from(const std::string& name);
+Format format_without_csv(const std::string& name);
 
 // What the numbers mean. These throw std::invalid_argument for values that make no sense.
 

@@ -178,6 +178,9 @@ void warn_of_what_is_left_out(const Model& model, const std::string& path, bool 
   }
   if (named) lost.insert(lost.begin(), "the name");
   if (!lost.empty()) warn(base_name(path) + " has no place for: " + joined(lost));
+  if (model.family == Family::isotropic)
+    note("SCATMECH and MIST take " + base_name(path) +
+         " as printed, which is this model for light from azimuth 0: turn azimuths there, not the sample");
 }
 
 Option add_file(CLI::App& app, const std::string& names, std::string& target, const std::string& shown,

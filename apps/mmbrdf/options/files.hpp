@@ -60,7 +60,8 @@ void require_model_kept(const std::string& model, const std::string& output);
 /// Writes a model; warns if its path is the name of a built-in one. Errors name the path.
 void save(const Model& model, const std::string& path);
 
-/// Warns, in one line, of all that is known about `model` and has no place in the format of `path`. `named`: the name was given by hand.
+/// Warns, in one line, of all that is known about `model` and has no place in the format of `path`, and notes in another
+/// how others turn an isotropic one. `named`: the name was given by hand.
 void warn_of_what_is_left_out(const Model& model, const std::string& path, bool named);
 
 // Options that are files. An empty name is wrong usage.

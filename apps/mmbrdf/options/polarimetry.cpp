@@ -51,6 +51,12 @@ void print_merit(const FigureOfMerit& merit) {
   }
 }
 
+/// By chance it differs by √(2/dof) from 1.
+std::string reduced_chi_squared(double chi_squared, double freedom) {
+  const double reduced = chi_squared / freedom;
+  return to_place_of(reduced, reduced * std::sqrt(2 / freedom)) + format(", %.0f degrees of freedom", freedom);
+}
+
 void print_quality(const Calibration& c) {
   print_line("wavelength", brief(nanometres(c.wavelength)) + " nm");
   print_line("states", std::to_string(c.polarimeter.generator.size()) + " of the generator, " +
@@ -65,8 +71,7 @@ void print_quality(const Calibration& c) {
                            ? format("identifiability %.3e", c.identifiability)
                            : format("s16/s15 %.3e, identifiability s15/s1 %.3e", c.singular_ratio, c.identifiability));
   print_line("chi^2/dof", !c.covariance.empty()
-                              ? format("%.3f, %ld degrees of freedom",
-                                       c.chi_squared / static_cast<double>(c.degrees_of_freedom), c.degrees_of_freedom)
+                              ? reduced_chi_squared(c.chi_squared, static_cast<double>(c.degrees_of_freedom))
                               : "not refined");
   if (c.scale_uncertainty > 0)
     print_line("scale", format("known to %.1e, from the scatter of the empty references", c.scale_uncertainty));
@@ -131,12 +136,6 @@ ReadingNoise noise_from(const std::string& text) {
     begin = end + 1;
   }
   return noise;
-}
-
-double positive_number(const std::string& text) {
-  const double value = number(text);
-  if (!(value > 0)) throw std::invalid_argument("\"" + text + "\": expected a positive number");
-  return value;
 }
 
 void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise) {

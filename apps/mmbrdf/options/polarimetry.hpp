@@ -17,8 +17,6 @@ Film film_from(const std::string& text);
 /// dark:X,shot:Y,relative:Z in any order; what is not named is 0.
 ReadingNoise noise_from(const std::string& text);
 
-double positive_number(const std::string& text);
-
 /// --saturation and --noise
 void add_reading_options(CLI::App& app, double& saturation, ReadingNoise& noise);
 

@@ -13,13 +13,13 @@ const char* const place_columns = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_d
 QuestionOptions add_question(CLI::App& app, Question& question, const std::string& done) {
   QuestionOptions o{};
   add_model(app, question.model);
-  o.wavelength = add_option(app, "-w,--wavelength", question.wavelength_nm, number, "NM",
-                            "Wavelength in nm; not needed for models of one wavelength,\nnor for rows that have their "
+  o.wavelength = add_option(app, "-w,--wavelength", question.wavelengths_nm, numbers, "NM[,NM...]",
+                            "Wavelengths in nm; not needed for models of one wavelength,\nnor for rows that have their "
                             "own");
-  o.incident = add_option(app, "-i,--incident", question.incident, direction_degrees, "THETA,PHI",
-                          "Direction to the source, in degrees");
-  o.reflected = add_option(app, "-r,--reflected", question.reflected, direction_degrees, "THETA,PHI",
-                           "Direction to the detector, in degrees");
+  o.incident = add_option(app, "-i,--incident", question.incident, incident_degrees, "THETA[,PHI]",
+                          "Direction to the source, in degrees [PHI of isotropic\nmodels: 0]");
+  o.reflected = add_option(app, "-r,--reflected", question.reflected, reflected_degrees, "THETA,PHI",
+                           "Direction to the detector, in degrees; PHI_I + 180 is\nforward, 0 the normal");
   o.geometries = add_file(app, "-g,--geometries", question.geometries, "FILE.csv",
                           done + " at each row of a file; - is standard input");
   o.geometries.excludes(o.incident).excludes(o.reflected);
@@ -40,6 +40,19 @@ Model model_of(const Question& question) {
   return as_printed(std::move(model));
 }
 
+std::vector<std::optional<double>> wavelengths_asked(const Question& question) {
+  if (!question.wavelengths_nm) return {std::nullopt};
+  return {question.wavelengths_nm->begin(), question.wavelengths_nm->end()};
+}
+
+void complete_azimuths(Question& question, const Model& model) {
+  std::optional<DirectionDegrees>&i = question.incident, &r = question.reflected;
+  if (i && !i->has_phi && (model.family == Family::anisotropic || model.rotation == Rotation::as_printed))
+    throw WrongUsage("--incident", brief(i->theta) + ": " + base_name(question.model) +
+                                       " depends on the azimuth of the source: expected THETA,PHI");
+  if (r && !r->has_phi) r->phi = (i ? i->phi : 0) + 180;
+}
+
 void require_directions(const Question& question, const std::string& or_else) {
   for (const auto& [given, name] : {std::pair(question.incident.has_value(), "--incident"),
                                     std::pair(question.reflected.has_value(), "--reflected")}) {
@@ -58,10 +71,12 @@ Model model_of_rows(const Question& question) {
 }
 
 RowsOfFile rows_of(const Question& question) {
+  if (question.wavelengths_nm && question.wavelengths_nm->size() > 1)
+    throw WrongUsage("--wavelength", "one at most goes with --geometries: rows have a column wavelength_nm");
   return {.model = base_name(question.model),
           .input = question.geometries,
           .output = question.output,
-          .wavelength = question.wavelength_nm ? micrometres(*question.wavelength_nm) : 0};
+          .wavelength = question.wavelengths_nm ? micrometres(question.wavelengths_nm->front()) : 0};
 }
 
 Place place_of(const Model& model, const Question& question, double wavelength) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mmbrdf/model/model.hpp"
 #include "options/arguments.hpp"
@@ -14,7 +15,8 @@ namespace mmbrdf::program {
 
 struct Question {
   std::string model, geometries, output;
-  std::optional<double> wavelength_nm;
+  std::optional<std::vector<double>> wavelengths_nm;  ///< as typed
+  std::optional<double> wavelength_nm;                ///< of one answer
   std::optional<DirectionDegrees> incident, reflected;
   Frame frame = Frame::xy;
   bool as_printed = false;
@@ -31,6 +33,13 @@ void add_as_printed(CLI::App& app, Question& question);
 
 /// Opens the model, as printed if --as-printed says so; notes where that changes nothing.
 Model model_of(const Question& question);
+
+/// What is asked of each answer, in nm: what was typed, or one that is the model's own.
+std::vector<std::optional<double>> wavelengths_asked(const Question& question);
+
+/// Azimuths that were not typed: 0 of the source, which an isotropic model does not see, and forward of a detector at the
+/// normal. Throws WrongUsage for a source of a model that depends on it.
+void complete_azimuths(Question& question, const Model& model);
 
 /// A direction that was not given is wrong usage. `or_else` names what could be given instead of it.
 void require_directions(const Question& question, const std::string& or_else);

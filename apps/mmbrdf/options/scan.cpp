@@ -47,7 +47,14 @@ long steps_between(const std::string& text, double from, double to, double step)
 }  // namespace
 
 /// Without the digits that a sum such as -75 + 751 × 0.1 ends in.
-double Scan::value(long i) const { return std::round((from + static_cast<double>(i) * step) * 1e9) / 1e9; }
+double Scan::value(long i) const {
+  if (!values.empty()) return values[static_cast<std::size_t>(i)];
+  return std::round((from + static_cast<double>(i) * step) * 1e9) / 1e9;
+}
+
+Scan wavelength_scan(const std::vector<double>& wavelengths_nm) {
+  return {.variable = "wavelength", .count = static_cast<long>(wavelengths_nm.size()), .values = wavelengths_nm};
+}
 
 Scan scan_from(const std::string& text) {
   const std::size_t equals = text.find('='), first = text.find(':', equals), second = text.find(':', first + 1);
@@ -58,7 +65,7 @@ Scan scan_from(const std::string& text) {
     throw std::invalid_argument("\"" + variable + "\": expected theta_i, phi_i, theta_r, phi_r or wavelength");
   const double from = number(text.substr(equals + 1, first - equals - 1));
   const double to = number(text.substr(first + 1, second - first - 1)), step = number(text.substr(second + 1));
-  return {variable, from, step, steps_between(text, from, to, step) + 1};
+  return {variable, from, step, steps_between(text, from, to, step) + 1, {}};
 }
 
 void require_complete(const std::vector<Scan>& scans, const Question& question) {

@@ -15,12 +15,16 @@ struct Scan {
   std::string variable;
   double from = 0, step = 0;
   long count = 0;
+  std::vector<double> values = {};  ///< if there are any, these and no range
 
   double value(long i) const;
 };
 
 /// VARIABLE=FROM:TO:STEP, both ends included. Throws std::invalid_argument, naming the text.
 Scan scan_from(const std::string& text);
+
+/// Through wavelengths that were typed.
+Scan wavelength_scan(const std::vector<double>& wavelengths_nm);
 
 /// The product of the scans must not have more rows.
 inline constexpr long max_scan_rows = 10000000;

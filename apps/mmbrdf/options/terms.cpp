@@ -43,14 +43,23 @@ const char* const terms_help =
     "f11). Errors of terms are independent of each other, and each is the same at all geometries. With --budget: what\n"
     "each contributes, the effective degrees of freedom (Welch and Satterthwaite), k of 95 % coverage (Student; 2 "
     "where\n"
-    "they are infinite) and U = k u. The fit has the degrees of freedom rows less rank, where its model knows the\n"
-    "rows; a term those given, or infinitely many.\n";
+    "they are infinite) and U = k u; --coverage 2 adds U = 2 u. The fit has the degrees of freedom rows less rank, "
+    "where\n"
+    "its model knows the rows; a term those given, or infinitely many.\n";
 
 void add_terms(CLI::App& app, Terms& terms) {
-  add_texts(app, "--term", terms.texts, "[NAME:]KIND=U[,dof=N]",
-            "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
-            "calibration=0.001; repeatable");
-  add_flag(app, "--budget", terms.budget, "Print the budget of each value, and its expanded\nuncertainty");
+  add_term(app, terms,
+           "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg, "
+           "calibration=0.001; repeatable");
+  const Option budget =
+      add_flag(app, "--budget", terms.budget, "Print the budget of each value, and its expanded\nuncertainty");
+  add_option(app, "--coverage", terms.coverage, positive_number, "K",
+             "In the budget also U = K u, as a certificate has it with\nK = 2")
+      .needs(budget);
+}
+
+Option add_term(CLI::App& app, Terms& terms, const std::string& description) {
+  return add_texts(app, "--term", terms.texts, "[NAME:]KIND=U[,dof=N]", description);
 }
 
 std::vector<TypeBTerm> terms_from(const Terms& terms) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iostream>
 #include <memory>
 
 #include "mmbrdf/model/at_wavelengths.hpp"
@@ -56,21 +55,16 @@ std::string uncertainty_words(const AnalysisReport& r) {
          (options.draws > 0 ? "; of ratios from " + std::to_string(options.draws) + " draws" : "");
 }
 
-void print_quantity(const Answered& q, std::string_view name, std::string_view unit, const Answer& a) {
-  std::cout << format("%-24.*s", static_cast<int>(name.size()), name.data());
-  if (!q.known) {
-    std::cout << "-  not measured\n";
-    return;
-  }
-  if (!q.value) {
-    std::cout << (a.elements(0, 0) > 0 ? "has no meaning here\n" : "has no meaning where f11 is not positive\n");
-    return;
-  }
+std::string quantity_text(const Answered& q, std::string_view name, std::string_view unit, const Answer& a) {
+  std::string text = format("%-24.*s", static_cast<int>(name.size()), name.data());
+  if (!q.known) return text + "-  not measured\n";
+  if (!q.value)
+    return text + (a.elements(0, 0) > 0 ? "has no meaning here\n" : "has no meaning where f11 is not positive\n");
   const auto u = q.uncertainty ? std::optional(without_rounding(*q.uncertainty)) : std::nullopt;
-  std::cout << to_place_of(without_rounding(*q.value), u) << (u ? " +- " + to_place_of(*u, u) : "")
-            << (unit.empty() ? "" : " ") << unit;
-  if (q.low && q.high) std::cout << "   95 % from " << to_place_of(*q.low, u) << " to " << to_place_of(*q.high, u);
-  std::cout << '\n';
+  text += to_place_of(without_rounding(*q.value), u) + (u ? " +- " + to_place_of(*u, u) : "") +
+          (unit.empty() ? "" : " ") + std::string(unit);
+  if (q.low && q.high) text += "   95 % from " + to_place_of(*q.low, u) + " to " + to_place_of(*q.high, u);
+  return text + "\n";
 }
 
 /// u of f11 and of the depolarization from one term of a budget, or from all.
@@ -96,15 +90,16 @@ std::vector<Share> shares(const Answer& a) {
   return result;
 }
 
-void print_budget(const Answer& a) {
+std::string shares_text(const Answer& a) {
   const std::vector<Share> rows = shares(a);
   const Share& total = rows.back();
-  std::cout << "\nterm                      u(f11)    share   u(depol.)    share\n";
+  std::string text = "\nterm                      u(f11)    share   u(depol.)    share\n";
   for (const Share& c : rows) {
-    std::cout << format("%-21.21s ", std::string(c.term).c_str()) << with_share(c.f11, total.f11);
-    if (c.depolarization) std::cout << "  " << with_share(*c.depolarization, *total.depolarization);
-    std::cout << '\n';
+    text += format("%-21.21s ", std::string(c.term).c_str()) + with_share(c.f11, total.f11);
+    if (c.depolarization) text += "  " + with_share(*c.depolarization, *total.depolarization);
+    text += "\n";
   }
+  return text;
 }
 
 /// Of f11 and of each quantity that has a meaning, in first order.
@@ -166,25 +161,30 @@ std::size_t wavelengths_to_keep(int draws) {
 
 }  // namespace
 
-void print_text(const AnalysisReport& r) {
+Page page_of(const AnalysisReport& r) {
   const Answer& a = r.answer;
-  std::cout << heading(r.place) << "validity: " << validity_words(a.outside) << "\nestimable: " << estimable_words(a)
-            << "\nrealizable: " << realizable_words(a) << "\nuncertainties: " << uncertainty_words(r) << "\n\n";
+  std::string text = heading(r.place) + "validity: " + validity_words(a.outside) +
+                     "\nestimable: " + estimable_words(a) + "\nrealizable: " + realizable_words(a) +
+                     "\nuncertainties: " + uncertainty_words(r) + "\n\n";
   const auto u_f11 = a.uncertainties ? std::optional((*a.uncertainties)(0, 0)) : std::nullopt;
-  print_quantity({.value = a.elements(0, 0), .uncertainty = u_f11}, "f11", "sr^-1", a);
-  for (const Answered& q : a.quantities) print_quantity(q, q.quantity->name, q.quantity->unit, a);
-  std::cout << "\nMueller BRDF in sr^-1, frame " << to_string(r.question.frame) << " ("
-            << convention_note(r.question.frame) << ")"
-            << (r.place.rotation == Rotation::as_printed ? ", as printed" : "") << '\n'
-            << matrix_text(a.elements, a.uncertainties);
-  if (a.uncertainties) std::cout << "its standard uncertainties\n" << matrix_text(*a.uncertainties, a.uncertainties);
-  if (a.budget && r.budget)
-    std::cout << '\n' << budget_text(budget_lines(a));
-  else if (a.budget && a.budget->terms.size() > 1)
-    print_budget(a);
+  text += quantity_text({.value = a.elements(0, 0), .uncertainty = u_f11}, "f11", "sr^-1", a);
+  for (const Answered& q : a.quantities) text += quantity_text(q, q.quantity->name, q.quantity->unit, a);
+  text += "\nMueller BRDF in sr^-1, frame " + to_string(r.question.frame) + " (" + convention_note(r.question.frame) +
+          ")" + (r.place.rotation == Rotation::as_printed ? ", as printed" : "") + "\n" +
+          matrix_text(a.elements, a.uncertainties);
+  if (a.uncertainties) text += "its standard uncertainties\n" + matrix_text(*a.uncertainties, a.uncertainties);
+  Page page;
+  page.add(text);
+  if (a.budget && r.budget) {
+    page.add("\n");
+    page.add(budget_page(budget_lines(a), r.coverage));
+  } else if (a.budget && a.budget->terms.size() > 1) {
+    page.add(shares_text(a));
+  }
+  return page;
 }
 
-void print_json(const AnalysisReport& r) {
+Json json_of(const AnalysisReport& r) {
   const Answer& a = r.answer;
   nlohmann::ordered_json json = to_json(r.place);
   add_frame(json, r.question.frame, r.place.rotation);
@@ -211,8 +211,8 @@ void print_json(const AnalysisReport& r) {
     }
   }
   if (a.budget && r.budget)
-    for (const auto& [name, value, u] : budget_lines(a)) json["budgets"][name] = budget_json(u);
-  print(json);
+    for (const auto& [name, value, u] : budget_lines(a)) json["budgets"][name] = budget_json(u, r.coverage);
+  return json;
 }
 
 void require_inside(Outside outside, const Validity& validity) {

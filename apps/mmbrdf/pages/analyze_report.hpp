@@ -4,6 +4,7 @@
 
 #include "mmbrdf/quantities/answer.hpp"
 #include "options/question.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -12,11 +13,12 @@ struct AnalysisReport {
   Place place;
   const Answers& answers;
   Answer answer;
-  bool budget = false;  ///< expanded, of each value
+  bool budget = false;             ///< expanded, of each value
+  std::optional<double> coverage;  ///< of the budget, beside that of 95 %
 };
 
-void print_text(const AnalysisReport& report);
-void print_json(const AnalysisReport& report);
+Page page_of(const AnalysisReport& report);
+Json json_of(const AnalysisReport& report);
 
 /// ",f11,…,f44,validity,u_f11,…,u_f44,depolarization,u_depolarization,…,estimable"
 AddedColumns analyzed_columns(const Answers& answers, bool strict);

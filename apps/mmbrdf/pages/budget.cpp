@@ -25,8 +25,10 @@ std::string rounded(double u) {
 
 }  // namespace
 
-std::string budget_text(const std::vector<BudgetLine>& lines) {
-  if (lines.empty()) return "";
+namespace {
+
+/// The effects of all causes, and what they make together.
+Table budget_table(const std::vector<BudgetLine>& lines, const std::optional<double>& coverage) {
   const std::vector<Contribution>& causes = lines.front().uncertainty.contributions;
   std::size_t width = 10;
   for (const BudgetLine& line : lines) width = std::max(width, line.name.size());
@@ -34,23 +36,37 @@ std::string budget_text(const std::vector<BudgetLine>& lines) {
   for (const Contribution& cause : causes)
     table.columns.push_back({cause.name, "%" + std::to_string(std::max<std::size_t>(10, cause.name.size())) + "s"});
   for (const char* name : {"together", "dof", "k", "U"}) table.columns.push_back({name, "%10s"});
+  if (coverage) table.columns.push_back({"U, k = " + brief(*coverage), "%12s"});
   for (const auto& [name, value, u] : lines) {
     Table::Row& row = table.rows.emplace_back(Table::Row{name, to_place_of(without_rounding(value), u.expanded)});
     for (const Contribution& cause : u.contributions) row.push_back(rounded(cause.uncertainty));
     for (const std::string& cell :
          {rounded(u.uncertainty), freedom_text(u.freedom), format("%.2f", u.coverage_factor), rounded(u.expanded)})
       row.push_back(cell);
+    if (coverage) row.push_back(rounded(*coverage * u.uncertainty));
   }
+  return table;
+}
+
+}  // namespace
+
+Page budget_page(const std::vector<BudgetLine>& lines, const std::optional<double>& coverage) {
+  Page page;
+  if (lines.empty()) return page;
+  const std::vector<Contribution>& causes = lines.front().uncertainty.contributions;
   const double of_fit = causes.front().freedom;  // those of a fit are finite, if its model knows them
   std::string freedoms = "fit " + (std::isinf(of_fit) ? "not known (as if infinite)" : freedom_text(of_fit));
   for (std::size_t c = 1; c < causes.size(); ++c)
     freedoms += ", " + causes[c].name + " " + freedom_text(causes[c].freedom);
-  return text(table) + "degrees of freedom: " + freedoms +
-         "; together by Welch and Satterthwaite\n"
-         "U = k u: 95 % coverage, k of Student's distribution, 2 where the degrees of freedom are infinite\n";
+  page.add(budget_table(lines, coverage));
+  page.add("degrees of freedom: " + freedoms +
+           "; together by Welch and Satterthwaite\n"
+           "U = k u: 95 % coverage, k of Student's distribution, 2 where the degrees of freedom are infinite\n" +
+           (coverage ? "last column: U = " + brief(*coverage) + " u, whatever the degrees of freedom\n" : ""));
+  return page;
 }
 
-Json budget_json(const ExpandedUncertainty& uncertainty) {
+Json budget_json(const ExpandedUncertainty& uncertainty, const std::optional<double>& coverage) {
   Json json;
   json["terms"] = Json::array();
   for (const auto& [name, u, freedom] : uncertainty.contributions)
@@ -59,6 +75,10 @@ Json budget_json(const ExpandedUncertainty& uncertainty) {
   json["degrees_of_freedom"] = freedom_json(uncertainty.freedom);
   json["k"] = uncertainty.coverage_factor;
   json["U"] = uncertainty.expanded;
+  if (coverage) {
+    json["asked_k"] = *coverage;
+    json["asked_U"] = *coverage * uncertainty.uncertainty;
+  }
   return json;
 }
 

@@ -9,6 +9,7 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "pages/output.hpp"
 
@@ -56,10 +57,22 @@ void warn_if_outside(const Model& model, std::span<const Sample> samples, const 
   if (!unknown.empty()) note(unknown);
 }
 
+namespace {
+
+/// "0.9843 +- 0.0036", or six decimals of a model without uncertainties.
+std::string normal_reflectance(const Model& model, double wavelength) {
+  const double value = directional_hemispherical_reflectance(model, wavelength, {});
+  if (!knows_uncertainty(model)) return format("%.6f", value);
+  const double u = standard_uncertainty(directional_hemispherical_budget(uncertain(model, wavelength), {}));
+  return u > 0 ? to_place_of(value, u) + " +- " + to_place_of(u, u) : format("%.6f", value);
+}
+
+}  // namespace
+
 std::string normal_reflectance_line(const Model& model) {
   std::string text;
   for (const double wavelength : known_wavelengths(model)) {
-    text += (text.empty() ? "" : ", ") + format("%.6f", directional_hemispherical_reflectance(model, wavelength, {}));
+    text += (text.empty() ? "" : ", ") + normal_reflectance(model, wavelength);
     text += knows_wavelength(model) ? " at " + brief(nanometres(wavelength)) + " nm" : "";
   }
   return text.empty() ? "not known, for the wavelengths are not" : text;
@@ -109,6 +122,13 @@ std::string missing_from_uncertainty(const Model& model) {
   return text + (missing.empty() ? "" : missing.size() == 1 ? " is not in it" : " are not in it");
 }
 
+std::string uncertainty_line(const std::string& uncertain, const std::string& missing,
+                             const std::vector<std::string>& terms) {
+  const std::string start = "u: standard uncertainty of " + uncertain;
+  if (!terms.empty()) return start + " and of " + joined(terms) + "\n";
+  return start + (uncertain == "the fit" ? " alone" : "") + (missing.empty() ? "" : "; " + missing) + "\n";
+}
+
 double without_rounding(double x) { return std::abs(x) < 5e-11 ? 0 : x; }
 
 std::string matrix_text(const Mueller& m, const std::optional<Mueller>& u) {
@@ -138,6 +158,10 @@ std::string printed(const nlohmann::ordered_json& json) {
   for (const auto& [name, value] : json.items())
     text += (text.empty() ? "{\n  " : ",\n  ") + dumped(name) + ": " + by_lines(value);
   return text + "\n}\n";
+}
+
+std::string printed_all(const std::vector<nlohmann::ordered_json>& all) {
+  return printed(all.size() == 1 ? all.front() : nlohmann::ordered_json{{"rows", all}});
 }
 
 void warn_if_above_one(const Model& model, std::span<const double> wavelengths) {

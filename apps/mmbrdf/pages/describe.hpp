@@ -27,7 +27,7 @@ void warn_if_outside(const Model& model, std::span<const Sample> samples, const 
 /// the normal, and what that usually comes from.
 void warn_if_above_one(const Model& model, std::span<const double> wavelengths);
 
-/// Directional-hemispherical reflectance at normal incidence: "0.97515 at 351 nm, 0.98416 at 532 nm"
+/// Directional-hemispherical reflectance at normal incidence: "0.9751 +- 0.0031 at 351 nm, 0.9842 +- 0.0036 at 532 nm"
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);
 
@@ -35,6 +35,10 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model);
 std::string uncertain_of(const Model& model);
 /// "scale, angles and sample are not in it": what uncertainties of that leave out, as far as is known. Empty for nothing.
 std::string missing_from_uncertainty(const Model& model);
+
+/// "u: standard uncertainty of the fit alone; scale is not in it" and a line end, of those two; of the terms that were added.
+std::string uncertainty_line(const std::string& uncertain, const std::string& missing,
+                             const std::vector<std::string>& terms);
 
 /// 0 for what is 0 but for rounding, and not -0.0000000000.
 double without_rounding(double x);
@@ -49,7 +53,10 @@ nlohmann::ordered_json matrix_json(const Mueller& m);
 /// Each field and each row of a table in a line of its own.
 std::string printed(const nlohmann::ordered_json& json);
 
-/// The same on standard output.
+/// One of these as it is, several as {"rows": […]}.
+std::string printed_all(const std::vector<nlohmann::ordered_json>& all);
+
+/// printed() on standard output.
 void print(const nlohmann::ordered_json& json);
 
 }  // namespace mmbrdf::program

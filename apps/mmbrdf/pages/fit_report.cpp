@@ -10,7 +10,7 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -66,7 +66,12 @@ Table blocks(const FitResult& result) {
 
 /// In CSV with its block, and with a line of all but 11.
 Table elements(const FitResult& result) {
-  Table table{{{"element", "%-7s"}, {"rows", "%8s"}, {"rms", "%12.6g"}, {"chi_squared", "%12.6g", "chi^2"}}};
+  Table table{{{"element", "%-7s"},
+               {"rows", "%8s"},
+               {"rms", "%12.6g"},
+               {.name = "u_rms", .where = nowhere},
+               {"chi_squared", "%12.6g", "chi^2"},
+               {.name = "u_chi_squared", .where = nowhere}}};
   const std::vector<Column> of_blocks = blocks(result).columns;
   for (const Column& column : of_blocks) table.columns.push_back({column.name, "", "", in_csv});
   table.columns.push_back({"", " %s", "", in_text, ""});
@@ -76,10 +81,17 @@ Table elements(const FitResult& result) {
     const bool fitted = b < result.solutions.size();
     const char* without = result.model.not_measured[element] ? "not measured" : "no modes";
     const bool measured = fit.rows > 0;
-    Table::Row row{element_name(element), fit.rows, measured ? Json(fit.rms) : Json(),
-                   measured ? Json(fit.chi_squared) : Json()};
+    Table::Row row{element_name(element), fit.rows};
+    row.resize(6);
+    if (measured) {  // by chance so many squares differ by √2n from n
+      const double count = static_cast<double>(fit.rows);
+      row[2] = fit.rms;
+      row[3] = fit.rms / std::sqrt(2 * count);
+      row[4] = fit.chi_squared;
+      row[5] = fit.chi_squared * std::sqrt(2 / count);
+    }
     std::ranges::move(fitted ? block_row(result, b) : Table::Row{without, 0, 0}, std::back_inserter(row));
-    row.resize(4 + of_blocks.size());
+    row.resize(6 + of_blocks.size());
     row.push_back(fitted ? measured ? "" : "from the others" : without);
     table.rows.push_back(row);
   }
@@ -92,39 +104,50 @@ void print_csv(const FitReport& report) {
   std::cout << csv(table);
 }
 
-void print_text(const FitReport& report) {
+/// "rms of f11, sr^-1                 0.0051", to what chance leaves of a root mean square of so many.
+std::string rms_line(const std::string& what, double rms, long count) {
+  return format("rms of %-27s ", what.c_str()) + to_place_of(rms, rms / std::sqrt(2.0 * static_cast<double>(count))) +
+         "\n";
+}
+
+std::string scale_lines(const FitReport& report) {
+  const ReducedChiSquared reduced = chi_squared_per_dof(report.result);
+  std::string text = format("%-34s %.3g\n", "chi^2/dof of f11", reduced.f11);
+  if (const long count = polarized_elements(report.result); count > 0)
+    text += format("%-34s %.3g\n", ("chi^2/dof of the " + std::to_string(count) + " others").c_str(), reduced.others);
+  return text + format("%-34s ", "uncertainties of the model from") + source_of_uncertainties(report.covariance) + "\n";
+}
+
+std::string lines_below(const FitReport& report) {
   const Model& model = report.result.model;
-  std::cout << report.data << ": " << counted(report.rows, "row") << " at "
-            << nanometre_list(model.validity.wavelengths) << '\n'
-            << "basis " << basis_line(model) << ", weights " << report.weights << "\n\n"
-            << text(elements(report.result)) << '\n'
-            << text(blocks(report.result));
   const std::string others = "the " + std::to_string(polarized_elements(report.result)) + " others / f11";
-  const char* f11 = model.reflectance.values.empty() ? "f11, sr^-1" : "f11 / reflectance, sr^-1";
-  std::cout << format("\nrms of %-27s %.6g\n", f11, report.result.elements[0].rms)
-            << (polarization_rows(report.result) > 0
-                    ? format("rms of %-27s %.6g\n", others.c_str(), polarization_rms(report.result))
-                    : "");
-  if (knows_scale(report.result)) {
-    const ReducedChiSquared reduced = chi_squared_per_dof(report.result);
-    std::cout << format("%-34s %.3g\n", "chi^2/dof of f11", reduced.f11);
-    if (const long count = polarized_elements(report.result); count > 0)
-      std::cout << format("%-34s %.3g\n", ("chi^2/dof of the " + std::to_string(count) + " others").c_str(),
-                          reduced.others);
-    std::cout << format("%-34s ", "uncertainties of the model from") << source_of_uncertainties(report.covariance)
-              << '\n';
-  }
-  std::cout << format("%-34s ", "reflectance at normal incidence") << normal_reflectance_line(model) << '\n';
-  std::cout << format("%-34s ", "uncertainties hold for") << (model.posterior ? "the sample" : "the noise alone")
-            << '\n';
+  const ElementFit& f11 = report.result.elements[0];
+  std::string text =
+      "\n" + rms_line(model.reflectance.values.empty() ? "f11, sr^-1" : "f11 / reflectance, sr^-1", f11.rms, f11.rows);
+  if (const long rows = polarization_rows(report.result); rows > 0)
+    text += rms_line(others, polarization_rms(report.result), rows);
+  if (knows_scale(report.result)) text += scale_lines(report);
+  text += format("%-34s ", "reflectance at normal incidence") + normal_reflectance_line(model) + "\n" +
+          format("%-34s ", "uncertainties hold for") + (model.posterior ? "the sample" : "the noise alone") + "\n";
   if (model.posterior) {
-    std::cout << '\n';
-    for (const std::string& line : described_sample(*model.posterior)) std::cout << line << '\n';
+    text += "\n";
+    for (const std::string& line : described_sample(*model.posterior)) text += line + "\n";
   }
-  for (std::size_t i = 0; i < report.result.noise.size(); ++i) {
-    std::cout << (i == 0 ? "\nnoise of elements 14 and 41, relative for f11\n" : "") << noise_line(report.result, i)
-              << '\n';
-  }
+  for (std::size_t i = 0; i < report.result.noise.size(); ++i)
+    text += (i == 0 ? "\nnoise of elements 14 and 41, relative for f11\n" : "") + noise_line(report.result, i) + "\n";
+  return text;
+}
+
+Page page_of(const FitReport& report) {
+  const Model& model = report.result.model;
+  Page page;
+  page.add(report.data + ": " + counted(report.rows, "row") + " at " + nanometre_list(model.validity.wavelengths) +
+           "\nbasis " + basis_line(model) + ", weights " + report.weights + "\n\n");
+  page.add(elements(report.result));
+  page.add("\n");
+  page.add(blocks(report.result));
+  page.add(lines_below(report));
+  return page;
 }
 
 Json noise_json(const FitResult& result) {
@@ -170,7 +193,9 @@ std::string noise_line(const FitResult& result, std::size_t i) {
 }
 
 void print(const FitReport& report, Format format) {
-  (format == Format::text ? print_text : format == Format::csv ? print_csv : print_json)(report);
+  if (format == Format::csv) return print_csv(report);
+  if (format == Format::json) return print_json(report);
+  std::cout << page_of(report).written(format);
 }
 
 }  // namespace mmbrdf::program

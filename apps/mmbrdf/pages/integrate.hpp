@@ -45,6 +45,7 @@ struct Integrated {
   std::string uncertain;           // what the uncertainties are of: uncertain_of()
   std::string not_in_it;           // missing_from_uncertainty()
   std::vector<std::string> terms;  // and of these
+  std::optional<double> coverage;  // of the budgets, beside that of 95 %
 };
 
 /// As CSV the columns are [wavelength_nm,][theta_i_deg,|theta_r_deg,]QUANTITY,u_QUANTITY, with --geometry followed by

@@ -7,7 +7,7 @@
 
 #include "pages/describe.hpp"
 #include "pages/integrate.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -128,7 +128,7 @@ Json json_of(const Integrated& result) {
   for (std::size_t r = 0; r < result.rows.size(); ++r) {
     Json& row = json["rows"][r];
     for (const auto& [name, value, u] : budget_lines(result, result.rows[r]))
-      (result.quantity == Integral::mueller ? row["budgets"][name] : row["budget"]) = budget_json(u);
+      (result.quantity == Integral::mueller ? row["budgets"][name] : row["budget"]) = budget_json(u, result.coverage);
   }
   return json;
 }
@@ -158,14 +158,7 @@ std::string matrices(const Integrated& result) {
   return text;
 }
 
-std::string uncertainty_line(const Integrated& result) {
-  const std::string start = "u: standard uncertainty of " + result.uncertain;
-  if (!result.terms.empty()) return start + " and of " + joined(result.terms) + "\n";
-  return start + (result.uncertain == "the fit" ? " alone" : "") +
-         (result.not_in_it.empty() ? "" : "; " + result.not_in_it) + "\n";
-}
-
-std::string text_of(const Integrated& result) {
+Page page_of(const Integrated& result) {
   const bool geometry = needs_geometry(result.quantity);
   std::string text = result.model + ": " + named(result.quantity).meaning;
   const std::string unit = named(result.quantity).unit;
@@ -174,7 +167,13 @@ std::string text_of(const Integrated& result) {
     text += "\nsource      " + result.source + "\nreceiver    " + result.receiver + "\n";
   else
     text += (result.quantity == Integral::bhr ? "" : ", polarization " + result.polarization) + "\n";
-  text += result.quantity == Integral::mueller ? matrices(result) : program::text(table(result));
+  Page page;
+  page.add(text);
+  if (result.quantity == Integral::mueller)
+    page.add(matrices(result));
+  else
+    page.add(table(result));
+  text.clear();
   if (geometry) {
     double error = 0;
     long geometries = 0;
@@ -186,7 +185,7 @@ std::string text_of(const Integrated& result) {
             format(", error below %.1e\n", error);
   }
   if (std::any_of(result.rows.begin(), result.rows.end(), [](const auto& row) { return !row.uncertainties.empty(); }))
-    text += uncertainty_line(result);
+    text += uncertainty_line(result.uncertain, result.not_in_it, result.terms);
   if (result.extrapolated) {
     text += format("extrapolated: %.1f %% of the hemisphere's projected solid angle lies beyond the fitted angles\n",
                    100 * *result.extrapolated);
@@ -194,7 +193,9 @@ std::string text_of(const Integrated& result) {
   std::vector<BudgetLine> lines;
   for (const IntegratedRow& row : result.rows)
     for (BudgetLine& line : budget_lines(result, row)) lines.push_back(std::move(line));
-  return text + (lines.empty() ? "" : "\n") + budget_text(lines);
+  page.add(text + (lines.empty() ? "" : "\n"));
+  page.add(budget_page(lines, result.coverage));
+  return page;
 }
 
 }  // namespace
@@ -215,9 +216,8 @@ bool needs_geometry(Integral quantity) {
 }
 
 std::string written(const Integrated& result, Format format) {
-  return format == Format::text  ? text_of(result)
-         : format == Format::csv ? csv(table(result))
-                                 : printed(json_of(result));
+  if (format == Format::csv) return csv(table(result));
+  return format == Format::json ? printed(json_of(result)) : page_of(result).written(format);
 }
 
 }  // namespace mmbrdf::program

@@ -14,7 +14,7 @@
 
 namespace mmbrdf::program {
 
-enum class Format { text, csv, json };
+enum class Format { text, csv, json, html };
 
 /// Throws std::runtime_error unless everything sent to standard output so far could be written.
 void flush_output();

@@ -7,7 +7,7 @@
 
 #include "mmbrdf/model/description.hpp"
 #include "pages/describe.hpp"
-#include "pages/table.hpp"
+#include "pages/page.hpp"
 
 namespace mmbrdf::program {
 
@@ -105,26 +105,27 @@ Table table(const SelectReport& report, const PartSelection& part) {
   return table;
 }
 
-void print_text(const SelectReport& report) {
-  std::cout << report.data << ": " << counted(report.rows, "row") << " at " << nanometre_list(report.wavelengths)
-            << "\nbasis " << to_string(report.options.family) << ", " << to_string(report.options.mapping)
-            << " mapping, weights " << report.weights << "\nleft out in turn: " << left_out(report.partitions) << '\n';
+Page page_of(const SelectReport& report) {
+  Page page;
+  page.add(report.data + ": " + counted(report.rows, "row") + " at " + nanometre_list(report.wavelengths) + "\nbasis " +
+           to_string(report.options.family) + ", " + to_string(report.options.mapping) + " mapping, weights " +
+           report.weights + "\nleft out in turn: " + left_out(report.partitions) + "\n");
   const bool divided = report.wavelengths.size() > 1 || report.options.reflectance;
   for (const auto& [name, part] : parts(report.selection)) {
     const bool is_f11 = part == &report.selection.f11;
     if (part->candidates.empty()) continue;  // not measured
-    std::cout << (!is_f11 ? "\nThe others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
-    std::cout << text(table(report, *part));
+    page.add(!is_f11 ? "\nThe others / f11\n" : divided ? "\nf11 / reflectance, sr^-1\n" : "\nf11, sr^-1\n");
+    page.add(table(report, *part));
     for (const Candidate& one : part->candidates) {
       if (!one.refusal.empty()) {
-        std::cout << "order " << one.order << (one.powers > 0 ? ", powers " + std::to_string(one.powers) : "")
-                  << " refused: " << one.refusal << '\n';
+        page.add("order " + std::to_string(one.order) +
+                 (one.powers > 0 ? ", powers " + std::to_string(one.powers) : "") + " refused: " + one.refusal + "\n");
       }
     }
   }
-  std::cout << '\n'
-            << (report.selection.orders ? "recommended: " + recommended_options(report) : "no recommendation")
-            << "\n  f11     " << report.selection.f11.reason << "\n  others  " << report.selection.other.reason << '\n';
+  page.add("\n" + (report.selection.orders ? "recommended: " + recommended_options(report) : "no recommendation") +
+           "\n  f11     " + report.selection.f11.reason + "\n  others  " + report.selection.other.reason + "\n");
+  return page;
 }
 
 void print_csv(const SelectReport& report) {
@@ -152,7 +153,9 @@ void print_json(const SelectReport& report) {
 }  // namespace
 
 void print(const SelectReport& report, Format format) {
-  (format == Format::text ? print_text : format == Format::csv ? print_csv : print_json)(report);
+  if (format == Format::csv) return print_csv(report);
+  if (format == Format::json) return print_json(report);
+  std::cout << page_of(report).written(format);
 }
 
 }  // namespace mmbrdf::program

@@ -55,6 +55,13 @@ std::string markdown_of(const Column& column, const Json& value) {
 
 std::string name_of(const Column& column) { return column.name; }
 
+/// Without the blanks that align it in text.
+std::string html_cell(const char* tag, const std::string& words) {
+  const std::size_t begin = words.find_first_not_of(' '), end = words.find_last_not_of(' ');
+  const std::string bare = begin == std::string::npos ? "" : words.substr(begin, end + 1 - begin);
+  return std::string("<") + tag + ">" + html_escaped(bare) + "</" + tag + ">";
+}
+
 /// With two digits of each uncertainty, and the value before it to the same place.
 Table rounded(Table table) {
   for (std::size_t c = 1; c < table.columns.size(); ++c) {
@@ -94,6 +101,25 @@ std::string markdown(const Table& exact) {
   add(line(table, in_text, " | ", [](const Column&) { return std::string("---"); }));
   for (const Table::Row& row : table.rows) add(line(table, in_text, " | ", markdown_of, row));
   return text;
+}
+
+std::string html(const Table& exact) {
+  const Table table = rounded(exact);
+  std::string text = "<table>\n";
+  const auto add = [&](const std::string& line) { text += "<tr>" + line + "</tr>\n"; };
+  add(line(table, in_text, "", [](const Column& column) { return html_cell("th", column.heading); }));
+  for (const Table::Row& row : table.rows)
+    add(line(
+        table, in_text, "",
+        [](const Column& column, const Json& value) { return html_cell("td", text_of(column, value)); }, row));
+  return text + "</table>\n";
+}
+
+std::string html_escaped(const std::string& words) {
+  std::string result;
+  for (const char c : words)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return result;
 }
 
 Table table_of(const Json& json) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table: its columns are said once, its rows filled once, and it is printed as text, CSV, JSON or Markdown.
+// A table: its columns are said once, its rows filled once, and it is printed as text, CSV, JSON,
+// Markdown or HTML.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,7 +14,7 @@ namespace mmbrdf::program {
 using Json = nlohmann::ordered_json;
 
 /// What has a column; a bit each.
-enum Where : unsigned { in_text = 1, in_csv = 2, in_json = 4, everywhere = 7 };
+enum Where : unsigned { nowhere = 0, in_text = 1, in_csv = 2, in_json = 4, everywhere = 7 };
 
 struct Column {
   std::string name;
@@ -32,7 +33,8 @@ struct Table {
 };
 
 /// The headings, then line by line, with a blank between columns. A column called u, or u_ and more, is the standard
-/// uncertainty of the one before it, and both are rounded to what that leaves; in Markdown too.
+/// uncertainty of the one before it, and both are rounded to what that leaves; in Markdown and HTML too. One that is
+/// nowhere rounds that before it.
 std::string text(const Table& exact);
 
 /// The names, then line by line. Null is an empty field; commas in words become blanks, or semicolons before a blank.
@@ -43,6 +45,12 @@ Json json_of(const Table& table);
 
 /// What is in text, under the names.
 std::string markdown(const Table& exact);
+
+/// The same as text(), as the element <table>; words are escaped.
+std::string html(const Table& exact);
+
+/// & < > " as HTML takes them.
+std::string html_escaped(const std::string& words);
 
 /// Of such an array, or of the fields of an object: names and values, in columns without a name.
 Table table_of(const Json& json);

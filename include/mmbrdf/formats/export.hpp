@@ -54,6 +54,7 @@ struct ExportFormat {
   std::string_view meaning;     ///< "Mitsuba's measured_polarized: Mueller matrices of isotropic samples"
   bool takes_channel;           ///< it holds one number at a geometry, not a matrix
   bool takes_transfer = false;  ///< it holds what TransferAngles asks for
+  bool takes_error = true;      ///< its table is as fine as ExportOptions::error wants; that of others is what it is
 };
 
 std::span<const ExportFormat> export_formats();

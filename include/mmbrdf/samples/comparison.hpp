@@ -45,6 +45,10 @@ Comparison compare(const Model& model, std::span<const Sample> samples);
 Comparison compare(const Model& first, const Model& second, std::span<const double> wavelengths,
                    std::span<const Geometry> geometries);
 
+/// Second − first of samples that belong together (matching.hpp), pair by pair; `dark` counts those of the first. Throws
+/// std::invalid_argument for lists of different lengths, and as compare() of a model does.
+Comparison compare(std::span<const Sample> first, std::span<const Sample> second);
+
 /// "f11 of the model is not positive at 3 of 40 samples: there f11 alone is compared"; empty where it is positive.
 std::string dark_line(const Comparison& comparison);
 

@@ -62,6 +62,7 @@ def _parser(prog: str) -> argparse.ArgumentParser:
     add("--phi-i", dest="phi_i_deg", metavar="DEG", type=float, help="azimuth of the source [180]")
     add("--frame", choices=("xy", "sp", "scattering_plane"), help="of the matrices")
     add("--quantity", metavar="NAME", help="of a map or of uncertainty-parts: 11, 22, depolarization, dhr, ...")
+    add("--stokes", metavar="S1,S2,S3,S4", help="incident light, of a map of what becomes of it")
     add("--show", choices=("value", "u", "value / u"), help="what of it a map shows")
     add("--over-u", action="store_true", default=None, help="residuals over their standard uncertainty")
     add("--scale", choices=("data", "paper"), help="limits of what is shown, or those of the paper")
@@ -103,6 +104,16 @@ def _term(text: str) -> tuple[str, float]:
     return name, number / 100 if percent else number
 
 
+def _terms(texts: Sequence[str]) -> dict[str, float]:
+    terms: dict[str, float] = {}
+    for text in texts:
+        name, value = _term(text)
+        if name in terms:
+            raise ValueError(f"--term {text}: {name} is given twice; two errors are one of the root of their squares")
+        terms[name] = value
+    return terms
+
+
 def _converted(name: str, value: Any, kind: str) -> Any:
     """An option as the function takes it."""
     if name == "wavelength_nm" and kind not in _SEVERAL_NM or name == "theta_i_deg" and kind not in _SEVERAL_DEG:
@@ -111,8 +122,10 @@ def _converted(name: str, value: Any, kind: str) -> Any:
         return value[0]
     if name == "views":
         return [tuple(_numbers(text, 2, "--view")) for text in value]
+    if name == "stokes":
+        return _numbers(value, 4, "--stokes")
     if name == "terms":
-        return dict(_term(text) for text in value)
+        return _terms(value)
     if name == "film":
         n, thickness_um, substrate, k = _numbers(value, 4, "--film")
         return n, thickness_um, complex(substrate, k)

@@ -75,6 +75,7 @@ def hemisphere(
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     if scale not in ("data", "paper"):
         raise ValueError(f"scale = {scale!r}, expected data or paper")
+    _require_positive(limit=limit)
     image = disc.matrices(source, wavelength_nm, theta_i_deg, phi_i_deg, frame, samples)
     image = image._replace(values=disc.normalized(image.values))
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
@@ -84,6 +85,12 @@ def hemisphere(
     bars = _bars(image, view, isinstance(source, mmbrdf.Dataset), f11_limits, limit, scale == "paper")
     title = labels.title(named(source), wavelength_nm, theta_i_deg, frame, source) if title is None else title
     return _sixteen(image, view, bars, title, figure, decorated, width_cm)
+
+
+def _require_positive(**limits: float | None) -> None:
+    for name, value in limits.items():
+        if value is not None and not value > 0:
+            raise ValueError(f"{name} = {value}: expected a positive number, for both sides of 0")
 
 
 def _bars(image: disc.DiscImage, view: disc.View, measured: bool, f11_limits, limit, paper: bool) -> list[_Bar]:
@@ -134,6 +141,7 @@ def residual_map(
     """
     require("model", model, mmbrdf.Model)
     require("data", data, mmbrdf.Dataset)
+    _require_positive(f11_limit=f11_limit, limit=limit)
     wavelength_nm, theta_i_deg = disc.question(data, wavelength_nm, theta_i_deg)
     chosen = disc.samples_at(data, wavelength_nm, theta_i_deg, phi_i_deg)
     measured = in_frame(chosen.mueller, chosen.geometry, frame)

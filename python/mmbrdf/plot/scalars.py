@@ -33,13 +33,14 @@ class Scalar(NamedTuple):
 def scalar(asked: Asked, frame: str | None = None, stokes: Sequence[float] | None = None) -> Scalar:
     """What was asked for.
 
-    "11" is f11 in sr^-1, "12" ... "44" are the other elements divided by it, "reflectance_factor" is pi f11; all names of
+    "11" or "f11" is f11 in sr^-1, "12" ... "44" are the other elements divided by it, "reflectance_factor" is pi f11; all names of
     ``mmbrdf.quantities()``, which are of the frame sp, those of scattered light with its ``stokes``; or any function of
     matrices. ValueError for other names and frames.
     """
     if callable(asked):
         name = labels.plain(getattr(asked, "__name__", "value").replace("_", " "))
         return Scalar(name, name.replace("<lambda>", "value"), frame or "xy", asked)
+    asked = "11" if asked == "f11" else asked
     if asked in ELEMENTS:
         return _element(asked, frame or "xy")
     if asked == "reflectance_factor":
