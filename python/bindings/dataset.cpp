@@ -172,10 +172,17 @@ DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wa
       [&] { return pointer(simulate(model.model(), micrometres(wavelengths_nm), geometries, speckle, seed)); });
 }
 
-DatasetPointer unpickled(const py::bytes& bytes) {
-  std::vector<Sample> samples = from_bits<Sample>("Dataset", bytes);
+py::tuple pickled(const Dataset& data) {
+  return py::make_tuple(bits<Sample>("Dataset", data.samples), data.read_as, data.reduction);
+}
+
+DatasetPointer unpickled(const py::tuple& state) {
+  std::vector<Sample> samples = from_bits<Sample>("Dataset", state[0]);
   require_valid(samples);
-  return pointer(std::move(samples));
+  const DatasetPointer data = pointer(std::move(samples));
+  data->read_as = state[1].cast<std::string>();
+  data->reduction = state[2].cast<std::string>();
+  return data;
 }
 
 void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
@@ -266,7 +273,7 @@ void bind_class(py::module_& m) {
             write_samples(path, d.samples, d.reduction);
           },
           py::arg("path"), "Writes CSV, which reads back to the same bits. Raises OSError if it cannot be written.")
-      .def(py::pickle([](const Dataset& d) { return bits<Sample>("Dataset", d.samples); }, &unpickled));
+      .def(py::pickle(&pickled, &unpickled));
 }
 
 void bind_samples(py::module_& m) {
