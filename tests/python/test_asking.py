@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What every question to a model may say besides: uncertainty, invalid, as_xarray. One idea, the same for all."""
 
+import re
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -274,3 +276,17 @@ def test_readings_are_predicted_with_their_noise(samples):
     assert own.value.shape == (2, 4, 4) and (own.validity == Outside.INSIDE).all()
     with pytest.raises(ValueError, match="noise alone"):
         mmbrdf.fit(samples, uncertainty="noise").model.predict_readings(532, *where)
+
+
+def test_the_calls_of_the_documentation_give_what_stands_beside_them(ptfe):
+    page = (Path(__file__).parents[2] / "docs/python.md").read_text(encoding="utf-8")
+    block = page[page.index("### Value, u and validity") :].split("```")[1].removeprefix("python\n")
+    names = {"model": ptfe, "mmbrdf": mmbrdf}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mmbrdf.ExtrapolationWarning)
+        exec(block, names)
+        lines = block.splitlines()
+        shown = repr(eval(lines[2].partition("#")[0], names))
+        assert re.sub(r"\s+", "", shown) == re.sub(r"\s+", "", lines[2].partition("#")[2])
+        assert repr(eval(lines[3].partition("#")[0], names)) == lines[3].partition("# ")[2].partition(";")[0]
+    assert 0 < names["u"] < 0.01 < names["value"] and names["validity"] == Outside.INSIDE

@@ -4,6 +4,7 @@
 import csv
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -155,3 +156,19 @@ def test_matplotlib_comes_when_it_is_asked_for():
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "Help on package mmbrdf.plot" in done.stdout and "has no attribute 'nothing'" in done.stdout
+
+
+def test_the_calls_of_the_documentation_run_as_they_stand(files):
+    page = (Path(__file__).parents[2] / "docs/python.md").read_text(encoding="utf-8")
+    block = page[page.index("**Readings of a polarimeter**") :].split("```")[1].removeprefix("python\n")
+    given = table(files / "references.csv")
+    short = {
+        "kind": "reference",
+        "angle": "angle_deg",
+        "p": "generator_state",
+        "q": "analyzer_state",
+        "volts": "intensity",
+    }
+    names = {"mmbrdf": mmbrdf, "number": given["number"], **{name: given[column] for name, column in short.items()}}
+    exec(block, names)
+    assert names["instrument"].figure_of_merit < 0.001
