@@ -22,6 +22,8 @@ from ._warnings import ExtrapolationWarning
 _ANGLES = ("theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg")
 _QUESTION = ("wavelength_nm", *_ANGLES)
 _LIGHT = ("stokes", "analyzer")
+_CORES = {"stokes": (4,), "analyzer": (4,), "mueller": (4, 4)}
+"""The last axes of what is not a number for each question."""
 
 
 class Question(NamedTuple):
@@ -48,6 +50,8 @@ QUESTIONS = {
     "Model.outside": Question(),
     "Model.estimable": Question(),
     "Model.analyze": Question(labelled="analysis"),
+    "DirectionSampler.weight": Question(),
+    "change_frame": Question(),
     "directional_hemispherical_reflectance": Question("directional_hemispherical_uncertainty", "dhr"),
     "directional_hemispherical_uncertainty": Question(),
     "hemispherical_directional_reflectance": Question("hemispherical_directional_uncertainty", "hdr"),
@@ -85,6 +89,8 @@ def _is_valid(name: str, array: np.ndarray) -> np.ndarray:
     """Of each question; light has four numbers."""
     if name in _LIGHT:
         return np.isfinite(array).all(axis=-1)
+    if name == "mueller":  # of which nan is what was not measured
+        return np.ones(array.shape[:-2], bool)
     if name == "wavelength_nm":
         return np.isfinite(array) & (array > 0)
     with np.errstate(invalid="ignore"):
@@ -93,7 +99,7 @@ def _is_valid(name: str, array: np.ndarray) -> np.ndarray:
 
 def _question(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """What of the arguments broadcasts. The directions of a geometry stand one behind the other."""
-    question = {name: arguments[name] for name in (*_QUESTION, *_LIGHT) if arguments.get(name) is not None}
+    question = {name: arguments[name] for name in (*_QUESTION, *_CORES, "pdf") if arguments.get(name) is not None}
     if "geometry" in arguments:
         angles = [np.ma.asanyarray(one) for one in arguments["geometry"]]
         shape = np.broadcast_shapes(*(one.shape for one in angles))
@@ -135,7 +141,8 @@ class _Left(NamedTuple):
 def _left(question: Mapping[str, Any]) -> _Left | None:
     """None: all is valid, or such that the compiled part refuses it."""
     arrays = {name: array for name, value in question.items() if (array := _numbers(value)) is not None}
-    if len(arrays) < len(question) or any(arrays[name].shape[-1:] != (4,) for name in _LIGHT if name in arrays):
+    cores = {name: _CORES.get(name, ()) for name in arrays}
+    if len(arrays) < len(question) or any(arrays[n].shape[arrays[n].ndim - len(c) :] != c for n, c in cores.items()):
         return None
     valid = {name: _is_valid(name, array) for name, array in arrays.items()}
     try:
@@ -145,10 +152,10 @@ def _left(question: Mapping[str, Any]) -> _Left | None:
     together = np.logical_and.reduce([np.broadcast_to(one, shape) for one in valid.values()])
     if together.all() and not any(isinstance(value, np.ma.MaskedArray) for value in question.values()):
         return None
-    kept = {
-        name: np.broadcast_to(array, shape + array.shape[valid[name].ndim :])[together]
-        for name, array in arrays.items()
-    }
+    kept = {}
+    for name, array in arrays.items():
+        one_for_all = valid[name].ndim == 0 and (shape != () or cores[name] != ())
+        kept[name] = array if one_for_all else np.broadcast_to(array, shape + cores[name])[together]
     return _Left(kept, together)
 
 

@@ -53,6 +53,7 @@ class DirectionSampler:
         pdf: ArrayLike,
         *,
         frame: str = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.float64]: ...
 
 class Model:
@@ -953,6 +954,8 @@ def change_frame(
     phi_r_deg: ArrayLike,
     from_frame: str,
     to_frame: str,
+    *,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> NDArray[np.float64]: ...
 def cloude_decomposition(mueller: ArrayLike, *, invalid: str = "raise") -> mmbrdf.CloudeDecomposition: ...
 def co_and_cross_polarized(mueller_sp: ArrayLike) -> mmbrdf.PolarizedBrdf: ...

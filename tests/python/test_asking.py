@@ -34,7 +34,8 @@ def question(name, model, shape=(3, 2)):
     """Arguments of a question of this shape, all valid; with one place in each that may be spoilt."""
     rng = np.random.default_rng(5)
     parameters = names_of(_asking._named(_mmbrdf, name))
-    arguments = {"self" if "self" in parameters else "model": model}
+    asked = mmbrdf.DirectionSampler(model, 532) if name.startswith("DirectionSampler") else model
+    arguments = {one: asked for one in ("self", "model") if one in parameters}
     spoilt = {"theta_i_deg": 90.5, "theta_r_deg": np.nan, "phi_i_deg": np.inf, "phi_r_deg": np.nan}
     spoilt.update(wavelength_nm=-1.0, stokes=[1, np.nan, 0, 0], analyzer=[np.nan, 0, 0, 0])
     ranges = {"wavelength_nm": (400, 900), "theta_i_deg": (-60, 60), "theta_r_deg": (-60, 60)}
@@ -43,6 +44,10 @@ def question(name, model, shape=(3, 2)):
             arguments[argument] = rng.uniform(*ranges.get(argument, (0, 360)), shape)
     if "geometry" in parameters:
         arguments.update(wavelength_nm=532.0, geometry=[rng.uniform(0, 60, shape) for _ in range(4)])
+    if "mueller" in parameters:
+        arguments.update(mueller=rng.normal(size=(*shape, 4, 4)), from_frame="xy", to_frame="sp")
+    if "pdf" in parameters:
+        arguments["pdf"] = rng.uniform(0.1, 1, shape)
     if "count" in parameters:
         arguments.update(count=4, seed=1)
     if name == "Model.predict_readings":
@@ -138,6 +143,18 @@ def test_numbers_give_numbers(ptfe):
     assert np.isnan(nothing.value) and np.isnan(nothing.u) and nothing.validity == Outside.NOT_VALID
     assert ptfe.reflectance_factor(532, 0, 0, 45, 0) == found.value
     assert mmbrdf.directional_hemispherical_reflectance(ptfe, 532, 8, uncertainty=True).value < 1
+
+
+def test_one_light_for_all_is_left_as_it_is(ptfe):
+    found = ptfe.analyze(532, [45, np.nan], 0, 30, 180, stokes=[1, 0, 0, -1], invalid="nan")
+    alone = ptfe.analyze(532, 45, 0, 30, 180, stokes=[1, 0, 0, -1])
+    assert found["scattered_S1"].value[0] == alone["scattered_S1"].value and np.isnan(found["scattered_S1"].u[1])
+    nothing = ptfe.analyze(532, np.nan, 0, 30, 180, stokes=[1, 0, 0, -1], invalid="nan", as_xarray=False)
+    assert np.isnan(nothing["f_ss"].value) and np.ndim(nothing["f_ss"].value) == 0
+    dhr = mmbrdf.directional_hemispherical_reflectance
+    assert dhr(ptfe, 532, [8, np.nan], stokes=[1, 1, 0, 0], invalid="nan")[0] == dhr(ptfe, 532, 8, stokes=[1, 1, 0, 0])
+    assert np.isnan(dhr(ptfe, 532, [8, 9], stokes=[1, np.nan, 0, 0], invalid="nan")).all()
+    assert np.isnan(dhr(ptfe, [532, -1], 8, invalid="nan")).tolist() == [False, True]
 
 
 def test_masked_arrays_are_nan_if_that_is_asked_for(ptfe):
