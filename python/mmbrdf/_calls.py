@@ -13,6 +13,7 @@ import functools
 import inspect
 import operator
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -28,10 +29,14 @@ class Argument(NamedTuple):
     by_name: bool
 
 
+_MARKS = re.compile(r"[\[\](){}<>,'\"]")
+
+
 def split(text: str) -> list[str]:
     """At the commas outside of brackets and quotes."""
     parts, depth, quote, start = [], 0, "", 0
-    for place, letter in enumerate(text):
+    for mark in _MARKS.finditer(text):
+        place, letter = mark.start(), mark[0]
         if quote:
             quote = "" if letter == quote else quote
         elif letter in "'\"":
@@ -76,6 +81,7 @@ def signature_of(arguments: Sequence[Argument]) -> inspect.Signature:
     )
 
 
+@functools.lru_cache
 def _value(text: str) -> Any:
     try:
         return ast.literal_eval(text)
@@ -231,6 +237,10 @@ def explained(name: str, documentation: str, given: Sequence[Any], named: Mappin
     )
 
 
+_NOT_THESE = re.compile(r"incompatible (function|constructor) arguments")
+"""What pybind11 says of arguments that fit no signature."""
+
+
 def wrapped(function: Callable[..., Any], name: str, documentation: str | None = None) -> Callable[..., Any]:
     """The same function, whose TypeError is one line. ``name`` as users call it: "Model.save"."""
     text = function.__doc__ or "" if documentation is None else documentation
@@ -245,7 +255,7 @@ def wrapped(function: Callable[..., Any], name: str, documentation: str | None =
         try:
             return function(*given, **named)
         except TypeError as error:
-            if "incompatible" not in str(error):
+            if not _NOT_THESE.search(str(error)):
                 raise
             wrong = explained(name, text, given, named)
         raise TypeError(wrong)
