@@ -32,11 +32,13 @@ class Question(NamedTuple):
     uncertainty  the function that has u of the same arguments, as the compiled part calls it; None: there is none
     labelled     the quantity, with as_xarray; None: it has no names
     leading      how many axes stand before those of the questions
+    apertures    it is asked of a source and a receiver: the value is the first of what it gives, and nothing of it is nan
     """
 
     uncertainty: str | None = None
     labelled: str | None = None
     leading: int = 0
+    apertures: bool = False
 
 
 QUESTIONS = {
@@ -58,6 +60,7 @@ QUESTIONS = {
     "hemispherical_directional_uncertainty": Question(),
     "bihemispherical_reflectance": Question("bihemispherical_uncertainty", "bhr"),
     "bihemispherical_uncertainty": Question(),
+    "average": Question("average_uncertainty", apertures=True),
     "polarized_curve": Question("polarized_uncertainty"),
     "polarized_uncertainty": Question(),
 }
@@ -100,6 +103,9 @@ def _is_valid(name: str, array: np.ndarray) -> np.ndarray:
 def _question(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """What of the arguments broadcasts. The directions of a geometry stand one behind the other."""
     question = {name: arguments[name] for name in (*_QUESTION, *_CORES, "pdf") if arguments.get(name) is not None}
+    if "source" in arguments:  # of apertures: where they reach
+        question["theta_i_deg"] = arguments["source"].largest_theta_deg
+        question["theta_r_deg"] = arguments["receiver"].largest_theta_deg
     if "geometry" in arguments:
         angles = [np.ma.asanyarray(one) for one in arguments["geometry"]]
         shape = np.broadcast_shapes(*(one.shape for one in angles))
@@ -226,7 +232,9 @@ def _answer(function: Callable[..., Any], question: Question, arguments: dict[st
         return _xarray.labelled_answer(
             question.labelled, value, u, validity, known, lambda: _validity(arguments, invalid, compiled)
         )
-    return Evaluation(value, u, validity) if wanted else value
+    if not wanted:
+        return value
+    return Evaluation(value[0] if question.apertures else value, u, validity)
 
 
 def _named(compiled: Any, name: str) -> Callable[..., Any]:
@@ -236,7 +244,7 @@ def _named(compiled: Any, name: str) -> Callable[..., Any]:
 def _documentation(function: Callable[..., Any], question: Question) -> tuple[str, list[str]]:
     """The documentation with what is added here, and the names of that."""
     more = ["uncertainty", "terms"] if question.uncertainty else []
-    more += ["invalid"] + ["as_xarray"] * (question.labelled is not None)
+    more += ["invalid"] * (not question.apertures) + ["as_xarray"] * (question.labelled is not None)
     types = {"uncertainty": "bool = False", "terms": "Optional[Dict[str, float]] = None", "invalid": "str = 'raise'"}
     added = ", ".join(f"{name}: {types.get(name, 'bool = False')}" for name in more)
     head, _, rest = function.__doc__.partition("\n")

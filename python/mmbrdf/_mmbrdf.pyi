@@ -760,6 +760,8 @@ class Aperture:
     def without(self, port: Aperture) -> Aperture: ...
     @property
     def projected_solid_angle(self) -> float: ...
+    @property
+    def largest_theta_deg(self) -> float: ...
 
 class Polarimeter:
     def __init__(self, generator: ArrayLike, analyzer: ArrayLike, pairs: ArrayLike | None = None) -> None: ...
@@ -863,9 +865,27 @@ class Goniometer:
         seed: int = 0,
     ) -> None: ...
 
+@overload
 def average(
-    model: Model, wavelength_nm: float | None, source: Aperture, receiver: Aperture, tolerance: float = 1e-10
+    model: Model,
+    wavelength_nm: float | None,
+    source: Aperture,
+    receiver: Aperture,
+    tolerance: float = 1e-10,
+    *,
+    uncertainty: Literal[False] = ...,
 ) -> tuple[NDArray[np.float64], float, bool]: ...
+@overload
+def average(
+    model: Model,
+    wavelength_nm: float | None,
+    source: Aperture,
+    receiver: Aperture,
+    tolerance: float = 1e-10,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+) -> mmbrdf.Evaluation: ...
 def average_uncertainty(
     model: Model,
     wavelength_nm: float | None,

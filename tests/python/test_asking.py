@@ -26,7 +26,7 @@ def names_of(function):
 
 
 def functions():
-    for name in sorted(_asking.QUESTIONS):
+    for name in sorted(set(_asking.QUESTIONS) - {"average"}):
         yield name, _asking._named(_mmbrdf, name)
 
 
@@ -204,6 +204,16 @@ def test_u_needs_to_be_asked_for(ptfe):
         ptfe.evaluate(532, 45, 0, 30, 180, invalid="drop")
     with pytest.raises(ValueError, match="not known"):
         mmbrdf.in_published_form(ptfe).evaluate(532, 45, 0, 30, 180, uncertainty=True)
+
+
+def test_a_mean_over_apertures_comes_with_u_and_validity(ptfe):
+    source, receiver = mmbrdf.Aperture.cone(45, 0, 3), mmbrdf.Aperture.cone(78, 180, 5)
+    found = quietly(mmbrdf.average, ptfe, 532, source, receiver, uncertainty=True, terms=TERMS)
+    np.testing.assert_array_equal(found.value, quietly(mmbrdf.average, ptfe, 532, source, receiver)[0])
+    np.testing.assert_array_equal(found.u, mmbrdf.average_uncertainty(ptfe, 532, source, receiver, terms=TERMS))
+    np.testing.assert_allclose(receiver.largest_theta_deg, 83, rtol=1e-12)
+    assert found.validity == Outside.THETA_R  # up to 83 degrees, and 81.9 are fitted
+    assert quietly(mmbrdf.average, ptfe, 532, source, source, uncertainty=True).validity == Outside.INSIDE
 
 
 def test_curves_have_terms(ptfe):

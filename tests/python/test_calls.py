@@ -66,7 +66,9 @@ def test_arguments_that_are_missing_are_named(name, function, own):
 
 
 def test_signatures_are_those_of_help():
-    assert str(inspect.signature(mmbrdf.average)) == "(model, wavelength_nm, source, receiver, tolerance=1e-10)"
+    assert (
+        str(inspect.signature(mmbrdf.average_uncertainty)) == "(model, wavelength_nm, source, receiver, *, terms=None)"
+    )
     assert str(inspect.signature(mmbrdf.Aperture.cone)) == "(theta_deg, phi_deg, half_angle_deg)"
     shown = str(inspect.signature(mmbrdf.Model.evaluate))
     assert shown.startswith("(self, wavelength_nm, theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg, *, frame='xy'")
