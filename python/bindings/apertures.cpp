@@ -93,6 +93,9 @@ void bind_apertures(py::module_& m) {
   bind_rings(c);
   c.def("without", without, py::arg("port"), "With one more port: a cone that is taken out.")
       .def_property_readonly("projected_solid_angle", &Aperture::projected_solid_angle, "In sr")
+      .def_property_readonly(
+          "largest_theta_deg", [](const ApertureObject& a) { return degrees(a.largest_theta()); },
+          "The largest polar angle of its directions")
       .def("__repr__",
            [](const ApertureObject& a) {
              return "<mmbrdf.Aperture: " + formatted("{:.6g}", a.projected_solid_angle()) + " sr projected, up to " +

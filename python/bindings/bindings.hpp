@@ -74,6 +74,10 @@ void require_readable(const std::filesystem::path& path);
 /// The same for a file that is to be written: there must be a folder for it, and none in its place.
 void require_place(const std::filesystem::path& path);
 
+/// Warns with mmbrdf.<category>, as Python warnings do, at the line of the user that led here. Throws if the filters say
+/// so.
+void warn(const char* category, const std::string& text);
+
 /// Warns, as Python warnings do, of questions to a model outside its fitted range.
 void warn_outside(const ModelObject& model, const RangeCount& range);
 
@@ -117,6 +121,7 @@ void bind_apertures(py::module_& m);
 void bind_radiometry(py::module_& m);
 void bind_polarimeter(py::module_& m);
 void bind_measuring(py::module_& m);
+void bind_goniometer(py::module_& m);
 void bind_report(py::module_& m);
 void bind_sampling(py::module_& m);
 

@@ -190,11 +190,12 @@ py::tuple pickled(const Dataset& data) {
     if (s.as_measured) apart.push_back({in_xy.size(), *s.as_measured});
     in_xy.push_back({s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty});
   }
-  return py::make_tuple(bits<InXy>("Dataset", in_xy), bits<Apart>("Dataset as measured", apart));
+  return py::make_tuple(bits<InXy>("Dataset", in_xy), bits<Apart>("Dataset as measured", apart), data.read_as,
+                        data.reduction);
 }
 
 DatasetPointer unpickled(const py::tuple& state) {
-  if (state.size() != 2) throw std::invalid_argument("Dataset: not pickled by this version of mmbrdf");
+  if (state.size() != 4) throw std::invalid_argument("Dataset: not pickled by this version of mmbrdf");
   std::vector<Sample> samples;
   for (const InXy& s : from_bits<InXy>("Dataset", state[0]))
     samples.push_back({s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty});
@@ -204,7 +205,10 @@ DatasetPointer unpickled(const py::tuple& state) {
     samples[sample].as_measured = std::make_shared<const AsMeasured>(as_measured);
   }
   require_valid(samples);
-  return pointer(std::move(samples));
+  const DatasetPointer data = pointer(std::move(samples));
+  data->read_as = state[2].cast<std::string>();
+  data->reduction = state[3].cast<std::string>();
+  return data;
 }
 
 void bind_columns(py::class_<Dataset, DatasetPointer>& c) {

@@ -9,6 +9,7 @@
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
+#include "mmbrdf/uncertainty/reading.hpp"
 #include "question.hpp"
 
 namespace mmbrdf::python {
@@ -182,6 +183,33 @@ py::object evaluate_draws(const Question& question, Frame frame, int count, unsi
   return result;
 }
 
+/// Readings of the sample, and their uncertainties, behind each other at each position.
+py::object predicted_readings(const Question& question, bool at_its_azimuth, int threads) {
+  auto result = new_array<double>(question.broadcast(), {2, 4, 4});
+  auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());
+  Range range(question.object());
+  without_gil([&] {
+    question.each(
+        threads, 16,
+        [&](double wavelength) { return std::pair(predict_readings(question.model(), wavelength), wavelength); },
+        [&](const auto& at, const Some& some) {
+          const auto& [prediction, wavelength] = at;
+          range.count(wavelength, some.geometries);
+          for (std::size_t i = 0; i < some.geometries.size(); ++i) {
+            const Geometry& g = some.geometries[i];
+            const PredictedReading one = at_its_azimuth ? prediction.at_its_azimuth(g) : prediction.at_some_azimuth(g);
+            out[2 * some.position(i)] = one.value;
+            out[2 * some.position(i) + 1] = one.uncertainty;
+          }
+        });
+  });
+  range.warn(question.broadcast().size());
+  const auto part = [&](int which) -> py::object {
+    return result[py::make_tuple(py::ellipsis(), which, py::slice(0, 4, 1), py::slice(0, 4, 1))];
+  };
+  return record("Evaluation", part(0), part(1), outside_of(question));
+}
+
 constexpr const char* evaluate_doc =
     "The Mueller BRDF in sr^-1: array (..., 4, 4), row = outgoing, column = incoming Stokes component.\n\n"
     "wavelength_nm and the four angles are numbers or arrays, broadcast against each other; the shape before (4, 4) "
@@ -193,7 +221,6 @@ constexpr const char* evaluate_doc =
     "as_printed  published coefficients: the sum at the azimuths given, to compare only; a model that was fitted\n"
     "           so (Model.as_printed) is always evaluated so\n"
     "threads  how many at most; None or 0: as many as there are cores\n"
-    "as_xarray  an xarray.DataArray with named axes, units and conventions, which to_netcdf() can write\n"
     "out        an array of float64 in C order for the result, which is then not allocated anew; after\n"
     "           an error a part of it may be written\n\n"
     "Warns (ExtrapolationWarning) of geometries outside the fitted range. Raises ValueError for angles outside\n"
@@ -217,28 +244,17 @@ constexpr const char* estimable_doc =
     "Whether the data of the fit determine every element there: array of bool. Where they do not, uncertainties are\n"
     "too small. Nothing outside of the fitted range is estimable. Arguments as those of evaluate().";
 
+constexpr const char* readings_doc =
+    "What a reading of the sample will be, which is less certain than the mean that evaluate() gives, as Evaluation:\n"
+    "(..., 4, 4), element 11 is f11 in sr^-1, the others are divided by it, in the xy frame. Its noise, and that the\n"
+    "sample stands at an azimuth that nobody knows, are in u. Other arguments as those of evaluate().\n\n"
+    "at_its_azimuth  with the sample as it stood in the readings of the fit: its anisotropy is in the value\n\n"
+    "Raises ValueError for a model of a fit with uncertainty='noise', a wavelength that was not fitted, and 90 "
+    "degrees.";
+
 constexpr const char* draws_doc =
     "What `count` models drawn from the covariance of the fit give (GUM Supplement 1), in sr^-1: array\n"
     "(count, ..., 4, 4). Other arguments as those of evaluate(). The same seed gives the same draws.";
-
-/// The answer as it is, or with names.
-py::object labelled(const py::object& values, const char* quantity, ModelObject& model, const std::string& frame,
-                    const py::dict& arguments, bool as_printed, const Terms& terms = {}) {
-  return py::module_::import("mmbrdf._xarray")
-      .attr("labelled")(values, quantity, model.shared_from_this(), frame, arguments,
-                        py::arg("as_printed") = as_printed, py::arg("terms") = terms);
-}
-
-py::dict arguments(const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr) {
-  py::dict result;
-  result["wavelength_nm"] = w;
-  for (const Operand& operand : direction_operands(ti, pi, tr, pr)) result[operand.name] = operand.array;
-  return result;
-}
-
-}  // namespace
-
-namespace {
 
 void bind_rest(ModelClass& c) {
   const py::arg_v frame = py::arg("frame") = "xy", as_printed = py::arg("as_printed") = false,
@@ -256,6 +272,13 @@ void bind_rest(ModelClass& c) {
         return estimable({model, w, ti, pi, tr, pr, printed}, count.value_or(0));
       },
       estimable_doc, as_printed, threads);
+  define(
+      c, "predict_readings",
+      [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
+         bool at_its_azimuth, Threads count) {
+        return predicted_readings({model, w, ti, pi, tr, pr, false}, at_its_azimuth, count.value_or(0));
+      },
+      readings_doc, py::arg("at_its_azimuth") = false, threads);
   c.def(
       "evaluate_draws",
       [](ModelObject& model, int count, unsigned long seed, const Wavelength& w, const Given& ti, const Given& pi,
@@ -271,27 +294,22 @@ void bind_rest(ModelClass& c) {
 
 void bind_evaluation(ModelClass& c) {
   const py::arg_v frame = py::arg("frame") = "xy", as_printed = py::arg("as_printed") = false,
-                  threads = py::arg("threads") = py::none(), terms = py::arg("terms") = py::none(),
-                  as_xarray = py::arg("as_xarray") = false;
+                  threads = py::arg("threads") = py::none(), terms = py::arg("terms") = py::none();
   define(
       c, "evaluate",
       [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
-         const std::string& name, bool printed, Threads count, bool names, const std::optional<py::array>& out) {
-        const py::object values =
-            evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count.value_or(0), out);
-        return names ? labelled(values, "brdf", model, name, arguments(w, ti, pi, tr, pr), printed) : values;
+         const std::string& name, bool printed, Threads count, const std::optional<py::array>& out) {
+        return evaluate({model, w, ti, pi, tr, pr, printed}, frame_from(name), count.value_or(0), out);
       },
-      evaluate_doc, frame, as_printed, threads, as_xarray, py::arg("out") = py::none());
+      evaluate_doc, frame, as_printed, threads, py::arg("out") = py::none());
   define(
       c, "evaluate_uncertainty",
       [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
-         const std::string& name, bool printed, const Terms& named, Threads count, bool names) {
-        const py::object values = evaluate_uncertainty({model, w, ti, pi, tr, pr, printed}, frame_from(name),
-                                                       terms_from(named), count.value_or(0));
-        return names ? labelled(values, "uncertainty", model, name, arguments(w, ti, pi, tr, pr), printed, named)
-                     : values;
+         const std::string& name, bool printed, const Terms& named, Threads count) {
+        return evaluate_uncertainty({model, w, ti, pi, tr, pr, printed}, frame_from(name), terms_from(named),
+                                    count.value_or(0));
       },
-      uncertainty_doc, frame, as_printed, terms, threads, as_xarray);
+      uncertainty_doc, frame, as_printed, terms, threads);
   define(
       c, "covariance",
       [](ModelObject& model, const Wavelength& w, const Given& ti, const Given& pi, const Given& tr, const Given& pr,

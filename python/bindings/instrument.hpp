@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <complex>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "arrays.hpp"
@@ -18,6 +20,9 @@ struct Instrument : Calibration {
   std::string name;
 };
 using InstrumentPointer = std::shared_ptr<Instrument>;
+
+/// (index of the film, thickness in micrometres, complex index of the substrate)
+using FilmTuple = std::tuple<std::complex<double>, double, std::complex<double>>;
 
 /// (readings, 2) in degrees. Throws std::invalid_argument for another shape, or more than most_states.
 std::vector<DialAngles> dials_from(const Given& dials);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calibrations, what is made of files of readings, and a simulated goniometer.
+// Calibrations, and what is made of readings.
 #include "mmbrdf/polarimetry/calibration.hpp"
 
 #include <pybind11/complex.h>
@@ -15,14 +15,13 @@
 
 #include "dataset.hpp"
 #include "instrument.hpp"
-#include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/instrument_file.hpp"
 #include "mmbrdf/files/readings_file.hpp"
-#include "mmbrdf/model/prepared.hpp"
-#include "mmbrdf/polarimetry/goniometer.hpp"
 #include "mmbrdf/polarimetry/judgement.hpp"
 #include "mmbrdf/polarimetry/measurement.hpp"
 #include "mmbrdf/polarization/elements.hpp"
+#include "pickles.hpp"
+#include "reading_source.hpp"
 
 namespace mmbrdf::python {
 
@@ -45,20 +44,14 @@ void require_limit(double saturation) {
   if (!(saturation > 0)) throw std::invalid_argument("saturation: must be positive");
 }
 
-/// (index of the film, thickness in micrometres, complex index of the substrate)
-Film film_from(const std::tuple<std::complex<double>, double, std::complex<double>>& film) {
-  return {std::get<0>(film), std::get<1>(film), std::get<2>(film)};
-}
+Film film_from(const FilmTuple& film) { return {std::get<0>(film), std::get<1>(film), std::get<2>(film)}; }
 
-using FilmTuple = std::tuple<std::complex<double>, double, std::complex<double>>;
 using Noise = std::map<std::string, double>;
 
 /// Warns, as Python warnings do, of the doubts about what is called `name`; throws std::invalid_argument if it is
 /// refused.
 void heed(const Verdict& verdict, const std::string& name) {
-  const py::object category = py::module_::import("mmbrdf").attr("InstrumentWarning");
-  for (const std::string& doubt : verdict.doubts)
-    if (PyErr_WarnEx(category.ptr(), (name + ": " + doubt).c_str(), 1) != 0) throw py::error_already_set();
+  for (const std::string& doubt : verdict.doubts) warn("InstrumentWarning", name + ": " + doubt);
   if (!verdict.refusal.empty()) throw std::invalid_argument(name + ": " + verdict.refusal);
 }
 
@@ -72,10 +65,11 @@ void require_frames(const ReadStates& states, std::size_t dials, const std::stri
                                 std::to_string(dials) + " rows of dials_deg");
 }
 
-InstrumentPointer calibrated(const std::filesystem::path& path, const std::optional<FilmTuple>& film, int dial_sense,
-                             double extinction, bool refine, bool phase, const Noise& noise, double saturation,
-                             const Given& dials, double retardance, const std::optional<double>& polarizer_near) {
-  require_readable(path);
+InstrumentPointer calibrated(const Given& references, const ColumnNames& columns, const std::optional<FilmTuple>& film,
+                             int dial_sense, double extinction, bool refine, bool phase, const Noise& noise,
+                             double saturation, const Given& dials, double retardance,
+                             const std::optional<double>& polarizer_near) {
+  const ReadingSource source(references, columns, "references");
   require_limit(saturation);
   CalibrationOptions options;
   options.dial_sense = dial_sense;
@@ -95,8 +89,10 @@ InstrumentPointer calibrated(const std::filesystem::path& path, const std::optio
     nominal.generator.retardance = nominal.analyzer.retardance = radians(retardance);
   }
   auto instrument = without_gil([&] {
-    const ReferenceFile file = read_references(path, {saturation, options.noise.dark});
-    const std::string name = path.filename().string();
+    const ReferenceFile file = source.read([&](std::istream& in, const std::string& where) {
+      return read_references(in, where, {saturation, options.noise.dark});
+    });
+    const std::string& name = source.name();
     if (options.retarders)
       require_frames(file.states, options.retarders->dials.size(), name);
     else if (!file.states.pairs.empty())
@@ -104,8 +100,8 @@ InstrumentPointer calibrated(const std::filesystem::path& path, const std::optio
     options.generator_states = file.states.generator;
     options.analyzer_states = file.states.analyzer;
     options.wavelength = file.wavelength;
-    auto result = std::make_shared<Instrument>(calibrate(file.references, options), path.filename().string());
-    result->provenance["data"] = path.filename().string();
+    auto result = std::make_shared<Instrument>(calibrate(file.references, options), name);
+    result->provenance["data"] = name;
     result->provenance["references"] = std::to_string(file.references.size());
     result->provenance["software"] = std::string("mmbrdf ") + MMBRDF_VERSION;
     return result;
@@ -115,11 +111,10 @@ InstrumentPointer calibrated(const std::filesystem::path& path, const std::optio
 }
 
 /// Wavelength 0: any.
-std::vector<Sample> reduced_file(const std::filesystem::path& path, const Polarimeter& polarimeter, double wavelength,
-                                 double solid_angle, const ReadingNoise& noise, double saturation) {
+std::vector<Sample> reduced_rows(std::istream& in, const std::string& name, const Polarimeter& polarimeter,
+                                 double wavelength, double solid_angle, const ReadingNoise& noise, double saturation) {
   Reducer reducer(polarimeter);
-  std::ifstream in = open_input(path);
-  RawReader reader(in, path.string(), read_states(polarimeter), {saturation, noise.dark});
+  RawReader reader(in, name, read_states(polarimeter), {saturation, noise.dark});
   std::vector<Sample> samples;
   for (RawMeasurement raw; reader.next(raw);) {
     if (wavelength > 0 && !same_wavelength(raw.wavelength, wavelength))
@@ -156,6 +151,26 @@ py::object covariance_view(const py::object& self) {
   return view(c.covariance.data(), {n, n}, {n * size, size}, self);
 }
 
+/// Standard uncertainties of one arm's states, those from `first` on; None: not known.
+py::object state_uncertainty(const Instrument& c, std::size_t first, std::size_t count) {
+  if (c.covariance.empty()) return py::none();
+  const std::size_t n = 4 * (c.polarimeter.generator.size() + c.polarimeter.analyzer.size());
+  py::array_t<double> result({static_cast<py::ssize_t>(count), py::ssize_t{4}});
+  for (std::size_t i = 0; i < 4 * count; ++i)
+    result.mutable_data()[i] = std::sqrt(std::max(c.covariance[(4 * first + i) * (n + 1)], 0.0));
+  return result;
+}
+
+py::tuple references_of(const Instrument& c) {
+  return tuple_of(c.references, [](const FittedReference& one) {
+    double squares = 0;
+    for (std::size_t e = 1; e < 16; ++e)
+      squares += std::pow(normalized(one.measured).elements[e] - normalized(one.expected).elements[e], 2) / 15;
+    return record("CalibrationReference", to_string(one.kind), degrees(one.angle), one.gain, array_of(one.measured),
+                  array_of(one.expected), std::sqrt(squares));
+  });
+}
+
 using CalibrationClass = py::class_<Instrument, InstrumentPointer>;
 
 void bind_quality(CalibrationClass& calibration) {
@@ -166,12 +181,32 @@ void bind_quality(CalibrationClass& calibration) {
       .def_property_readonly(
           "film_misfit_deg", [](const Instrument& c) { return degrees(c.film_misfit); },
           "Rms of the wafers' psi and delta from those of the film; 0: no film was given")
+      .def_property_readonly(
+          "figure_of_merit_by_kind",
+          [](const Instrument& c) {
+            const FigureOfMerit& f = c.figure_of_merit;
+            std::map<std::string, double> result;
+            for (const auto& [kind, value] : {std::pair("empty", f.empty),
+                                              {"polarizer", f.polarizer},
+                                              {"wafer", f.wafer},
+                                              {"retarder", f.retarder}})
+              if (value > 0) result[kind] = value;
+            return result;
+          },
+          "The same over the references of each kind: {'empty': ..., 'polarizer': ...}")
+      .def_property_readonly(
+          "figure_of_merit_by_element", [](const Instrument& c) { return array_of(c.figure_of_merit.elements); },
+          "The same of each element: (4, 4)")
+      .def_property_readonly("references", references_of,
+                             "CalibrationReference of each, as calibrate() found it; (): of a file, which does not say")
       .def_readonly("generator_condition", &Calibration::generator_condition)
       .def_readonly("analyzer_condition", &Calibration::analyzer_condition)
       .def_readonly("singular_ratio", &Calibration::singular_ratio, "s16/s15: misfit of the linear solution")
       .def_readonly("identifiability", &Calibration::identifiability,
                     "s15/s1: how far the references are from leaving a second solution")
-      .def_readonly("chi_squared", &Calibration::chi_squared)
+      .def_readonly("chi_squared", &Calibration::chi_squared,
+                    "Of the readings, in units of the given noise: near degrees_of_freedom if that is right. 0: no "
+                    "refinement")
       .def_readonly("degrees_of_freedom", &Calibration::degrees_of_freedom);
 }
 
@@ -182,6 +217,16 @@ void bind_calibration(py::module_& m) {
       .def_property_readonly("polarimeter", [](const Instrument& c) { return c.polarimeter; })
       .def_property_readonly("covariance", covariance_view,
                              "Of the components of all generator, then all analyzer states: a view; None: not known")
+      .def_property_readonly(
+          "generator_uncertainty",
+          [](const Instrument& c) { return state_uncertainty(c, 0, c.polarimeter.generator.size()); },
+          "Standard uncertainties (n, 4) of polarimeter.generator, from the covariance; None: not known")
+      .def_property_readonly(
+          "analyzer_uncertainty",
+          [](const Instrument& c) {
+            return state_uncertainty(c, c.polarimeter.generator.size(), c.polarimeter.analyzer.size());
+          },
+          "The same of polarimeter.analyzer")
       .def_readonly("scale_uncertainty", &Calibration::scale_uncertainty, "Relative")
       .def_property_readonly(
           "polarizer_offset_deg", [](const Instrument& c) { return degrees(c.polarizer_offset); },
@@ -203,12 +248,16 @@ void bind_calibration(py::module_& m) {
              return "<mmbrdf.Calibration: " + formatted("{:g}", nanometres(c.wavelength)) + " nm, figure of merit " +
                     formatted("{:.3g}", c.figure_of_merit.total) + ">";
            })
-      .def(py::pickle([](const Instrument& c) { return py::make_tuple(to_json(c), c.name); },
-                      [](const py::tuple& state) {
-                        return std::make_shared<Instrument>(
-                            calibration_from_json(state[0].cast<std::string>(), "pickle"),
-                            state[1].cast<std::string>());
-                      }));
+      .def(py::pickle(
+          [](const Instrument& c) {
+            return py::make_tuple(to_json(c), c.name, bits<FittedReference>("Calibration", c.references));
+          },
+          [](const py::tuple& state) {
+            auto c = std::make_shared<Instrument>(calibration_from_json(state[0].cast<std::string>(), "pickle"),
+                                                  state[1].cast<std::string>());
+            c->references = from_bits<FittedReference>("Calibration", state[2]);
+            return c;
+          }));
 }
 
 void bind_files(py::module_& m) {
@@ -234,26 +283,30 @@ void bind_files(py::module_& m) {
       },
       py::arg("path"),
       "A Calibration from a file of `mmbrdf calibrate` or Calibration.save(). Warns and raises as calibrate().");
-  m.def("calibrate", calibrated, py::arg("references"), py::kw_only(), py::arg("film") = py::none(),
-        py::arg("dial_sense") = 1, py::arg("extinction") = 0.0, py::arg("refine") = true,
-        py::arg("fit_polarizer_phase") = false, py::arg("noise") = Noise{{"relative", 1e-3}},
-        py::arg("saturation") = never_saturated, py::arg("dials_deg") = py::none(), py::arg("retardance_deg") = 90.0,
-        py::arg("polarizer_near_deg") = py::none(),
-        "The instrument that measured the references of a file (docs/formats.md), with its covariance.\n\n"
-        "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
-        "dark, shot and relative. With dials_deg (frames, 2), positive from s towards p, it is one of two turning "
-        "retarders, of nearly this\n"
-        "retardance, for which empty references are enough. polarizer_near_deg is roughly the polarizer's azimuth at "
-        "dial\n"
-        "0, needed where there is no wafer. Raises ValueError, saying what is missing, where they do not determine it, "
-        "and for an\n"
-        "instrument with a figure of merit above 0.5 or a condition number above 100; warns (InstrumentWarning) above\n"
-        "0.05 and 10, and of a film that is more than 10 % from the given thickness.");
+  m.def(
+      "calibrate", calibrated, py::arg("references"), py::kw_only(), py::arg("columns") = ColumnNames{},
+      py::arg("film") = py::none(), py::arg("dial_sense") = 1, py::arg("extinction") = 0.0, py::arg("refine") = true,
+      py::arg("fit_polarizer_phase") = false, py::arg("noise") = Noise{{"relative", 1e-3}},
+      py::arg("saturation") = never_saturated, py::arg("dials_deg") = py::none(), py::arg("retardance_deg") = 90.0,
+      py::arg("polarizer_near_deg") = py::none(),
+      "The instrument that measured these references, with its covariance.\n\n"
+      "references is a file (docs/formats.md), or a table of arrays by the same names: a dict, a pandas.DataFrame, a\n"
+      "structured array; numbers broadcast. Its states are numbered from 1 or 0. columns has other names, as in\n"
+      "{'intensity': 'V'}, of either.\n"
+      "film is (index, thickness in micrometres, index of the substrate) of the wafer, n + ik; noise has the keys\n"
+      "dark, shot and relative. With dials_deg (frames, 2), positive from s towards p, it is one of two turning "
+      "retarders, of nearly this\n"
+      "retardance, for which empty references are enough. polarizer_near_deg is roughly the polarizer's azimuth at "
+      "dial\n"
+      "0, needed where there is no wafer. Raises ValueError, saying what is missing, where they do not determine it, "
+      "and for an\n"
+      "instrument with a figure of merit above 0.5 or a condition number above 100; warns (InstrumentWarning) above\n"
+      "0.05 and 10, and of a film that is more than 10 % from the given thickness.");
   m.def(
       "reduce",
-      [](const std::filesystem::path& path, const std::variant<InstrumentPointer, Polarimeter>& instrument,
-         double solid_angle, const Noise& noise, double saturation) {
-        require_readable(path);
+      [](const Given& raw, const std::variant<InstrumentPointer, Polarimeter>& instrument, double solid_angle,
+         const ColumnNames& columns, const Noise& noise, double saturation) {
+        const ReadingSource source(raw, columns, "raw");
         require_limit(saturation);
         const ReadingNoise law = noise_from(noise);
         const auto* const calibrated = std::get_if<InstrumentPointer>(&instrument);
@@ -261,16 +314,19 @@ void bind_files(py::module_& m) {
           throw py::type_error("instrument: must be a Calibration or a Polarimeter, not None");
         const Polarimeter p = calibrated ? (*calibrated)->polarimeter : std::get<Polarimeter>(instrument);
         const double wavelength = calibrated ? (*calibrated)->wavelength : 0;
-        std::vector<Sample> samples =
-            without_gil([&] { return reduced_file(path, p, wavelength, solid_angle, law, saturation); });
-        heed(judged(samples), path.filename().string());
+        std::vector<Sample> samples = without_gil([&] {
+          return source.read([&](std::istream& in, const std::string& name) {
+            return reduced_rows(in, name, p, wavelength, solid_angle, law, saturation);
+          });
+        });
+        heed(judged(samples), source.name());
         const std::string by = calibrated ? (*calibrated)->name : "an ideal instrument";
-        return dataset_object(std::move(samples),
-                              reduction_text(path.filename().string(), by, solid_angle, law, saturation));
+        return dataset_object(std::move(samples), reduction_text(source.name(), by, solid_angle, law, saturation));
       },
-      py::arg("raw"), py::arg("instrument"), py::kw_only(), py::arg("solid_angle"),
+      py::arg("raw"), py::arg("instrument"), py::kw_only(), py::arg("solid_angle"), py::arg("columns") = ColumnNames{},
       py::arg("noise") = Noise{{"relative", 1e-3}}, py::arg("saturation") = never_saturated,
-      "A Dataset from a file of readings, with uncertainties from their noise; solid_angle in sr. The instrument is a\n"
+      "A Dataset from readings, a file or a table as calibrate() takes them, with uncertainties from their noise; "
+      "solid_angle in sr. The instrument is a\n"
       "Calibration, or a Polarimeter that is taken as exact. Elements that the pairs of states of a measurement do "
       "not\n"
       "determine are NaN. Readings below zero pass down to -5 times noise[\"dark\"]. What the instrument\n"
@@ -279,70 +335,11 @@ void bind_files(py::module_& m) {
       "that cannot be physical.");
 }
 
-void bind_writing(py::class_<Goniometer>& c) {
-  c.def(
-       "write_references",
-       [](const Goniometer& g, const std::filesystem::path& path, double nm, int count, unsigned long seed) {
-         const double wavelength = micrometres(nm);
-         require_place(path);
-         write_references(path, {wavelength, read_states(g.polarimeter()), g.references(wavelength, count, seed)});
-       },
-       py::arg("path"), py::arg("wavelength_nm"), py::arg("count") = 18, py::arg("seed") = 0,
-       "Measures `count` references of each kind: the file that calibrate() reads")
-      .def(
-          "write_raw",
-          [](const Goniometer& g, const std::filesystem::path& path, const ModelObject& model, double nm,
-             const py::sequence& angles, unsigned long seed) {
-            require_place(path);
-            const std::vector<Geometry> geometries = geometries_from(angles);
-            const double wavelength = micrometres(nm);
-            const auto all = g.readings(prepare(model.model(), wavelength), geometries, seed);
-            std::vector<RawMeasurement> raw;
-            for (std::size_t i = 0; i < all.size(); ++i) raw.push_back({wavelength, geometries[i], all[i]});
-            write_raw(path, read_states(g.polarimeter()), raw);
-          },
-          py::arg("path"), py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::arg("seed") = 0,
-          "Measures a sample that has this model: the file that reduce() reads");
-}
-
-void bind_goniometer(py::module_& m) {
-  py::class_<Goniometer> c(m, "Goniometer",
-                           "A simulated instrument with the imperfections of a real one. Each seed is another "
-                           "instrument.\nrelative_noise is that of the readings, speckle that of a sample at normal "
-                           "incidence. With dials_deg\n(frames, 2) it is one of two turning retarders.");
-  c.def(py::init([](unsigned long seed, double relative_noise, double speckle, const Given& dials, double retardance) {
-          GoniometerOptions options;
-          if (!dials.is_none()) {
-            options.dials = dials_from(dials);
-            options.retardance = radians(retardance);
-            options.imperfections.azimuth = radians(2);
-          }
-          options.noise.relative = relative_noise;
-          options.speckle = speckle;
-          return Goniometer(options, seed);
-        }),
-        py::arg("seed") = 0, py::kw_only(), py::arg("relative_noise") = 1e-3, py::arg("speckle") = 0.0,
-        py::arg("dials_deg") = py::none(), py::arg("retardance_deg") = 90.0)
-      .def_property_readonly(
-          "polarimeter", [](const Goniometer& g) { return g.polarimeter(); }, "The true states")
-      .def_property_readonly(
-          "solid_angle", [](const Goniometer& g) { return g.options().solid_angle; }, "In sr")
-      .def_property_readonly(
-          "film",
-          [](const Goniometer& g) {
-            const Film& film = g.options().film;
-            return FilmTuple{film.film_index, film.thickness, film.substrate_index};
-          },
-          "Of its wafer, as calibrate() takes it");
-  bind_writing(c);
-}
-
 }  // namespace
 
 void bind_measuring(py::module_& m) {
   bind_calibration(m);
   bind_files(m);
-  bind_goniometer(m);
 }
 
 }  // namespace mmbrdf::python

@@ -119,10 +119,17 @@ void bind_block(py::module_& m) {
       .def_property_readonly(
           "condition", [](const BlockView& b) { return b.fitted().condition; },
           "Condition number of the fit; 0: not known")
-      .def("__repr__", [](const BlockView& b) {
-        return "<mmbrdf.Block '" + b.fitted().block.name + "': " + std::to_string(b.fitted().coefficients.size()) +
-               " coefficients>";
-      });
+      .def("__repr__",
+           [](const BlockView& b) {
+             return "<mmbrdf.Block '" + b.fitted().block.name + "': " + std::to_string(b.fitted().coefficients.size()) +
+                    " coefficients>";
+           })
+      .def(py::pickle([](const BlockView& b) { return py::make_tuple(b.owner, b.index); },
+                      [](const py::tuple& state) {
+                        BlockView block{state[0].cast<ModelPointer>(), state[1].cast<std::size_t>()};
+                        static_cast<void>(block.owner->model().blocks.at(block.index));
+                        return block;
+                      }));
 }
 
 void bind_properties(ModelClass& c) {
@@ -267,17 +274,18 @@ void require_place(const std::filesystem::path& path) {
     refuse(PyExc_FileNotFoundError, ENOENT);
 }
 
+void warn(const char* category, const std::string& text) {
+  py::module_::import("mmbrdf._warnings").attr("warn")(text, category);
+}
+
 void warn_outside(const ModelObject& model, const RangeCount& range) {
-  const auto warn = [](const std::string& text) {
-    const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
-    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
-  };
+  constexpr const char* category = "ExtrapolationWarning";
   const std::string unknown = unknown_range_line(model.model().name, model.model().validity);
-  if (!unknown.empty() && model.is_first_of_unknown_range()) warn(unknown);
+  if (!unknown.empty() && model.is_first_of_unknown_range()) warn(category, unknown);
   if (range.outside == 0) return;
   const std::string text = model.model().name + ": " + range.line("question") + " (" + to_string(range.reasons) +
                            "): fitted are " + fitted_range(model.model().validity);
-  warn(text);
+  warn(category, text);
 }
 
 ModelClass bind_model(py::module_& m) {

@@ -39,6 +39,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_radiometry(m);
   bind_polarimeter(m);
   bind_measuring(m);
+  bind_goniometer(m);
   bind_fit(m);
   bind_selection(m);
   bind_plan(m);

@@ -254,11 +254,18 @@ void bind_instrument(py::module_& m) {
       .def("covariance", reduced_covariance, py::arg("variances"),
            "Of the sixteen elements, from independent readings with these variances: array (..., 16, 16), NaN as "
            "reduce()")
-      .def("__repr__", [](const Polarimeter& p) {
-        return "<mmbrdf.Polarimeter: " + std::to_string(p.generator.size()) + " generator states, " +
-               std::to_string(p.analyzer.size()) + " analyzer states" +
-               (p.pairs.empty() ? "" : ", " + std::to_string(p.pairs.size()) + " pairs") + ">";
-      });
+      .def("__repr__",
+           [](const Polarimeter& p) {
+             return "<mmbrdf.Polarimeter: " + std::to_string(p.generator.size()) + " generator states, " +
+                    std::to_string(p.analyzer.size()) + " analyzer states" +
+                    (p.pairs.empty() ? "" : ", " + std::to_string(p.pairs.size()) + " pairs") + ">";
+           })
+      .def(py::pickle(
+          [](const Polarimeter& p) { return py::make_tuple(array_of(p.generator), array_of(p.analyzer), pairs_of(p)); },
+          [](const py::tuple& state) {
+            return reading({states_from(state[0], "generator"), states_from(state[1], "analyzer")},
+                           pairs_from(state[2]));
+          }));
   m.def(
       "ideal_polarimeter",
       [](double retardance, const Given& azimuths) {

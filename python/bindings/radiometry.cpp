@@ -57,8 +57,6 @@ py::object over_wavelengths(const ModelObject& model, const Wavelength& nm, F f)
                          [&](double wavelength, const Direction&, const Stokes*) { return f(wavelength); });
 }
 
-constexpr const char* uncertainty_doc = "Its standard uncertainty, of the fit and, where it has one, its instrument.";
-
 constexpr const char* terms_doc =
     "Its standard uncertainty, of the fit, where it has one of its instrument, and of the terms of type B, as those "
     "of\n"
@@ -223,10 +221,9 @@ py::object certified_model(const ModelObject& o, const Given& nm, const Given& r
                            radians(broadcast.number(3, i))});
   CertifiedModel result = without_gil([&] { return certified(o.model(), certificate); });
   if (result.change > noticeable_change)
-    py::module_::import("warnings")
-        .attr("warn")(formatted("the certificate changes f11 by up to {:.1f} %", 100 * result.change) +
-                      "; the other elements / f11 stay those of the sample that was measured, and a darker one "
-                      "depolarizes less");
+    warn("UserWarning", formatted("the certificate changes f11 by up to {:.1f} %", 100 * result.change) +
+                            "; the other elements / f11 stay those of the sample that was measured, and a darker one "
+                            "depolarizes less");
   return py::cast(std::make_shared<ModelObject>(std::move(result.model)));
 }
 
@@ -256,21 +253,39 @@ py::object budget_of(const py::dict& parts, const std::map<std::string, double>&
   return record("Budget", parts, column(0), column(1), column(2), column(3));
 }
 
-using CurveOf = PolarizedCurve (*)(const Model&, double, std::span<const Geometry>);
+/// curve(model, wavelength in micrometres, geometries)
+template <class CurveOf>
+py::object curve_of(const ModelObject& o, const std::optional<double>& nm, const py::sequence& angles, bool as_printed,
+                    CurveOf curve) {
+  const double wavelength = o.wavelength(nm);
+  const std::vector<Geometry> geometries = geometries_from(angles);
+  Range range(o);
+  range.count(wavelength, geometries);
+  range.warn(geometries.size());
+  return polarized(curve(o.turned(as_printed), wavelength, geometries));
+}
 
-void bind_curve(py::module_& m, const char* name, CurveOf curve, const char* doc) {
+void bind_curves(py::module_& m) {
   m.def(
-      name,
-      [curve](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
-        const double wavelength = o.wavelength(nm);
-        const std::vector<Geometry> geometries = geometries_from(angles);
-        Range range(o);
-        range.count(wavelength, geometries);
-        range.warn(geometries.size());
-        return polarized(curve(o.turned(as_printed), wavelength, geometries));
+      "polarized_curve",
+      [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed) {
+        return curve_of(o, nm, angles, as_printed, polarized_curve);
       },
       py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
-      doc);
+      "PolarizedBrdf(ss, sp, ps, pp) in sr^-1 at each geometry, as in the paper's Fig. 6.");
+  m.def(
+      "polarized_uncertainty",
+      [](const ModelObject& o, std::optional<double> nm, const py::sequence& angles, bool as_printed,
+         const Terms& terms) {
+        const std::vector<TypeBTerm> added = terms_from(terms);
+        return curve_of(o, nm, angles, as_printed, [&](const Model& model, double at, std::span<const Geometry> all) {
+          return polarized_uncertainty(model, at, all, added);
+        });
+      },
+      py::arg("model"), py::arg("wavelength_nm"), py::arg("geometry"), py::kw_only(), py::arg("as_printed") = false,
+      py::arg("terms") = py::none(),
+      "Its standard uncertainty, of the fit, where it has one of its instrument, and of the terms, as those of\n"
+      "Model.evaluate_uncertainty().");
 }
 
 }  // namespace
@@ -288,9 +303,7 @@ py::object polarized(const std::vector<PolarizedBrdf>& curve) {
 void bind_radiometry(py::module_& m) {
   for (const Reflectance& one : reflectances) bind_directional(m, one);
   bind_bihemispherical(m);
-  bind_curve(m, "polarized_curve", polarized_curve,
-             "PolarizedBrdf(ss, sp, ps, pp) in sr^-1 at each geometry, as in the paper's Fig. 6.");
-  bind_curve(m, "polarized_uncertainty", polarized_uncertainty, uncertainty_doc);
+  bind_curves(m);
   m.def(
       "average", averaged, py::arg("model"), py::arg("wavelength_nm"), py::arg("source"), py::arg("receiver"),
       py::arg("tolerance") = 1e-10,

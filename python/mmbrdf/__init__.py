@@ -12,12 +12,20 @@ broadcast as numpy's do. ValueError is for arguments that make no sense, OSError
 
 from __future__ import annotations
 
-import enum as _enum
+import importlib as _importlib
 import os as _os
 from collections.abc import Sequence as _Sequence
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
+
+from . import _asking, _calls, _mmbrdf, _summaries
+
+_calls.install(_mmbrdf, _asking.answering(_mmbrdf))
+_asking.install(_mmbrdf)
+_summaries.install(_mmbrdf)
 
 from ._mmbrdf import *  # noqa: F403: the names of the library
 from ._mmbrdf import Dataset as Dataset
@@ -29,28 +37,13 @@ from ._mmbrdf import read_samples as read_samples
 from ._results import *  # noqa: F403: what choosing, judging and comparing fits gives
 from ._transfer import py6s_surface as py6s_surface
 from ._transfer import pythonic_disort_modes as pythonic_disort_modes
+from ._warnings import ExtrapolationWarning as ExtrapolationWarning
+from ._warnings import InstrumentWarning as InstrumentWarning
+
+if _TYPE_CHECKING:
+    from . import plot as plot
 
 _Array = _np.ndarray
-
-
-class ExtrapolationWarning(UserWarning):
-    """Geometries or wavelengths lie outside what a model was fitted to."""
-
-
-class InstrumentWarning(UserWarning):
-    """An instrument, or what it measured, is doubtful."""
-
-
-class Outside(_enum.IntFlag):
-    """Which of the fitted ranges a question leaves: what Model.outside() gives."""
-
-    INSIDE = 0
-    THETA_I = 1
-    THETA_R = 2
-    WAVELENGTH = 4
-    UNKNOWN_RANGE = 8
-    DIRECTIONS = 16
-    INTERPOLATED = 32
 
 
 class Geometry(_NamedTuple):
@@ -173,3 +166,14 @@ def _write_report(
 
 
 report = _write_report
+
+
+def __getattr__(name: str) -> _Any:
+    """mmbrdf.plot is there without an import of its own; matplotlib is not imported before."""
+    if name == "plot":
+        return _importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), "plot"})

@@ -2,8 +2,8 @@
 """Types of the compiled part; what each does is in its docstring."""
 
 import os
-from collections.abc import Iterator, Sequence
-from typing import Literal, overload
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Literal, Protocol, overload
 
 import mmbrdf
 import numpy as np
@@ -11,6 +11,14 @@ import xarray
 from numpy.typing import ArrayLike, NDArray
 
 __version__: str
+
+class _Table(Protocol):
+    """A pandas.DataFrame and the like."""
+
+    def keys(self) -> Iterable[Any]: ...
+    def __getitem__(self, name: Any, /) -> Any: ...
+
+_Readings = str | os.PathLike[str] | Mapping[str, ArrayLike] | NDArray[np.void] | _Table
 
 class Block:
     @property
@@ -45,6 +53,7 @@ class DirectionSampler:
         pdf: ArrayLike,
         *,
         frame: str = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.float64]: ...
 
 class Model:
@@ -114,6 +123,8 @@ class Model:
         frame: str = ...,
         as_printed: bool = ...,
         threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[False] = ...,
         out: NDArray[np.float64] | None = ...,
     ) -> NDArray[np.float64]: ...
@@ -128,6 +139,8 @@ class Model:
         frame: str = ...,
         as_printed: bool = ...,
         threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[False] = ...,
         out: NDArray[np.float64] | None = ...,
     ) -> NDArray[np.float64]: ...
@@ -143,8 +156,9 @@ class Model:
         frame: str = ...,
         as_printed: bool = ...,
         threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[True],
-        out: NDArray[np.float64] | None = ...,
     ) -> xarray.DataArray: ...
     @overload
     def evaluate(
@@ -157,9 +171,78 @@ class Model:
         frame: str = ...,
         as_printed: bool = ...,
         threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
+    def evaluate(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
         out: NDArray[np.float64] | None = ...,
-    ) -> xarray.DataArray: ...
+    ) -> mmbrdf.Evaluation: ...
+    @overload
+    def evaluate(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
+        out: NDArray[np.float64] | None = ...,
+    ) -> mmbrdf.Evaluation: ...
+    @overload
+    def evaluate(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.Dataset: ...
+    @overload
+    def evaluate(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.Dataset: ...
     @overload
     def evaluate_uncertainty(
         self,
@@ -173,6 +256,7 @@ class Model:
         as_printed: bool = ...,
         terms: dict[str, float] | None = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[False] = ...,
     ) -> NDArray[np.float64]: ...
     @overload
@@ -187,6 +271,7 @@ class Model:
         as_printed: bool = ...,
         terms: dict[str, float] | None = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[False] = ...,
     ) -> NDArray[np.float64]: ...
     @overload
@@ -202,6 +287,7 @@ class Model:
         as_printed: bool = ...,
         terms: dict[str, float] | None = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[True],
     ) -> xarray.DataArray: ...
     @overload
@@ -216,8 +302,156 @@ class Model:
         as_printed: bool = ...,
         terms: dict[str, float] | None = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
         as_xarray: Literal[True],
     ) -> xarray.DataArray: ...
+    @overload
+    def reflectance_factor(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> float | NDArray[np.float64]: ...
+    @overload
+    def reflectance_factor(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> float | NDArray[np.float64]: ...
+    @overload
+    def reflectance_factor(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
+    def reflectance_factor(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[False] = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.DataArray: ...
+    @overload
+    def reflectance_factor(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> mmbrdf.Evaluation: ...
+    @overload
+    def reflectance_factor(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
+    ) -> mmbrdf.Evaluation: ...
+    @overload
+    def reflectance_factor(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.Dataset: ...
+    @overload
+    def reflectance_factor(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        uncertainty: Literal[True],
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.Dataset: ...
+    @overload
+    def reflectance_factor_uncertainty(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+    ) -> float | NDArray[np.float64]: ...
+    @overload
+    def reflectance_factor_uncertainty(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        as_printed: bool = ...,
+        threads: int | None = ...,
+        terms: dict[str, float] | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+    ) -> float | NDArray[np.float64]: ...
     @overload
     def covariance(
         self,
@@ -231,6 +465,7 @@ class Model:
         as_printed: bool = ...,
         terms: dict[str, float] | None = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.float64]: ...
     @overload
     def covariance(
@@ -244,6 +479,7 @@ class Model:
         as_printed: bool = ...,
         terms: dict[str, float] | None = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.float64]: ...
     @overload
     def outside(
@@ -253,10 +489,18 @@ class Model:
         phi_i_deg: ArrayLike,
         theta_r_deg: ArrayLike,
         phi_r_deg: ArrayLike,
+        *,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.uint8]: ...
     @overload
     def outside(
-        self, *, theta_i_deg: ArrayLike, phi_i_deg: ArrayLike, theta_r_deg: ArrayLike, phi_r_deg: ArrayLike
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.uint8]: ...
     @overload
     def estimable(
@@ -269,6 +513,7 @@ class Model:
         *,
         as_printed: bool = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.bool_]: ...
     @overload
     def estimable(
@@ -280,6 +525,7 @@ class Model:
         phi_r_deg: ArrayLike,
         as_printed: bool = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.bool_]: ...
     @overload
     def analyze(
@@ -297,6 +543,8 @@ class Model:
         draws: int = ...,
         seed: int = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
     ) -> dict[str, mmbrdf.Analyzed]: ...
     @overload
     def analyze(
@@ -313,7 +561,71 @@ class Model:
         draws: int = ...,
         seed: int = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[False] = ...,
     ) -> dict[str, mmbrdf.Analyzed]: ...
+    @overload
+    def analyze(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        stokes: Sequence[float] | NDArray[np.float64] | None = ...,
+        draws: int = ...,
+        seed: int = ...,
+        threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.Dataset: ...
+    @overload
+    def analyze(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        frame: str = ...,
+        as_printed: bool = ...,
+        terms: dict[str, float] | None = ...,
+        stokes: Sequence[float] | NDArray[np.float64] | None = ...,
+        draws: int = ...,
+        seed: int = ...,
+        threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+        as_xarray: Literal[True],
+    ) -> xarray.Dataset: ...
+    @overload
+    def predict_readings(
+        self,
+        wavelength_nm: ArrayLike | None,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        *,
+        at_its_azimuth: bool = ...,
+        threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+    ) -> mmbrdf.Evaluation: ...
+    @overload
+    def predict_readings(
+        self,
+        *,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        at_its_azimuth: bool = ...,
+        threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
+    ) -> mmbrdf.Evaluation: ...
     def evaluate_draws(
         self,
         count: int,
@@ -327,7 +639,10 @@ class Model:
         frame: str = ...,
         as_printed: bool = ...,
         threads: int | None = ...,
+        invalid: Literal["raise", "nan"] = ...,
     ) -> NDArray[np.float64]: ...
+    def summary(self) -> str: ...
+    def _repr_html_(self) -> str: ...
 
 class Dataset:
     def __init__(
@@ -372,6 +687,8 @@ class Dataset:
     def geometry(self) -> mmbrdf.Geometry: ...
     def at_wavelengths(self, wavelength_nm: ArrayLike) -> Dataset: ...
     def save(self, path: str | os.PathLike[str]) -> None: ...
+    def summary(self) -> str: ...
+    def _repr_html_(self) -> str: ...
 
 class FitResult:
     @property
@@ -385,12 +702,11 @@ class FitResult:
     @property
     def chi_squared_per_dof(self) -> dict[str, float]: ...
     @property
-    def warnings(self) -> list[str]: ...
-    @property
     def noise(self) -> list[dict[str, float]]: ...
     @property
     def warnings(self) -> list[str]: ...
     def summary(self) -> str: ...
+    def _repr_html_(self) -> str: ...
 
 class FitAccumulator:
     def __init__(
@@ -444,6 +760,8 @@ class Aperture:
     def without(self, port: Aperture) -> Aperture: ...
     @property
     def projected_solid_angle(self) -> float: ...
+    @property
+    def largest_theta_deg(self) -> float: ...
 
 class Polarimeter:
     def __init__(self, generator: ArrayLike, analyzer: ArrayLike, pairs: ArrayLike | None = None) -> None: ...
@@ -467,6 +785,8 @@ class Polarimeter:
     @overload
     def reduce(self, readings: ArrayLike, invalid: Literal["raise", "nan"] = "raise") -> NDArray[np.float64]: ...
     def covariance(self, variances: ArrayLike) -> NDArray[np.float64]: ...
+    def summary(self) -> str: ...
+    def _repr_html_(self) -> str: ...
 
 class Calibration:
     @property
@@ -488,6 +808,16 @@ class Calibration:
     @property
     def figure_of_merit(self) -> float: ...
     @property
+    def figure_of_merit_by_kind(self) -> dict[str, float]: ...
+    @property
+    def figure_of_merit_by_element(self) -> NDArray[np.float64]: ...
+    @property
+    def references(self) -> tuple[mmbrdf.CalibrationReference, ...]: ...
+    @property
+    def generator_uncertainty(self) -> NDArray[np.float64] | None: ...
+    @property
+    def analyzer_uncertainty(self) -> NDArray[np.float64] | None: ...
+    @property
     def film_misfit_deg(self) -> float: ...
     @property
     def generator_condition(self) -> float: ...
@@ -504,6 +834,8 @@ class Calibration:
     @property
     def provenance(self) -> dict[str, str]: ...
     def save(self, path: str | os.PathLike[str]) -> None: ...
+    def summary(self) -> str: ...
+    def _repr_html_(self) -> str: ...
 
 class Goniometer:
     def __init__(
@@ -533,9 +865,27 @@ class Goniometer:
         seed: int = 0,
     ) -> None: ...
 
+@overload
 def average(
-    model: Model, wavelength_nm: float | None, source: Aperture, receiver: Aperture, tolerance: float = 1e-10
+    model: Model,
+    wavelength_nm: float | None,
+    source: Aperture,
+    receiver: Aperture,
+    tolerance: float = 1e-10,
+    *,
+    uncertainty: Literal[False] = ...,
 ) -> tuple[NDArray[np.float64], float, bool]: ...
+@overload
+def average(
+    model: Model,
+    wavelength_nm: float | None,
+    source: Aperture,
+    receiver: Aperture,
+    tolerance: float = 1e-10,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+) -> mmbrdf.Evaluation: ...
 def average_uncertainty(
     model: Model,
     wavelength_nm: float | None,
@@ -544,9 +894,44 @@ def average_uncertainty(
     *,
     terms: dict[str, float] | None = None,
 ) -> NDArray[np.float64]: ...
+@overload
 def bihemispherical_reflectance(
-    model: Model, wavelength_nm: ArrayLike | None = None
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[False] = ...,
 ) -> float | NDArray[np.float64]: ...
+@overload
+def bihemispherical_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[True],
+) -> xarray.DataArray: ...
+@overload
+def bihemispherical_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[False] = ...,
+) -> mmbrdf.Evaluation: ...
+@overload
+def bihemispherical_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[True],
+) -> xarray.Dataset: ...
 @overload
 def bihemispherical_uncertainty(
     model: Model,
@@ -554,6 +939,7 @@ def bihemispherical_uncertainty(
     *,
     terms: dict[str, float] | None = None,
     by_term: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> float | NDArray[np.float64]: ...
 @overload
 def bihemispherical_uncertainty(
@@ -562,11 +948,13 @@ def bihemispherical_uncertainty(
     *,
     terms: dict[str, float] | None = None,
     by_term: Literal[True],
+    invalid: Literal["raise", "nan"] = ...,
 ) -> dict[str, float | NDArray[np.float64]]: ...
 def budget(parts: dict[str, ArrayLike], degrees_of_freedom: dict[str, float] = {}) -> mmbrdf.Budget: ...
 def calibrate(
-    references: str | os.PathLike[str],
+    references: _Readings,
     *,
+    columns: dict[str, str] = {},
     film: tuple[complex, float, complex] | None = None,
     dial_sense: int = 1,
     extinction: float = 0.0,
@@ -586,6 +974,8 @@ def change_frame(
     phi_r_deg: ArrayLike,
     from_frame: str,
     to_frame: str,
+    *,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> NDArray[np.float64]: ...
 def cloude_decomposition(mueller: ArrayLike, *, invalid: str = "raise") -> mmbrdf.CloudeDecomposition: ...
 def co_and_cross_polarized(mueller_sp: ArrayLike) -> mmbrdf.PolarizedBrdf: ...
@@ -632,13 +1022,56 @@ def dial_angles(ratio: float, step_deg: float, frames: int) -> NDArray[np.float6
 def diattenuation(mueller: ArrayLike, *, invalid: str = "raise") -> float | NDArray[np.float64]: ...
 def diattenuation_gradient(mueller: ArrayLike, *, invalid: str = "raise") -> NDArray[np.float64]: ...
 def diattenuation_vector(mueller: ArrayLike, *, invalid: str = "raise") -> NDArray[np.float64]: ...
+@overload
 def directional_hemispherical_reflectance(
     model: Model,
     wavelength_nm: ArrayLike | None = None,
     theta_i_deg: ArrayLike = 0.0,
     phi_i_deg: ArrayLike = 0.0,
     stokes: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[False] = ...,
 ) -> float | NDArray[np.float64]: ...
+@overload
+def directional_hemispherical_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_i_deg: ArrayLike = 0.0,
+    phi_i_deg: ArrayLike = 0.0,
+    stokes: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[True],
+) -> xarray.DataArray: ...
+@overload
+def directional_hemispherical_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_i_deg: ArrayLike = 0.0,
+    phi_i_deg: ArrayLike = 0.0,
+    stokes: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[False] = ...,
+) -> mmbrdf.Evaluation: ...
+@overload
+def directional_hemispherical_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_i_deg: ArrayLike = 0.0,
+    phi_i_deg: ArrayLike = 0.0,
+    stokes: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[True],
+) -> xarray.Dataset: ...
 @overload
 def directional_hemispherical_uncertainty(
     model: Model,
@@ -649,6 +1082,7 @@ def directional_hemispherical_uncertainty(
     *,
     terms: dict[str, float] | None = None,
     by_term: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> float | NDArray[np.float64]: ...
 @overload
 def directional_hemispherical_uncertainty(
@@ -660,6 +1094,7 @@ def directional_hemispherical_uncertainty(
     *,
     terms: dict[str, float] | None = None,
     by_term: Literal[True],
+    invalid: Literal["raise", "nan"] = ...,
 ) -> dict[str, float | NDArray[np.float64]]: ...
 def eigenvalue_min(mueller: ArrayLike, *, invalid: str = "raise") -> float | NDArray[np.float64]: ...
 def eigenvalue_min_gradient(mueller: ArrayLike, *, invalid: str = "raise") -> NDArray[np.float64]: ...
@@ -696,13 +1131,56 @@ def fit(
     attribution: str = "",
 ) -> FitResult: ...
 def germer2017_grid() -> mmbrdf.Geometry: ...
+@overload
 def hemispherical_directional_reflectance(
     model: Model,
     wavelength_nm: ArrayLike | None = None,
     theta_r_deg: ArrayLike = 0.0,
     phi_r_deg: ArrayLike = 0.0,
     analyzer: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[False] = ...,
 ) -> float | NDArray[np.float64]: ...
+@overload
+def hemispherical_directional_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_r_deg: ArrayLike = 0.0,
+    phi_r_deg: ArrayLike = 0.0,
+    analyzer: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[True],
+) -> xarray.DataArray: ...
+@overload
+def hemispherical_directional_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_r_deg: ArrayLike = 0.0,
+    phi_r_deg: ArrayLike = 0.0,
+    analyzer: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[False] = ...,
+) -> mmbrdf.Evaluation: ...
+@overload
+def hemispherical_directional_reflectance(
+    model: Model,
+    wavelength_nm: ArrayLike | None = None,
+    theta_r_deg: ArrayLike = 0.0,
+    phi_r_deg: ArrayLike = 0.0,
+    analyzer: ArrayLike | None = None,
+    *,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+    as_xarray: Literal[True],
+) -> xarray.Dataset: ...
 @overload
 def hemispherical_directional_uncertainty(
     model: Model,
@@ -713,6 +1191,7 @@ def hemispherical_directional_uncertainty(
     *,
     terms: dict[str, float] | None = None,
     by_term: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> float | NDArray[np.float64]: ...
 @overload
 def hemispherical_directional_uncertainty(
@@ -724,6 +1203,7 @@ def hemispherical_directional_uncertainty(
     *,
     terms: dict[str, float] | None = None,
     by_term: Literal[True],
+    invalid: Literal["raise", "nan"] = ...,
 ) -> dict[str, float | NDArray[np.float64]]: ...
 def ideal_polarimeter(retardance_deg: float, azimuths_deg: ArrayLike) -> Polarimeter: ...
 def ideal_states(generator: Sequence[str], analyzer: Sequence[str] | None = None) -> Polarimeter: ...
@@ -752,11 +1232,35 @@ def outliers(diagnostics: mmbrdf.SampleDiagnostics, threshold: float = 5.0) -> t
 def polarizance(mueller: ArrayLike, *, invalid: str = "raise") -> float | NDArray[np.float64]: ...
 def polarizance_gradient(mueller: ArrayLike, *, invalid: str = "raise") -> NDArray[np.float64]: ...
 def polarizance_vector(mueller: ArrayLike, *, invalid: str = "raise") -> NDArray[np.float64]: ...
+@overload
 def polarized_curve(
-    model: Model, wavelength_nm: float | None, geometry: Sequence[ArrayLike], *, as_printed: bool = False
+    model: Model,
+    wavelength_nm: float | None,
+    geometry: Sequence[ArrayLike],
+    *,
+    as_printed: bool = False,
+    uncertainty: Literal[False] = ...,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> mmbrdf.PolarizedBrdf: ...
+@overload
+def polarized_curve(
+    model: Model,
+    wavelength_nm: float | None,
+    geometry: Sequence[ArrayLike],
+    *,
+    as_printed: bool = False,
+    uncertainty: Literal[True],
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
+) -> mmbrdf.Evaluation: ...
 def polarized_uncertainty(
-    model: Model, wavelength_nm: float | None, geometry: Sequence[ArrayLike], *, as_printed: bool = False
+    model: Model,
+    wavelength_nm: float | None,
+    geometry: Sequence[ArrayLike],
+    *,
+    as_printed: bool = False,
+    terms: dict[str, float] | None = None,
+    invalid: Literal["raise", "nan"] = ...,
 ) -> mmbrdf.PolarizedBrdf: ...
 def polarizer(azimuth_deg: ArrayLike, extinction: ArrayLike = 0.0) -> NDArray[np.float64]: ...
 def projected_on_isotropic(model: Model, orders: tuple[int, int] = (7, 4)) -> Model: ...
@@ -778,13 +1282,17 @@ def realizability_margin(mueller: ArrayLike, *, invalid: str = "raise") -> float
 def realizability_margin_gradient(mueller: ArrayLike, *, invalid: str = "raise") -> NDArray[np.float64]: ...
 def realizable(mueller: ArrayLike, *, invalid: str = "raise") -> bool | NDArray[np.bool_]: ...
 def reduce(
-    raw: str | os.PathLike[str],
+    raw: _Readings,
     instrument: Calibration | Polarimeter,
     *,
     solid_angle: float,
+    columns: dict[str, str] = {},
     noise: dict[str, float] = {"relative": 0.001},
     saturation: float = ...,
 ) -> Dataset: ...
+@overload
+def reflectance_factor(f11: xarray.DataArray) -> xarray.DataArray: ...
+@overload
 def reflectance_factor(f11: ArrayLike) -> float | NDArray[np.float64]: ...
 def report_json(
     model: Model,

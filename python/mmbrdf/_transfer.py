@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import os
 import tempfile
-import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ._warnings import warn
 
 if TYPE_CHECKING:
     from . import Model
@@ -63,10 +64,9 @@ def pythonic_disort_modes(
             "PythonicDISORT"
         )
     if moments == 0 and present > streams:
-        warnings.warn(
+        warn(
             f"{streams} of the model's {present} moments: a quadrature of {streams} streams carries no more, "
-            f"{present - streams} are left out",
-            stacklevel=2,
+            f"{present - streams} are left out"
         )
 
     def mode(m: int) -> _Mode:

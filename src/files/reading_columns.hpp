@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,17 @@ inline int needed_column(const CsvReader& reader, std::string_view name) {
   if (column < 0) throw reader.error("no column " + std::string(name));
   return column;
 }
+
+/// The reader, if it has all these columns. Throws std::runtime_error with the names of those it lacks.
+inline const CsvReader& with_columns(const CsvReader& reader, std::span<const std::string_view> names) {
+  std::string missing;
+  for (const std::string_view name : names)
+    if (column_of(reader, name) < 0) missing += (missing.empty() ? "" : ", ") + std::string(name);
+  if (!missing.empty()) throw reader.error("no column " + missing);
+  return reader;
+}
+
+inline constexpr std::string_view reading_names[] = {"number", "generator_state", "analyzer_state", "intensity"};
 
 /// A field and its value, for messages.
 inline std::string shown(const CsvReader& reader, int column) {

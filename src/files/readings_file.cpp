@@ -31,6 +31,9 @@ std::vector<StatePair> grid(const ReadStates& states) {
 
 std::vector<StatePair> pairs_of(const ReadStates& states) { return states.pairs.empty() ? grid(states) : states.pairs; }
 
+constexpr std::string_view reference_names[] = {"wavelength_nm",   "reference",      "angle_deg", "number",
+                                                "generator_state", "analyzer_state", "intensity"};
+
 /// The readings of one measurement, in any order.
 struct Collected {
   struct Entry {
@@ -177,7 +180,7 @@ ReadStates read_states(const Polarimeter& polarimeter) {
 
 ReferenceFile read_references(std::istream& in, const std::string& name, const ReadingLimits& limits) {
   CsvReader reader(in, name);
-  const ReferenceColumns columns(reader);
+  const ReferenceColumns columns(with_columns(reader, reference_names));
   const ReadingColumns readings(reader, limits);
   CollectedReferences collection;
   ReferenceFile result{0, {0, 0, {}}, {}};
@@ -260,7 +263,12 @@ struct RawReader::State {
   long last_line = 0;
 
   State(std::istream& in, const std::string& file, const ReadStates& read, const ReadingLimits& limits)
-      : name(file), reader(in, file), geometry(reader), columns(reader, limits), states(read), all(pairs_of(read)) {}
+      : name(file),
+        reader(in, file),
+        geometry(reader),
+        columns(with_columns(reader, reading_names), limits),
+        states(read),
+        all(pairs_of(read)) {}
 
   void read_row() {
     waiting = reader.next();

@@ -99,11 +99,19 @@ PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<
   return curve;
 }
 
-PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries) {
+PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
+                                     std::span<const TypeBTerm> terms) {
   const PreparedUncertainty prepared = prepare_uncertainty(model, wavelength);
   const auto [ss, sp, ps, pp] = co_and_cross_polarized_gradients();
   std::vector<MuellerCovariance> covariances(geometries.size());
-  prepared.evaluate(geometries, Frame::sp, covariances);
+  if (terms.empty()) {
+    prepared.evaluate(geometries, Frame::sp, covariances);
+  } else {
+    const PreparedModel at = prepare(model, wavelength);
+    std::ranges::transform(geometries, covariances.begin(), [&](const Geometry& geometry) {
+      return budget(at, prepared, terms, geometry, Frame::sp).total;
+    });
+  }
   PolarizedCurve curve;
   for (const MuellerCovariance& covariance : covariances)
     curve.push_back({standard_uncertainty(ss, covariance), standard_uncertainty(sp, covariance),

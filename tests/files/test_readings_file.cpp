@@ -117,6 +117,15 @@ TEST(Readings, OfReferencesThatCannotBeAreRefusedWithTheirLine) {
   EXPECT_TRUE(says(complaint([&] { parsed_references("wavelength_nm,reference\n"); }), {"r.csv:1: no column"}));
 }
 
+TEST(Readings, LackOfColumnsIsSaidOfAllAtOnce) {
+  EXPECT_TRUE(says(complaint([&] { parsed_references("wavelength_nm,reference,number\n"); }),
+                   {"r.csv:1: no column angle_deg, generator_state, analyzer_state, intensity"}));
+  EXPECT_TRUE(says(complaint([&] {
+                     parsed_raw("wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,number\n", {2, 1});
+                   }),
+                   {":1: no column generator_state, analyzer_state, intensity"}));
+}
+
 TEST(Readings, OfSamplesThatCannotBeAreRefusedWithTheirLine) {
   const std::string good = "532,45,0,30,180,1,1,1,3\n";
   const auto complains = [&](const std::string& rows) {

@@ -93,6 +93,19 @@ TEST(Subsets, UncertaintyOfTheSumOverPolarizationsIsThatOfF11) {
   }
 }
 
+TEST(Subsets, AnErrorOfTheScaleIsOneOfEachCurveByItsValue) {
+  const Model model = material("ptfe-532");
+  const std::vector<Geometry> geometries = of_the_paper();
+  const std::vector<TypeBTerm> terms{{.name = "plaque", .what = ErrorOf::scale, .uncertainty = 0.01}};
+  const PolarizedCurve f = polarized_curve(model, 0.532, geometries);
+  const PolarizedCurve of_fit = polarized_uncertainty(model, 0.532, geometries);
+  const PolarizedCurve both = polarized_uncertainty(model, 0.532, geometries, terms);
+  for (std::size_t g = 0; g < geometries.size(); g += 10) {
+    EXPECT_NEAR(both[g].ss / std::hypot(of_fit[g].ss, 0.01 * f[g].ss), 1, 1e-9);
+    EXPECT_NEAR(both[g].sp / std::hypot(of_fit[g].sp, 0.01 * f[g].sp), 1, 1e-9);
+  }
+}
+
 // 40 measurements of known noise, fitted with a model of the same orders and the weights that belong to it. Each tells
 // the spread of three fits, with 2 degrees of freedom: 80 together, so the ratio is known to 1/√160 = 0.08 even if the
 // four curves move as one at all angles, and they do not. Parts of 100 samples for 14 coefficients of f11 make it 1.06.

@@ -140,7 +140,15 @@ def functions():
 
 
 def methods():
-    for name in ("analyze", "covariance", "evaluate", "evaluate_uncertainty"):
+    for name in (
+        "analyze",
+        "covariance",
+        "evaluate",
+        "evaluate_uncertainty",
+        "predict_readings",
+        "reflectance_factor",
+        "reflectance_factor_uncertainty",
+    ):
         yield f"Model.{name}", lambda model, *arguments, name=name: getattr(model, name)(*arguments)
 
 

@@ -28,7 +28,7 @@ def test_the_stub_names_all_functions_and_classes():
 
 def test_the_stub_names_all_methods_and_properties():
     for name, node in stub_definitions().items():
-        if isinstance(node, ast.ClassDef):
+        if isinstance(node, ast.ClassDef) and not name.startswith("_"):
             there = {member.name for member in node.body if isinstance(member, ast.FunctionDef)}
             assert public(there) == public(vars(getattr(_mmbrdf, name))), name
 

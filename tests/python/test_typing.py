@@ -30,6 +30,14 @@ mmbrdf.plot.directions(data, 532, inspection=seen)
 mmbrdf.report(None, data[list(seen.findings[0].samples)], "page.html")
 f11 = model.evaluate(532, 45, 0, [0, 30], 180)[..., 0, 0] + 1
 names = model.evaluate(532, 45, 0, [0, 30], 180, as_xarray=True).dims
+whole: mmbrdf.Evaluation = model.evaluate(532, 45, 0, [0, 30], 180, uncertainty=True, terms={"scale": 0.003}, invalid="nan")
+both = model.evaluate(532, 45, 0, [0, 30], 180, uncertainty=True, as_xarray=True).data_vars
+factor: mmbrdf.Evaluation = model.reflectance_factor(theta_i_deg=0, phi_i_deg=0, theta_r_deg=45, phi_r_deg=0, uncertainty=True)
+dhr: mmbrdf.Evaluation = mmbrdf.directional_hemispherical_reflectance(model, 532, [8, 45], uncertainty=True)
+curves: mmbrdf.PolarizedBrdf = mmbrdf.polarized_curve(model, 532, mmbrdf.in_plane(45, [0, 30]), invalid="nan")
+text: str = model.summary() + data.summary()
+instrument = mmbrdf.calibrate({"number": [1, 2], "intensity": [0.1, 0.2]}, columns={"wavelength_nm": "nm"})
+worst: float = max(one.figure_of_merit for one in instrument.references)
 u = model.evaluate_uncertainty(theta_i_deg=45, phi_i_deg=0, theta_r_deg=0, phi_r_deg=0)
 values = [part.f11 for part in data[:3]]
 fitted: mmbrdf.Model = mmbrdf.fit(data, weights="speckle", reflectance={532: 0.98}).model
@@ -68,6 +76,7 @@ def test_a_program_that_is_right_passes(tmp_path, cache):
         ("mmbrdf.plot.map(model, 11, 532)", 'incompatible type "int"'),
         ('mmbrdf.plot.hemisphere(model, "532", 60)', 'incompatible type "str"'),
         ("model.evaluate(532)", 'No overload variant of "evaluate"'),
+        ('model.evaluate(532, 45, 0, 0, 0, invalid="skip")', 'No overload variant of "evaluate"'),
         ("model.save(1)", 'incompatible type "int"'),
     ],
 )

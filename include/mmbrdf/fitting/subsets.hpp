@@ -12,6 +12,7 @@
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/polarization/analysis.hpp"
 #include "mmbrdf/samples/partition.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
 
 namespace mmbrdf {
 
@@ -38,10 +39,11 @@ using PolarizedCurve = std::vector<PolarizedBrdf>;
 /// or geometry.
 PolarizedCurve polarized_curve(const Model& model, double wavelength, std::span<const Geometry> geometries);
 
-/// Standard uncertainty of polarized_curve() in first order. f_ab is linear in F11, F12, F21, F22 of the sp frame, so
+/// Standard uncertainty of polarized_curve() in first order, of the fit and of the terms. f_ab is linear in F11, F12, F21, F22 of the sp frame, so
 ///   u²(f_ab) = ¼ Σ_ee' c_e c_e' cov(F_e, F_e'),  c = (1, a, b, ab)   (theory 4.8).
-/// Throws std::invalid_argument as prepare_uncertainty does: without covariance, it is not known.
-PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries);
+/// Throws std::invalid_argument as prepare_uncertainty() and effects() do: without covariance, it is not known.
+PolarizedCurve polarized_uncertainty(const Model& model, double wavelength, std::span<const Geometry> geometries,
+                                     std::span<const TypeBTerm> terms = {});
 
 /// How k curves lie to each other and to a reference. All is relative to the reference.
 struct SubsetStatistics {

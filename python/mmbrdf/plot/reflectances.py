@@ -65,17 +65,21 @@ def reflectance_factor(
                 lambda: factor * model.evaluate_uncertainty(nm, *where, terms=terms)[..., 0, 0],
             )
             band(axes, angles, value, u, coverage, stroke._replace(style=style))
-    name = labels.plain(model.name)
-    wavelength = wavelengths[0] if len(wavelengths) == 1 else None
-    axes.set(title=labels.title(name, wavelength, source=model), xlim=(angles.min(), angles.max()))
-    grey_beyond(axes, model.theta_i_max_deg, angles.max(), both=False)
-    _scale_to(axes, angles, model.theta_i_max_deg)
-    handles = _wavelength_handles(model, wavelengths) if len(wavelengths) > 1 else []
-    handles += [
+    handles = _wavelength_handles(model, wavelengths, linewidth=2.4, linestyle="-") + [
         Line2D([], [], color="0.2", linestyle=style, label=rf"$\theta_\mathrm{{r}}$ = {view[0]:g}°" + _side(*view))
         for view, style in zip(views, _styles(len(views)))
     ]
-    _legend_below(axes, handles, _words(model, bands, coverage, terms))
+    return _finished(axes, model, angles, wavelengths, handles, _words(model, bands, coverage, terms))
+
+
+def _finished(axes: Axes, model: Model, angles, wavelengths, handles: list[Line2D], words: str) -> tuple[Figure, Axes]:
+    """A picture against the angle of the source, with all but its lines."""
+    wavelength = wavelengths[0] if len(wavelengths) == 1 else None
+    title = labels.title(labels.plain(model.name), wavelength, source=model)
+    axes.set(title=title, xlim=(angles.min(), angles.max()))
+    grey_beyond(axes, model.theta_i_max_deg, angles.max(), both=False)
+    _scale_to(axes, angles, model.theta_i_max_deg)
+    _legend_below(axes, handles, words)
     return axes.figure, axes
 
 
@@ -137,11 +141,14 @@ def _legend_below(axes: Axes, handles: list[Line2D], words: str) -> None:
     sizes.legend_below(axes, handles, words)
 
 
-def _wavelength_handles(model: Model, wavelengths: Sequence[float | None]) -> list[Line2D]:
-    """A line for each wavelength; those that were not fitted are said to be so."""
+def _wavelength_handles(model: Model, wavelengths: Sequence[float | None], **style: Any) -> list[Line2D]:
+    """A line for each of several wavelengths; those that were not fitted are said to be so."""
+    if len(wavelengths) < 2:
+        return []
     return [
-        Line2D([], [], color=stroke.color, linewidth=2.4, label=f"{nm:g} nm{labels.not_fitted(model, nm)}")
+        Line2D([], [], label=f"{nm:g} nm{labels.not_fitted(model, nm)}", **{**own, **style})
         for nm, stroke in zip(wavelengths, series(len(wavelengths)))
+        for own in [{"color": stroke.color, "linestyle": stroke.style}]
         if nm is not None
     ]
 
@@ -194,19 +201,8 @@ def reflectance_against_angle(
     for nm, stroke in zip(wavelengths, series(len(wavelengths))):
         value, u = _dhr(model, nm, angles, phi_i_deg, terms, bands)
         band(axes, angles, value, u, coverage, stroke)
-    single = wavelengths[0] if len(wavelengths) == 1 else None
-    axes.set(title=labels.title(labels.plain(model.name), single, source=model), xlim=(angles.min(), angles.max()))
-    grey_beyond(axes, model.theta_i_max_deg, angles.max(), both=False)
-    _scale_to(axes, angles, model.theta_i_max_deg)
-    handles = []
-    if len(wavelengths) > 1:
-        handles = [
-            Line2D([], [], color=stroke.color, linestyle=stroke.style, label=f"{nm:g} nm{labels.not_fitted(model, nm)}")
-            for nm, stroke in zip(wavelengths, series(len(wavelengths)))
-            if nm is not None
-        ]
-    _legend_below(axes, handles, _words(model, bands, coverage, terms))
-    return axes.figure, axes
+    handles = _wavelength_handles(model, wavelengths)
+    return _finished(axes, model, angles, wavelengths, handles, _words(model, bands, coverage, terms))
 
 
 def _dhr(model, nm, theta_i_deg, phi_i_deg, terms, bands) -> tuple[NDArray, NDArray | None]:

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The compiled functions as Python calls them: their signatures, and in one line what is wrong with the arguments of a call.
+
+Each function and method of the compiled part is wrapped once, when the package is imported. What it takes is read from the first
+line of its documentation, which pybind11 writes.
+"""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import functools
+import inspect
+import operator
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class Argument(NamedTuple):
+    """Of a function; wanted is the type as the documentation has it, default its text, None: it must be given."""
+
+    name: str
+    wanted: str
+    default: str | None
+    by_name: bool
+
+
+_MARKS = re.compile(r"[\[\](){}<>,'\"]")
+
+
+def split(text: str) -> list[str]:
+    """At the commas outside of brackets and quotes."""
+    parts, depth, quote, start = [], 0, "", 0
+    for mark in _MARKS.finditer(text):
+        place, letter = mark.start(), mark[0]
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "'\"":
+            quote = letter
+        elif letter in "([{<":
+            depth += 1
+        elif letter in ")]}" or (letter == ">" and text[place - 1] != "-"):
+            depth -= 1
+        elif letter == "," and depth == 0:
+            parts.append(text[start:place].strip())
+            start = place + 1
+    return [part for part in [*parts, text[start:].strip()] if part]
+
+
+def arguments_of(signature: str) -> list[Argument]:
+    """Of "evaluate(self: mmbrdf._mmbrdf.Model, frame: str = 'xy') -> object"."""
+    inner = signature[signature.index("(") + 1 : signature.rindex(")")] if "(" in signature else ""
+    result, by_name = [], False
+    for part in split(inner):
+        if part == "*":
+            by_name = True
+            continue
+        name, _, rest = part.partition(": ")
+        wanted, _, default = rest.partition(" = ")
+        result.append(Argument(name, wanted, default or None, by_name))
+    return result
+
+
+def signature_of(arguments: Sequence[Argument]) -> inspect.Signature:
+    """As help() shows it. An argument in front of one that must be given has no default there."""
+    kind = inspect.Parameter
+    last = max((n for n, one in enumerate(arguments) if one.default is None and not one.by_name), default=-1)
+    return inspect.Signature(
+        [
+            kind(
+                one.name,
+                kind.KEYWORD_ONLY if one.by_name else kind.POSITIONAL_OR_KEYWORD,
+                default=kind.empty if one.default is None or n < last else _value(one.default),
+            )
+            for n, one in enumerate(arguments)
+        ]
+    )
+
+
+@functools.lru_cache
+def _value(text: str) -> Any:
+    try:
+        return ast.literal_eval(text)
+    except (SyntaxError, ValueError):
+        return float(text) if text in ("inf", "nan", "-inf") else text
+
+
+# ---- what is wanted --------------------------------------------------------------------------------------------------
+
+_WORDS = {
+    "str": "text",
+    "bool": "True or False",
+    "int": "a whole number",
+    "float": "a number",
+    "complex": "a complex number",
+    "os.PathLike": "a path",
+    "dict": "a dict",
+    "list": "a list",
+    "sequence": "a sequence",
+    "tuple": "a tuple",
+    "bytes": "bytes",
+}
+
+
+def _inner(wanted: str) -> tuple[str, list[str]]:
+    head, _, rest = wanted.partition("[")
+    return head, split(rest[:-1]) if rest else []
+
+
+def in_words(wanted: str) -> str:
+    """A type for people: "a number", "mmbrdf.Model"."""
+    head, inner = _inner(wanted)
+    if head == "Optional":
+        return in_words(inner[0])
+    if head == "Union":
+        return " or ".join(map(in_words, inner))
+    if head == "Tuple":
+        return f"a tuple ({', '.join(map(in_words, inner))})"
+    if head == "List":
+        return f"a sequence, each {in_words(inner[0])}"
+    if head == "Dict":
+        return f"a dict {{{': '.join(map(in_words, inner))}}}"
+    if head.startswith("numpy.ndarray"):
+        return "an array"
+    return _WORDS.get(head, "mmbrdf." + head.rpartition(".")[2] if head.startswith("mmbrdf.") else head)
+
+
+def _converts(convert: Callable[[Any], Any]) -> Callable[[Any], bool]:
+    def fits(value: Any) -> bool:
+        try:
+            convert(value)
+        except (TypeError, ValueError):
+            return False
+        return not isinstance(value, (str, bytes))
+
+    return fits
+
+
+_FITS: dict[str, Callable[[Any], bool]] = {
+    "str": lambda value: isinstance(value, (str, bytes)),
+    "bool": lambda value: isinstance(value, (bool, np.bool_)),
+    "int": _converts(operator.index),
+    "float": _converts(float),
+    "complex": _converts(complex),
+    "os.PathLike": lambda value: isinstance(value, (str, bytes, os.PathLike)),
+    "dict": lambda value: isinstance(value, dict),
+    "list": lambda value: isinstance(value, list),
+    "tuple": lambda value: isinstance(value, tuple),
+    "sequence": lambda value: hasattr(value, "__getitem__") and hasattr(value, "__len__"),
+}
+
+
+def fits(value: Any, wanted: str, default: str | None = None) -> bool:
+    """Whether a value may be what is wanted. True of what is not known here."""
+    head, inner = _inner(wanted)
+    if value is None and (head == "Optional" or default == "None"):
+        return True
+    if head in ("Optional", "Union"):
+        return any(fits(value, one) for one in inner)
+    if head in ("Tuple", "List"):
+        if isinstance(value, (str, bytes)) or not _FITS["sequence"](value):
+            return False
+        if head == "List":
+            return all(fits(one, inner[0]) for one in value)
+        return len(value) == len(inner) and all(map(fits, value, inner))
+    if head == "Dict":
+        return isinstance(value, dict) and all(fits(k, inner[0]) and fits(v, inner[1]) for k, v in value.items())
+    if head.startswith("numpy.ndarray"):
+        return isinstance(value, np.ndarray)
+    if head.startswith("mmbrdf."):
+        return any(one.__name__ == head.rpartition(".")[2] for one in type(value).__mro__)
+    return _FITS.get(head, lambda _: True)(value)
+
+
+def refusal(name: str, wanted: str, value: Any) -> str:
+    """What a TypeError says of the argument called ``name``; wanted in words."""
+    kind = type(value).__name__
+    hint = ": its .model is one" if kind == "FitResult" and "mmbrdf.Model" in wanted else ""
+    shown = f" {value!r}" if isinstance(value, (str, int, float)) and len(repr(value)) < 40 else ""
+    return f"{name}: expected {wanted}, not {kind}{shown}{hint}"
+
+
+# ---- what is wrong ---------------------------------------------------------------------------------------------------
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
+def faults(arguments: Sequence[Argument], given: Sequence[Any], named: Mapping[str, Any]) -> Iterator[str]:
+    """What is wrong with a call, the worst first."""
+    placed = [one for one in arguments if not one.by_name]
+    known = {one.name: one for one in arguments}
+    for name in named:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1, 0.5) or [one for one in known if name in one][:1]
+            yield f"there is no argument {name}" + (f", but {near[0]}" if near else "")
+    if len(given) > len(placed):
+        names = [one.name for one in arguments if one.by_name]
+        others = f"; {_and(names)} must be named" if names else ""
+        at_most = len(placed) - (bool(placed) and placed[0].name == "self")
+        yield f"takes {at_most or 'no'} argument{'s' * (at_most != 1)} without a name, not {len(given) - len(placed) + at_most}{others}"
+    values = dict(zip((one.name for one in placed), given))
+    twice = [name for name in named if name in values]
+    if twice:
+        yield f"{_and(twice)} is given twice"
+    values.update(named)
+    missing = [one for one in arguments if one.default is None and one.name not in values and one.name != "self"]
+    if missing:
+        kinds = {in_words(one.wanted) for one in missing} - {"object"}
+        yield f"{_and([one.name for one in missing])} missing" + (
+            f": expected {kinds.pop()}" if len(kinds) == 1 else ""
+        )
+    for name, value in values.items():
+        if name in known and not fits(value, known[name].wanted, known[name].default):
+            yield refusal(name, in_words(known[name].wanted), value)
+
+
+def signatures(documentation: str) -> list[str]:
+    """All of a function; of one with overloads those of each."""
+    lines = (documentation or "").splitlines()
+    if len(lines) > 1 and lines[1] == "Overloaded function.":
+        return [line.partition(". ")[2] for line in lines[2:] if line[:1].isdigit() and ". " in line]
+    return lines[:1]
+
+
+def explained(name: str, documentation: str, given: Sequence[Any], named: Mapping[str, Any]) -> str:
+    """What is wrong with a call of a compiled function, in one line."""
+    found = [list(faults(arguments_of(one), given, named)) for one in signatures(documentation)]
+    best = min(found, key=len, default=[])
+    return (
+        f"{name}: {best[0]}" if best else f"{name}: these arguments do not go together; help(mmbrdf.{name}) has those"
+    )
+
+
+_NOT_THESE = re.compile(r"incompatible (function|constructor) arguments")
+"""What pybind11 says of arguments that fit no signature."""
+
+
+def wrapped(function: Callable[..., Any], name: str, documentation: str | None = None) -> Callable[..., Any]:
+    """The same function, whose TypeError is one line. ``name`` as users call it: "Model.save"."""
+    text = function.__doc__ or "" if documentation is None else documentation
+
+    takes = arguments_of(signatures(text)[0]) if inspect.isfunction(function) else None
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        if takes is not None:  # of Python, which looks at nothing itself
+            for wrong in faults(takes, given, named):
+                raise TypeError(f"{name}: {wrong}")
+        try:
+            return function(*given, **named)
+        except TypeError as error:
+            if not _NOT_THESE.search(str(error)):
+                raise
+            wrong = explained(name, text, given, named)
+        raise TypeError(wrong)
+
+    return dressed(call, name, text)
+
+
+def dressed(call: Callable[..., Any], name: str, documentation: str) -> Callable[..., Any]:
+    """The function with what help(), inspect and pickle ask it for."""
+    del call.__wrapped__
+    call.__module__, call.__qualname__, call.__doc__ = "mmbrdf._mmbrdf", name, documentation
+    if len(signatures(documentation)) == 1:
+        call.__signature__ = signature_of(arguments_of(signatures(documentation)[0]))
+    return call
+
+
+def install(module: Any, wrap: Callable[..., Any] = wrapped) -> None:
+    """Wraps all functions, public methods and constructors of the compiled part."""
+    for name, thing in list(vars(module).items()):
+        if inspect.isclass(thing):
+            _install_methods(thing, wrap)
+        elif callable(thing) and not name.startswith("__"):
+            setattr(module, name, wrap(thing, name))
+
+
+def install_function(cls: type, function: Callable[..., Any], wrap: Callable[..., Any]) -> None:
+    """A method that is written in Python, with its signature in the first line of its documentation as those of pybind11."""
+    setattr(cls, function.__name__, wrap(function, f"{cls.__name__}.{function.__name__}"))
+
+
+def _install_methods(cls: type, wrap: Callable[..., Any]) -> None:
+    for name, member in list(vars(cls).items()):
+        if isinstance(member, property) or not callable(getattr(cls, name)):
+            continue
+        title = f"{cls.__name__}.{name}"
+        if isinstance(member, staticmethod):
+            setattr(cls, name, staticmethod(wrap(getattr(cls, name), title)))
+        elif name == "__init__":
+            if "(self: " in (member.__doc__ or ""):
+                setattr(cls, name, wrapped(member, cls.__name__, member.__doc__))
+        elif not name.startswith("__"):
+            setattr(cls, name, wrap(getattr(cls, name), title))
