@@ -61,9 +61,15 @@ class Docstrings(unittest.TestCase):
     def test_paragraphs_have_no_markup_but_code(self):
         self.assertEqual(self.process("*args of `x_`, y_"), ["\\*args of ``x_``, y\\_", ""])
 
+    def test_code_may_go_on_in_the_next_line(self):
+        self.assertEqual(self.process("As ``a\nb`` is."), ["As ``a b`` is.", ""])
+
     def test_columns_stay_as_they_are(self):
         shown = [".. code-block:: text", "", "   frame    of *both*", ""]
         self.assertEqual(self.process("One.\n\nframe    of *both*"), ["One.", "", *shown])
+
+    def test_fields_without_a_word_have_none(self):
+        self.assertEqual(self.process("Alias for field number 3"), [])
 
     def test_types_are_those_of_python(self):
         self.assertEqual(docstrings.simple("(self: mmbrdf._mmbrdf.Model, a: object, b: Optional[int] = None)"), "(a, b: int | None = None)")
@@ -88,6 +94,8 @@ class Pages(unittest.TestCase):
             self.assertEqual(write("[a](https://a.b/c) `[a](../../README.md)`"), "[a](https://a.b/c) `[a](../../README.md)`")
             self.assertEqual(write("[a](../../include/mmbrdf.h)"), "[a](../files/include/mmbrdf.h)")
             self.assertTrue((stage / "files/include/mmbrdf.h").exists())
+            self.assertEqual(write("`model/batch.hpp`"), "[`model/batch.hpp`](../headers/model/batch.md)")
+            self.assertEqual(write("`model/none.hpp`"), "`model/none.hpp`")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 SKIPPED = 77
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 CODE = re.compile(r"(^```.*?^```$|^~~~.*?^~~~$|`[^`\n]*`)", re.MULTILINE | re.DOTALL)
+HEADER = re.compile(r"^`(\w+/\w+\.hpp)`$")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
 ROOT_PAGES = {"README.md": "readme.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
 
@@ -66,7 +67,8 @@ def staged_name(path: Path) -> str:
 
 
 def with_links(text: str, page: Path, stage: Path) -> str:
-    """The text of a page with links as they are in the site. Linked files of the repository are copied beside the pages."""
+    """The text of a page with links as they are in the site, and one for each name of a header. Linked files of the repository
+    are copied beside the pages."""
     here = Path(staged_name(page)).parent
 
     def link(found: re.Match) -> str:
@@ -82,7 +84,12 @@ def with_links(text: str, page: Path, stage: Path) -> str:
             shutil.copy(target, stage / staged)
         return found[1] + os.path.relpath(staged, here) + hash_ + anchor + found[3]
 
-    return "".join(part if k % 2 else LINK.sub(link, part) for k, part in enumerate(CODE.split(text)))
+    def header(found: re.Match) -> str:
+        is_one = (SOURCE / "include/mmbrdf" / found[1]).exists()
+        return f"[{found[0]}]({os.path.relpath('headers/' + found[1], here)[:-4]}.md)" if is_one else found[0]
+
+    parts = CODE.split(text)
+    return "".join(HEADER.sub(header, part) if k % 2 else LINK.sub(link, part) for k, part in enumerate(parts))
 
 
 def staged_text(page: Path, stage: Path) -> str:

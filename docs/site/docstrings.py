@@ -21,6 +21,9 @@ def is_layout(paragraph):
 
 
 def process_docstring(app, what, name, obj, options, lines):
+    if lines and lines[0].startswith("Alias for field number"):  # what Python says of a field without a docstring
+        lines.clear()
+        return
     paragraphs, current = [], []
     for line in [*lines, ""]:
         if line.strip():
@@ -33,7 +36,7 @@ def process_docstring(app, what, name, obj, options, lines):
         if is_layout(paragraph):
             result += [".. code-block:: text", "", *["   " + line for line in paragraph], ""]
         else:
-            result += [*map(escaped, paragraph), ""]
+            result += [escaped(" ".join(paragraph)), ""]
     lines[:] = result
 
 
