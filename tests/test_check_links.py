@@ -53,6 +53,11 @@ class Check(unittest.TestCase):
     def test_what_is_in_a_block_of_code_does_not_count(self):
         self.assertEqual(self.broken("```\n[a](none.md) `Frame.IsNone`\n```\n"), [])
 
+    def test_a_picture_may_be_made_by_a_command_of_the_page(self):
+        self.assertEqual(self.broken("```\n$ mmbrdf plot map ptfe -o a.png\n```\n![a](a.png)\n"), [])
+        self.assertEqual(self.broken("![a](b.png)\n"), ["README.md:1: b.png: no such file"])
+        self.assertEqual(self.broken("![a](c.png)\n", "docs/for/a.md"), ["docs/for/a.md:1: c.png: no such file"])
+
     def test_quoted_tests_must_exist(self):
         self.assertEqual(
             self.broken("`Frame.IsRight`, `Frame.Turns`, `Model.*` and `Model.Is*`, not `Model.powers`\n"), []

@@ -27,15 +27,20 @@ by at most 1e-9 of its value or 1e-12. A number is a decimal literal that does n
 f11 and germer2017 hold none. Empty lines at the end of an output do not count.
 
 Of a Markdown page, the code blocks that begin with a command are the transcript; --update leaves pages alone.
+A code block that begins with a remark which is the name of a file, "# plaque.py" or "// tracer.cpp", is that
+file, there when the commands below it run. Pictures that a page shows and that do not lie beside it are made by its
+commands; --pictures FOLDER keeps them.
 
-All commands of a file run in one fresh folder, with the programs first on the PATH. MMBRDF_SOURCE is
-the source folder and MMBRDF_DATA the published data; in an output their paths are printed as these names.
+All commands of a file run in one fresh folder, with the programs first on the PATH, then the Python that runs
+this. MMBRDF_SOURCE is the source folder and MMBRDF_DATA the published data; in an output their paths are printed
+as these names.
 """
 
 import argparse
 import difflib
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -47,18 +52,27 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?!\w)"
 PIPE = re.compile(r"(?<!\|)\|(?!\|)")
 
 
+PICTURE = re.compile(r"!\[[^\]]*\]\(([\w.-]+)\)")
+FILE_BLOCK = re.compile(r"(?:#|//) (\w[\w-]*\.\w+)\n")
+
+
 @dataclass
 class Step:
-    kind: str  # "$" or "?"
+    kind: str  # "$", "?", or of a page ">": a file to be written
     command: str
     expected: list = field(default_factory=list)  # output lines, [exit N] included
     after: list = field(default_factory=list)  # empty lines and comments before the next step
 
 
-def transcript_of_page(text):
-    """The code blocks of a Markdown page that begin with a command."""
-    blocks = re.findall(r"^```\w*\n(\$ .*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
-    return "\n".join(blocks)
+def steps_of_page(text):
+    """The code blocks of a Markdown page that begin with a command, and those that are files."""
+    steps = []
+    for block in re.findall(r"^```\w*\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL):
+        if block.startswith("$ "):
+            steps += parse(block)[1]
+        elif name := FILE_BLOCK.match(block):
+            steps.append(Step(">", name[1], block.splitlines()))
+    return steps
 
 
 def parse(text):
@@ -126,7 +140,7 @@ class Shell:
             "LC_ALL": "C.UTF-8",
             "MMBRDF_DATA": data,
             "MMBRDF_SOURCE": str(source),
-            "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
+            "PATH": os.pathsep.join([str(programs), os.path.dirname(sys.executable), os.environ["PATH"]]),
         }
 
     def run(self, command):
@@ -153,18 +167,21 @@ def print_difference(path, step, actual):
     print("\n".join(difference), end="\n\n")
 
 
-def replay(path, programs, source, update):
+def replay(path, options):
     """Exit status for one file: 0, 1 or SKIPPED."""
     text = path.read_text(encoding="utf-8")
     is_page = path.suffix == ".md"
-    before, steps = parse(transcript_of_page(text) if is_page else text)
+    before, steps = ([], steps_of_page(text)) if is_page else parse(text)
     if not any(step.kind == "$" for step in steps):
         print(f"{path}: no command")
         return 1
     failed = skipped = False
     with tempfile.TemporaryDirectory(prefix="mmbrdf-cli-") as folder:
-        shell = Shell(folder, programs, source)
+        shell = Shell(folder, options.programs.resolve(), options.source.resolve())
         for step in steps:
+            if step.kind == ">":
+                Path(folder, step.command).write_text("\n".join(step.expected) + "\n", encoding="utf-8")
+                continue
             actual = shell.run(step.command)
             if step.kind == "?":
                 if actual and actual[-1].startswith("[exit "):
@@ -175,7 +192,15 @@ def replay(path, programs, source, update):
                 print_difference(path, step, actual)
                 step.expected = actual
                 failed = True
-    if failed and update and not is_page:
+        for name in PICTURE.findall(text) if is_page and not skipped else ():
+            if not Path(folder, name).is_file():
+                if not (path.parent / name).is_file():
+                    print(f"{path}: no command makes {name}")
+                    failed = True
+            elif options.pictures and not failed:
+                options.pictures.mkdir(parents=True, exist_ok=True)
+                shutil.copy(Path(folder, name), options.pictures / name)
+    if failed and options.update and not is_page:
         path.write_text(unparse(before, steps), encoding="utf-8")
         print(f"{path}: updated")
         failed = False
@@ -191,11 +216,9 @@ def main(arguments=None):
     parser.add_argument("--programs", type=Path, default=here / "build/release", help="folder of the built program")
     parser.add_argument("--source", type=Path, default=here, help="source folder")
     parser.add_argument("--update", action="store_true", help="write what the commands print into the transcripts")
+    parser.add_argument("--pictures", type=Path, metavar="FOLDER", help="where pictures of pages are kept")
     options = parser.parse_args(arguments)
-    results = [
-        replay(path, options.programs.resolve(), options.source.resolve(), options.update)
-        for path in options.transcripts
-    ]
+    results = [replay(path, options) for path in options.transcripts]
     return 1 if 1 in results else max(results)
 
 

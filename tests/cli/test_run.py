@@ -17,7 +17,8 @@ class Replay(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.path = Path(folder.name) / "transcript.txt"
 
-    def replay(self, text, *options):
+    def replay(self, text, *options, ending=".txt"):
+        self.path = self.path.with_suffix(ending)
         self.path.write_text(text)
         self.printed = io.StringIO()
         with contextlib.redirect_stdout(self.printed):
@@ -83,6 +84,24 @@ class Replay(unittest.TestCase):
     def test_update_rewrites_what_differs_and_nothing_else(self):
         self.assertEqual(self.replay("# why\n$ seq 3\n...\n3\n\n# next\n$ echo a; false\nb\n", "--update"), 0)
         self.assertEqual(self.path.read_text(), "# why\n$ seq 3\n...\n3\n\n# next\n$ echo a; false\na\n[exit 1]\n")
+
+    def test_of_a_page_blocks_that_begin_with_a_command_or_a_name_are_the_transcript(self):
+        page = "```sh\nfalse\n```\n```python\n# a.py\nprint(2)\n```\nas in\n```\n$ python3 a.py\n{}\n$ ls\na.py\n```\n"
+        self.assertEqual(self.replay(page.format(2), ending=".md"), 0)
+        self.assertEqual(self.replay(page.format(3), ending=".md"), 1)
+        self.assertEqual(self.replay("```python\n# a.py\n```\n", ending=".md"), 1)
+
+    def test_pictures_of_a_page_are_made_and_kept(self):
+        kept = self.path.parent / "kept"
+        page = "```\n$ echo 1 >a.png; echo {}\n2\n```\n![a](a.png)\n{}"
+        keep = ("--pictures", str(kept))
+        self.assertEqual(self.replay(page.format(3, ""), *keep, ending=".md"), 1)
+        self.assertFalse(kept.exists())
+        self.assertEqual(self.replay(page.format(2, "![b](b.png)\n"), ending=".md"), 1)
+        self.assertIn("no command makes b.png", self.printed.getvalue())
+        (self.path.parent / "b.png").touch()
+        self.assertEqual(self.replay(page.format(2, "![b](b.png)\n"), *keep, ending=".md"), 0)
+        self.assertEqual([path.name for path in kept.iterdir()], ["a.png"])
 
 
 if __name__ == "__main__":

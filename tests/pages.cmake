@@ -1,0 +1,27 @@
+# The pages for each kind of user, with what they run of Python, and of C++ with the library as it is installed; then the site,
+# with the pictures that they have drawn.
+if(TARGET mmbrdf_python AND NOT CMAKE_CXX_FLAGS_DEBUG MATCHES sanitize)
+  set(docs ${PROJECT_SOURCE_DIR}/docs)
+  file(GLOB pages CONFIGURE_DEPENDS ${docs}/for/*.md)
+  set(page_environment "PYTHONPATH=${PROJECT_BINARY_DIR}/python;MPLBACKEND=Agg")
+  set(installed_library "PKG_CONFIG_PATH=${PROJECT_BINARY_DIR}/installed/${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  find_program(PKG_CONFIG pkg-config)
+  set(pages_of_cpp ${docs}/cpp.md ${docs}/for/renderer.md)
+  foreach(page IN LISTS pages ITEMS ${docs}/index.md ${docs}/gallery.md ${docs}/cpp.md)
+    if(page IN_LIST pages_of_cpp AND NOT PKG_CONFIG)
+      continue()
+    endif()
+    cmake_path(GET page STEM name)
+    add_test(NAME pages.${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/cli/run.py
+      ${page} --programs ${PROJECT_BINARY_DIR} --source ${PROJECT_SOURCE_DIR} --pictures ${PROJECT_BINARY_DIR}/pictures/${name})
+    set_tests_properties(pages.${name} PROPERTIES TIMEOUT 600 ENVIRONMENT "${page_environment};${installed_library}")
+    list(APPEND page_tests pages.${name})
+    if(page IN_LIST pages_of_cpp)
+      set_tests_properties(pages.${name} PROPERTIES FIXTURES_REQUIRED installed)
+    endif()
+  endforeach()
+  add_test(NAME pages.site COMMAND ${Python3_EXECUTABLE} -B ${docs}/site/build.py
+    --programs ${PROJECT_BINARY_DIR} --output ${PROJECT_BINARY_DIR}/docs --pictures ${PROJECT_BINARY_DIR}/pictures)
+  set_tests_properties(pages.site PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77 DEPENDS "${page_tests}")
+endif()
+add_test(NAME site_parts COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/test_site_parts.py)
