@@ -21,7 +21,7 @@ body { font: 15px/1.5 "DejaVu Sans", system-ui, sans-serif; color: var(--text); 
 h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 .4rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.15rem; line-height: 1.3; margin: 2rem 0 .5rem; }
 p { margin: .5rem 0; } p.dim, figcaption, .remark { color: var(--dim); font-size: .87rem; }
-p.summary { font-size: 1.05rem; border-left: 4px solid #12408c; padding: .1rem 0 .1rem 1rem; margin: 1rem 0; }
+p.summary { font-size: 1.07em; border-left: 4px solid #12408c; padding: .1rem 0 .1rem 1rem; margin: 1rem 0; }
 .list { padding: .5rem 1rem; margin: 1rem 0; break-inside: avoid; } .list p { margin: 0; font-weight: 600; }
 .list ul { margin: .2rem 0 0; padding-left: 1.2rem; } .list li { overflow-wrap: anywhere; }
 .warnings { background: var(--warn); border-left: 4px solid #e0a100; } .notes { background: var(--soft); border-left: 4px solid #9aa4b1; }
@@ -89,7 +89,7 @@ def _text(words: str) -> str:
     escaped = html.escape(words)
     for index, letter in (("ᵢ", "i"), ("ᵣ", "r")):
         escaped = escaped.replace(index, f"<sub>{letter}</sub>")
-    return re.sub(r" ([=±×≤…]) ", "\u00a0\\1 ", escaped).replace(" nm", "\u00a0nm").replace(" sr⁻¹", "\u00a0sr⁻¹")
+    return re.sub(r" ([=±×≤]) ", "\u00a0\\1\u00a0", escaped).replace(" nm", "\u00a0nm").replace(" sr⁻¹", "\u00a0sr⁻¹")
 
 
 def image(figure: Any, alt: str, kind: str, width_cm: float | None = None) -> str:

@@ -15,7 +15,17 @@ constexpr const char* unknown_cell = "not known";
 
 std::string with_minus(std::string number) { return number.starts_with('-') ? "\u2212" + number.substr(1) : number; }
 
-bool is_of_numbers(Cell cell) { return cell != Cell::words && cell != Cell::prose && cell != Cell::yes_no; }
+bool is_of_numbers(Cell cell) {
+  return cell != Cell::words && cell != Cell::prose && cell != Cell::yes_no && cell != Cell::place;
+}
+
+/// The numbers of place_line().
+std::string angles_alone(const std::string& place) {
+  std::string text = symbols_in_print(place);
+  for (const std::string name : {"θᵢ = ", "θᵣ = ", "φᵣ − φᵢ = "})
+    if (const std::size_t at = text.find(name); at != std::string::npos) text.erase(at, name.size());
+  return text;
+}
 
 std::optional<double> number_in(const Json& row, const std::string& key) {
   const auto found = row.find(key);
@@ -88,6 +98,7 @@ std::string Document::cell(const DocumentColumn& column, const Json& row) const 
   if (value.is_null()) return unknown_cell;
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (column.cell == Cell::words || column.cell == Cell::element) return value.get<std::string>();
+  if (column.cell == Cell::place) return angles_alone(value.get<std::string>());
   if (column.cell == Cell::prose) return in_symbols(value.get<std::string>());
   if (value.is_number_integer()) return value.dump();
   const double number = value.get<double>();

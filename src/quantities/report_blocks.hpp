@@ -24,6 +24,7 @@ enum class Cell {
   with_u,   ///< with the uncertainty that another column of the row has
   like,     ///< to the place where two digits of another column end
   element,  ///< "23" of f₂₃
+  place,    ///< "theta_i 80, theta_r 70, phi_r - phi_i 180 degrees" as three angles below one heading
 };
 
 struct DocumentColumn {

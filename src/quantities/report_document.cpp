@@ -206,9 +206,20 @@ Drawn drawn_of(const Model& model, const Json& facts, const ReportOrigin& origin
   return drawn;
 }
 
+/// With as many digits as reflectances have.
+Json without_digits(Json said, const ReflectanceTable& table) {
+  if (table.values.empty()) return said;
+  std::string text;
+  for (std::size_t i = 0; i < table.values.size(); ++i)
+    text += (i > 0 ? ", " : "") + significant(table.values[i], 4) + " at " +
+            shortest(nanometres(table.wavelengths[i])) + " nm";
+  said["reflectance table"] = text + (table.covariance.empty() ? "; exact" : "; with its covariance");
+  return said;
+}
+
 void add_model_part(Document& document, const Json& facts, const Drawn& drawn) {
-  add_words(document, "Model", "The model, and what it says of its origin.", facts["model"],
-            {"basis", "fitted range", "not measured"});
+  add_words(document, "Model", "The model, and what it says of its origin.",
+            without_digits(facts["model"], drawn.model.reflectance), {"basis", "fitted range", "not measured"});
   document.heading("Reflectances");
   add_reflectance_tables(document, facts["reflectances"]);
   add_reflectance_figures(document, drawn);

@@ -27,7 +27,8 @@ struct Reflected {
   std::string quantity;
   double value;
   Outside outside;
-  std::vector<Contribution> budget;  // none: the uncertainty is not known
+  std::vector<Contribution> budget = {};  // none: the uncertainty is not known
+  Json u = nullptr;
 };
 
 Reflected dhr_at(const Reflector& from, int theta) {
@@ -35,29 +36,29 @@ Reflected dhr_at(const Reflector& from, int theta) {
   const Model& model = from.subject.model;
   Reflected result{"dhr, theta_i " + std::to_string(theta),
                    directional_hemispherical_reflectance(model, from.wavelength, incident),
-                   outside(model.validity, from.wavelength, {incident, {}}),
-                   {}};
-  if (from.u) result.budget = directional_hemispherical_budget(*from.u, incident);
+                   outside(model.validity, from.wavelength, {incident, {}})};
+  if (!from.u) return result;
+  result.budget = directional_hemispherical_budget(*from.u, incident);
+  result.u = standard_uncertainty(result.budget);
   return result;
 }
 
 Reflected bhr_of(const Reflector& from) {
-  Reflected result{"bhr",
-                   bihemispherical_reflectance(from.subject.model, from.wavelength),
-                   outside(from.subject.model.validity, from.wavelength),
-                   {}};
-  if (from.u) result.budget = bihemispherical_budget(*from.u);
+  Reflected result{"bhr", bihemispherical_reflectance(from.subject.model, from.wavelength),
+                   outside(from.subject.model.validity, from.wavelength)};
+  if (!from.u) return result;
+  result.budget = bihemispherical_budget(*from.u);
+  result.u = standard_uncertainty(result.budget);
   return result;
 }
 
 Reflected factor_at(const Reflector& from, const std::string& name, const Geometry& geometry) {
-  Reflected result{"reflectance factor " + name,
-                   reflectance_factor(from.prepared.f11(geometry)),
-                   outside(from.subject.model.validity, from.wavelength, geometry),
-                   {}};
+  Reflected result{"reflectance factor " + name, reflectance_factor(from.prepared.f11(geometry)),
+                   outside(from.subject.model.validity, from.wavelength, geometry)};
   if (!from.u) return result;
   Mueller gradient;
   gradient(0, 0) = reflectance_factor(1);
+  result.u = reflectance_factor(from.u->fit.standard_uncertainty(geometry)(0, 0));
   result.budget = contributions(budget(from.u->model, from.u->fit, {}, geometry, Frame::sp), gradient);
   return result;
 }
@@ -103,7 +104,7 @@ void add_reflectances(Json& report, const ReportSubject& subject) {
       reflectances.push_back({{"wavelength_nm", shown},
                               {"quantity", one.quantity},
                               {"value", one.value},
-                              {"u", known ? Json(standard_uncertainty(one.budget)) : Json(nullptr)},
+                              {"u", one.u},
                               {"validity", to_string(one.outside)}});
       add_budget(budgets, shown, one);
     }

@@ -17,7 +17,8 @@ struct FieldTable {
 
 const DocumentColumn wavelength_column{"wavelength_nm", "λ / nm", Cell::given};
 const DocumentColumn block_column{"block", "block", Cell::words};
-const DocumentColumn place_column{"at", "at", Cell::prose};
+constexpr const char* place_heading = "at θᵢ, θᵣ, φᵣ − φᵢ";
+const DocumentColumn place_column{"at", place_heading, Cell::place};
 
 FieldTable symmetry_table(const std::string& heading, const std::string& symmetry) {
   return {heading,
@@ -63,7 +64,7 @@ std::map<std::string, FieldTable> tables_of_the_model() {
          {"geometries", "directions", Cell::count},
          {"unrealizable", "cannot exist", Cell::count},
          {"smallest_margin", "smallest eigenvalue", Cell::with_u, "u_margin"},
-         {"margin_at", "at", Cell::prose},
+         {"margin_at", place_heading, Cell::place},
          {"f11_not_positive", "f₁₁ ≤ 0", Cell::count},
          {"smallest_f11", "smallest f₁₁ / sr⁻¹", Cell::with_u, "u_smallest_f11"},
          {"largest_dhr", "largest DHR", Cell::with_u, "u_largest_dhr"},

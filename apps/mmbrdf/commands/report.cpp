@@ -100,9 +100,9 @@ Json with_origin(Json facts, const ReportOrigin& origin) {
 }
 
 void report(const Options& options, const CommandLine& line) {
-  const Kind kind = kind_of(options);
   require_model_kept(options.model, options.output);
   require_kept(options.data, options.output, "data");
+  const Kind kind = kind_of(options);
   if (kind == Kind::html || kind == Kind::pdf) report_by_python(options, line);
   if (options.data.empty() && !is_built_in(options.model) && is_samples(options.model))
     throw std::invalid_argument(options.model + ": holds samples: mmbrdf inspect says what they are, and a report of " +
