@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "mmbrdf/text/rounding.hpp"
 #include "quantities/report_blocks.hpp"
 
 namespace mmbrdf {
@@ -71,7 +72,7 @@ std::map<std::string, FieldTable> tables_of_the_model() {
          {"dhr_at_theta_i_deg", "at θᵢ / °", Cell::angle}}}}};
 }
 
-std::map<std::string, FieldTable> tables_of_the_samples() {
+std::map<std::string, FieldTable> tables_of_what_is_left() {
   return {{"residuals",
            {"Residuals",
             "Samples less the model, element by element.",
@@ -95,39 +96,50 @@ std::map<std::string, FieldTable> tables_of_the_samples() {
             {{"read_as", "read as", Cell::prose}, {"rms", "rms", Cell::three}}}},
           {"reciprocity", symmetry_table("Reciprocity", "reciprocity")},
           {"mirror_symmetry", symmetry_table("Mirror symmetry", "mirror symmetry")},
-          {"dependence_on_phi_i", symmetry_table("Dependence on φᵢ", "isotropy")},
-          {"noise",
-           {"Noise",
-            "Noise of the samples: scale × √(cosᵃ θᵢ / cosᵇ θᵣ), of f11 relative to it.",
-            {wavelength_column,
-             {"scale", "scale", Cell::with_u, "u_scale"},
-             {"exponent_cos_theta_i", "a", Cell::with_u, "u_exponent_i"},
-             {"exponent_cos_theta_r", "b", Cell::with_u, "u_exponent_r"}}}},
-          {"repeats",
-           {"Repeats",
-            "What repeated geometries scatter by, against what the model misses them by.",
-            {block_column,
-             {"repeats", "repeats", Cell::count},
-             {"pure_error", "pure error", Cell::two},
-             {"misfit", "misfit", Cell::two},
-             {"F", "F", Cell::three},
-             {"p", "p", Cell::two}}}},
-          {"leverage",
-           {"Leverage",
-            "The sample of each block that decides most alone: 1 is all by itself.",
-            {block_column,
-             {"rank", "rank", Cell::count},
-             {"largest_leverage", "largest leverage", Cell::two},
-             {"sample", "sample", Cell::count},
-             place_column}}},
-          {"outliers",
-           {"Outliers",
-            "Elements of samples more than 5 standard deviations off, the largest first.",
-            {{"sample", "sample", Cell::count},
-             {"element", "element", Cell::element},
-             {"studentized", "standard deviations", Cell::two},
-             wavelength_column,
-             place_column}}}};
+          {"dependence_on_phi_i", symmetry_table("Dependence on φᵢ", "isotropy")}};
+}
+
+std::map<std::string, FieldTable> tables_of_noise() {
+  return {
+      {"noise",
+       {"Noise",
+        "Noise of the samples: scale × √(cosᵃ θᵢ / cosᵇ θᵣ), of f11 relative to it.",
+        {wavelength_column,
+         {"scale", "scale", Cell::with_u, "u_scale"},
+         {"exponent_cos_theta_i", "a", Cell::with_u, "u_exponent_i"},
+         {"exponent_cos_theta_r", "b", Cell::with_u, "u_exponent_r"}}}},
+      {"repeats",
+       {"Repeats",
+        "What repeated geometries scatter by, against what the model misses them by.",
+        {block_column,
+         {"repeats", "repeats", Cell::count},
+         {"pure_error", "pure error", Cell::two},
+         {"misfit", "misfit", Cell::two},
+         {"F", "F", Cell::three},
+         {"p", "p", Cell::two}}}},
+      {"leverage",
+       {"Leverage",
+        "The sample of each block that decides most alone: 1 is all by itself.",
+        {block_column,
+         {"rank", "rank", Cell::count},
+         {"largest_leverage", "largest leverage", Cell::two},
+         {"sample", "sample", Cell::count},
+         place_column}}},
+      {"outliers",
+       {"Outliers",
+        "Elements of samples more than " + shortest(outlier_threshold) + " standard deviations off, the largest first.",
+        {{"sample", "sample", Cell::count},
+         {"element", "element", Cell::element},
+         {"studentized", "standard deviations", Cell::two},
+         wavelength_column,
+         place_column}}}};
+}
+
+std::map<std::string, FieldTable> all_tables() {
+  std::map<std::string, FieldTable> all = tables_of_the_model();
+  all.merge(tables_of_what_is_left());
+  all.merge(tables_of_noise());
+  return all;
 }
 
 /// With the standard deviation of each.
@@ -154,9 +166,8 @@ std::string sentence(std::string line) {
 }  // namespace
 
 void add_field(Document& document, const std::string& field, const Json& value) {
-  static const std::map<std::string, FieldTable> of_model = tables_of_the_model(), of_samples = tables_of_the_samples();
-  const auto model = of_model.find(field);
-  const FieldTable& table = model != of_model.end() ? model->second : of_samples.at(field);
+  static const std::map<std::string, FieldTable> tables = all_tables();
+  const FieldTable& table = tables.at(field);
   document.heading(table.heading);
   if (value.is_string()) return document.paragraph(sentence(value.get<std::string>()));
   if (value.empty()) return document.paragraph("None.");
