@@ -7,10 +7,13 @@
 
 #include <filesystem>
 #include <ostream>
+#include <tuple>
 
 #include "dataset.hpp"
 #include "mmbrdf/files/write_file.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
+#include "mmbrdf/text/date.hpp"
+#include "mmbrdf/text/notation.hpp"
 #include "mmbrdf/text/rounding.hpp"
 
 namespace mmbrdf::python {
@@ -54,6 +57,32 @@ py::object inspection_object(const Dataset& data) {
                 verdict_line(seen));
 }
 
+/// Of date, software, command, model, data and files: (what, name, SHA-256) each.
+ReportOrigin origin_of(const py::dict& said) {
+  const auto text = [&](const char* name) { return said[name].cast<std::string>(); };
+  ReportOrigin origin{text("date"), text("software"), text("command")};
+  origin.model = text("model");
+  origin.data = text("data");
+  for (const auto& [what, name, digest] :
+       said["files"].cast<std::vector<std::tuple<std::string, std::string, std::string>>>())
+    origin.files.push_back({what, name, digest});
+  return origin;
+}
+
+void bind_documents(py::module_& m) {
+  m.def(
+      "_report_document",
+      [](const ModelObject& model, const std::string& facts, const py::dict& said, const std::string& notation,
+         double theta_i_deg) {
+        return report_document(model.model(), facts, origin_of(said), {notation_from(notation), theta_i_deg});
+      },
+      py::arg("model"), py::arg("facts"), py::arg("origin"), py::arg("notation"), py::arg("theta_i_deg"),
+      "The document of a report as JSON text: report_document() of report.hpp.");
+  m.def("_report_markdown", &report_markdown, py::arg("document"), "Such a document as Markdown.");
+  m.def("_symbols_in_print", &symbols_in_print, py::arg("sentence"), "A sentence with its symbols as in print.");
+  m.def("_utc_timestamp", &utc_timestamp, "Now, or at SOURCE_DATE_EPOCH.");
+}
+
 }  // namespace
 
 void bind_report(py::module_& m) {
@@ -70,7 +99,8 @@ void bind_report(py::module_& m) {
       py::arg("model"), py::arg("name"), py::arg("wavelength_nm") = py::none(), py::arg("data") = py::none(),
       py::arg("data_name") = "samples",
       "What is known about a model, and about samples beside it, as the JSON text that `mmbrdf report --format json`\n"
-      "prints: title, warnings, model, fit, realizability, reflectances and, with samples, residuals, symmetries,\n"
+      "prints: title, warnings, notes, model, fit, realizability, reflectances, budgets and, with samples, residuals, "
+      "symmetries,\n"
       "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
   m.def(
       "inspect", [](const Dataset& data) { return inspection_object(data); }, py::arg("data"),
@@ -81,6 +111,7 @@ void bind_report(py::module_& m) {
       "first wavelength radians that are called degrees, the scale of f11, a cosine too many or too few, folded "
       "azimuths,\n"
       "frame and signs, and which of these could not be seen. residuals are nan where there is no fit.");
+  bind_documents(m);
   m.def("_to_place_of", &to_place_of, py::arg("value"), py::arg("uncertainty"),
         "A number to the place where two digits of its standard uncertainty end; six digits without one.");
   m.def(

@@ -145,24 +145,38 @@ def _write_report(
     data_name: str = "samples",
     wavelength_nm: float | _Sequence[float] | None = None,
     theta_i_deg: float = 45,
+    notation: str = "brackets",
+    paper: str = "a4",
+    model_file: str | _os.PathLike[str] | None = None,
+    data_file: str | _os.PathLike[str] | None = None,
+    format: str | None = None,
 ) -> None:
-    """Writes one self-contained HTML page: what `mmbrdf report` prints about a model, and samples beside it, with pictures.
-    Without a model, None, what `mmbrdf inspect` says of samples before they are fitted, with pictures.
+    """Writes what `mmbrdf report` says of a model, and of samples beside it, as the ending of ``path`` says: .html, one
+    self-contained page with pictures, .pdf, the same printed by Chromium, .md or .json. Without a model, None, what `mmbrdf
+    inspect` says of samples before they are fitted, with pictures: .html or .pdf.
 
     name, data_name  what the model and the samples are called
     wavelength_nm    at which to report; None: at those it was fitted to, or else those of the samples; without a model: all
     theta_i_deg      angle of incidence of the pictures of the model
+    notation         "brackets", as in 0.98412(32), or "plus-minus", as in 0.98412 ± 0.00032
+    paper            of a PDF: "a4" or "letter"
+    model_file, data_file
+                     the files that they were read from: their names and SHA-256 are in the report; without the latter, the SHA-256
+                     is that of the samples as Dataset.save() writes them
+    format           "markdown", "html", "pdf" or "json", whatever the ending
 
-    Needs matplotlib. Raises TypeError for what is not a model and samples, ValueError for samples that do not go
-    with the model, OSError for a path that cannot be
-    written; then an earlier file is left as it was.
+    It has the date, or that of SOURCE_DATE_EPOCH. Needs matplotlib but for .md and .json; .pdf needs Chromium, or what
+    MMBRDF_BROWSER names. Raises TypeError for what is not a model and samples, ValueError for another ending, for samples that do
+    not go with the model, and where there is no Chromium, OSError for a path that cannot be written; then an earlier file is left
+    as it was.
     """
     from . import _report
 
-    text = _report.page(
-        model, data, name=name, data_name=data_name, wavelength_nm=wavelength_nm, theta_i_deg=theta_i_deg
+    kind = _report.kind_of(path, format)
+    source = _report.Source(
+        model, data, name, data_name, wavelength_nm, theta_i_deg, model_file=model_file, data_file=data_file
     )
-    _report.write(path, text)
+    _report.write(path, _report.made(source, kind, _report.Look(notation, paper)))
 
 
 report = _write_report

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from . import Dataset, Inspection, __version__, inspect, plot
-from ._report import document, picture
+from ._pages import document, picture
 
 
 def _text(value: object) -> str:
@@ -66,8 +66,18 @@ def _pictures(data: Dataset, seen: Inspection) -> Iterator[str]:
     yield "</div>"
 
 
-def page(data: Dataset, data_name: str, command: str = "") -> str:
-    """The page as HTML text. ``command`` fits the file; without one it is that of a file of this name."""
+def _words(fields: dict[str, str]) -> str:
+    body = "\n".join(
+        f'<tr><th>{_text(name)}</th><td class="long">{_text(text)}</td></tr>' for name, text in fields.items()
+    )
+    return f'<div class="scroll"><table><tbody>{body}</tbody></table></div>'
+
+
+def page(
+    data: Dataset, data_name: str, command: str = "", paper: str | None = None, origin: dict[str, str] | None = None
+) -> str:
+    """The page as HTML text. ``command`` fits the file; without one it is that of a file of this name. ``origin`` is of what
+    the page was made."""
     seen = inspect(data)
     title = f"{data_name}: {len(data)} sample{'s' * (len(data) > 1)}"
     parts = [
@@ -81,7 +91,9 @@ def page(data: Dataset, data_name: str, command: str = "") -> str:
         "<h2>To fit it</h2>",
         f"<pre>{_text(command or fit_command(data_name))}</pre>",
     ]
-    return document(title, parts)
+    if origin:
+        parts += ["<h2>Origin</h2>", _words(origin)]
+    return document(title, parts, paper)
 
 
 def fit_command(path: str, wavelength_nm: Sequence[float] | None = None) -> str:

@@ -1,179 +1,100 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A report on a model, or on samples before there is one, as one HTML page: what `mmbrdf report` or `mmbrdf inspect` prints,
-with pictures. Nothing in it is loaded from elsewhere."""
+"""A report on a model, with samples beside it or not, or on samples before there is a model: what `mmbrdf report` or `mmbrdf
+inspect` prints, with pictures, as a page, on paper, as Markdown or for programs."""
 
 from __future__ import annotations
 
 import argparse
-import base64
 import errno
+import hashlib
 import html
-import io
 import json
 import os
+import shlex
 import sys
-from collections.abc import Iterator, Sequence
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
-from . import Dataset, Model, __version__, load, material, materials, plot, report_json
+from . import Dataset, Model, __version__, load, material, materials, read_samples, report_json
 from ._arguments import number, require
-from ._mmbrdf import _to_place_of, _write_text
+from ._browser import printed
+from ._mmbrdf import _holds_samples, _report_document, _report_markdown, _utc_timestamp, _write_text
+from ._pages import PAPERS, document, parts
 
-_STYLE = """
-:root { color-scheme: light; --line: #d5d9de; --soft: #f4f6f8; --warn: #fff4d6; --text: #1d2430; --dim: #5b6573; }
-body { font: 15px/1.5 system-ui, sans-serif; color: var(--text); margin: 0 auto; padding: 1.5rem; max-width: 64rem; }
-h1 { font-size: 1.6rem; margin: 0 0 .2rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .6rem; }
-p.dim, figcaption { color: var(--dim); font-size: .87rem; }
-ul.warnings { background: var(--warn); border-left: 4px solid #e0a100; padding: .7rem 1rem .7rem 2rem; margin: 1rem 0; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .22rem .7rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
-thead th { background: var(--soft); border-bottom: 2px solid var(--line); }
-thead th, thead + tbody td { white-space: nowrap; } thead + tbody td.number { text-align: right; }
-table.words thead + tbody td:not(:first-child) { white-space: normal; } pre { background: var(--soft); padding: .6rem 1rem; overflow-x: auto; }
-figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
-.pair { display: flex; flex-wrap: wrap; gap: 1rem; } .pair figure { flex: 1 1 22rem; }
-@media print { body { max-width: none; } h2 { break-after: avoid; } figure { break-inside: avoid; } }
-"""
+KINDS = {".md": "markdown", ".html": "html", ".htm": "html", ".pdf": "pdf", ".json": "json"}
+NOTATIONS = ("brackets", "plus-minus")
 
 
-_NORMAL_DEG = 0.2
-"""Below this polar angle the azimuth of the source says nothing: both together are within what a map takes for one."""
+class Source(NamedTuple):
+    """What a report is on."""
+
+    model: Model | None
+    data: Dataset | None
+    name: str
+    data_name: str
+    wavelength_nm: float | Sequence[float] | None = None
+    theta_i_deg: float = 45.0
+    model_file: str | os.PathLike[str] | None = None
+    data_file: str | os.PathLike[str] | None = None
+    command: str = ""
 
 
-def _cell(value: Any, uncertainty: float | None = None) -> str:
-    if value is None:
-        return "<td>not known</td>"
-    if isinstance(value, bool):
-        return f"<td>{'yes' if value else 'no'}</td>"
-    if isinstance(value, (int, float)):
-        return f'<td class="number">{_to_place_of(value, uncertainty)}</td>'
-    return f"<td>{html.escape(str(value))}</td>"
+class Look(NamedTuple):
+    """How it is written; ``paper`` is of a PDF."""
+
+    notation: str = "brackets"
+    paper: str = "a4"
 
 
-def _uncertainties(names: list[str]) -> Iterator[str]:
-    """Of each column the name of its uncertainty, "" for none: u, or u_ and more, is that of the column before."""
-    for name, following in zip(names, [*names[1:], ""]):
-        yield next((one for one in (name, following) if one == "u" or one.startswith("u_")), "")
+def kind_of(path: str | os.PathLike[str], chosen: str | None = None) -> str:
+    """By the ending of the file, unless it is chosen. Raises ValueError for others."""
+    if chosen is not None:
+        if chosen not in KINDS.values():
+            raise ValueError(f"format = {chosen!r}, expected markdown, html, pdf or json")
+        return chosen
+    ending = Path(path).suffix.lower()
+    if ending not in KINDS:
+        raise ValueError(f"{os.fspath(path)}: expected a file that ends with .md, .html, .pdf or .json")
+    return KINDS[ending]
 
 
-def _table(rows: list[dict[str, Any]]) -> str:
-    uncertainties = list(_uncertainties(list(rows[0])))
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in rows[0])
-    body = "\n".join(
-        "<tr>" + "".join(_cell(row[name], row.get(u)) for name, u in zip(row, uncertainties)) + "</tr>" for row in rows
-    )
-    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>'
+def _digest(path: str | os.PathLike[str]) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
-def _section(value: Any) -> str:
-    """A field of the facts: a sentence, a list of sentences, a table of names and values, or a table."""
-    if isinstance(value, str):
-        return f"<p>{html.escape(value)}</p>"
-    if not value:
-        return "<p>none</p>"
-    if isinstance(value, dict):
-        rows = "\n".join(f"<tr><th>{html.escape(name)}</th>{_cell(field)}</tr>" for name, field in value.items())
-        return f'<div class="scroll"><table><tbody>{rows}</tbody></table></div>'
-    if isinstance(value[0], dict):
-        return _table(value)
-    return "<ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in value) + "</ul>"
+def _file_of_data(source: Source) -> tuple[str, str, str]:
+    """The file, or the samples as Dataset.save() writes them."""
+    assert source.data is not None
+    if source.data_file is not None:
+        return "data", Path(source.data_file).name, _digest(source.data_file)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "samples.csv"
+        source.data.save(path)
+        return "samples as CSV", source.data_name, _digest(path)
 
 
-def picture(figure: Any, caption: str, kind: str = "png") -> str:
-    """The figure within the page: svg for curves, png for maps."""
-    buffer = io.BytesIO()
-    # Without a date the same model gives the same page.
-    figure.savefig(
-        buffer, format=kind, dpi=110, bbox_inches="tight", metadata={"Date": None} if kind == "svg" else None
-    )
-    data = base64.b64encode(buffer.getvalue()).decode("ascii")
-    mime = "svg+xml" if kind == "svg" else kind
-    text = html.escape(caption)
-    return f'<figure><img alt="{text}" src="data:image/{mime};base64,{data}"><figcaption>{text}</figcaption></figure>'
-
-
-def _model_pictures(model: Model, wavelength_nm: float | None, theta_i_deg: float, phi_i_deg: float) -> Iterator[str]:
-    wavelength = "" if wavelength_nm is None else f"{wavelength_nm:g} nm, "
-    at = f"{wavelength}theta_i = {theta_i_deg:g}, phi_i = {phi_i_deg:g} degrees"
-    yield picture(
-        plot.hemisphere(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
-        f"The model over the hemisphere of reflected directions, {at}: f11, and the other elements divided by it.",
-    )
-    yield '<div class="pair">'
-    bands = ", with bands of k = 2" if model.has_covariance else ""
-    if not {"12", "21", "22"} & set(model.not_measured):
-        yield picture(
-            plot.in_plane_curves(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
-            f"Co- and cross-polarized BRDF in the plane of incidence, {at}{bands}.",
-            "svg",
-        )
-    if not model.not_measured:
-        yield picture(
-            plot.realizability_map(model, wavelength_nm, theta_i_deg, phi_i_deg=phi_i_deg)[0],
-            f"Smallest coherency eigenvalue / f11, {at}: a matrix where it is negative cannot exist.",
-        )
-    yield "</div>"
-
-
-def _from_azimuth(data: Dataset, phi_i_deg: float) -> Dataset:
-    """Those samples with the source at this azimuth, or so near the normal that it has none."""
-    turn = (data.phi_i_deg - phi_i_deg + 180) % 360 - 180
-    return data[(np.abs(turn) < 0.4) | (data.theta_i_deg < _NORMAL_DEG)]
-
-
-def _azimuth_deg(data: Dataset | None) -> float:
-    """Of the source in all pictures: that of most samples if they are on a grid, else that of all pictures."""
-    usual = plot.disc.SOURCE_AZIMUTH_DEG
-    if data is None or not _on_a_grid(data):
-        return usual
-    azimuths = np.round(data.phi_i_deg[data.theta_i_deg >= _NORMAL_DEG], 1) % 360
-    values, counts = np.unique(azimuths, return_counts=True)
-    return float(values[counts.argmax()]) if len(values) else usual
-
-
-def _residual_pictures(model: Model, data: Dataset, wavelength_nm: float, phi_i_deg: float) -> Iterator[str]:
-    """At the smallest, a middle and the largest angle of incidence that the data have."""
-    here = _from_azimuth(data.at_wavelengths(wavelength_nm), phi_i_deg)
-    angles = np.unique(np.round(here.theta_i_deg, 1))
-    if len(angles) == 0:
-        return
-    for theta_i_deg in dict.fromkeys((angles[0], angles[len(angles) // 2], angles[-1])):
-        figure, _ = plot.residual_map(model, here, wavelength_nm, float(theta_i_deg), phi_i_deg=phi_i_deg)
-        at = f"{wavelength_nm:g} nm, theta_i = {theta_i_deg:g}, phi_i = {phi_i_deg:g} degrees"
-        yield picture(figure, f"Samples - model at {at}.")
-
-
-def _on_a_grid(data: Dataset) -> bool:
-    """Whether the samples are many for each direction of the source: then a map of them says something."""
-    sources = np.round(np.column_stack([data.wavelength_nm, data.theta_i_deg, data.phi_i_deg]), 1)
-    return len(data) >= 50 * len(np.unique(sources, axis=0))
-
-
-def _spectra(model: Model) -> Iterator[str]:
-    for power in range(model.powers + 1):
-        caption = f"Coefficients that multiply the wavelength in micrometres to the power {power}."
-        yield picture(plot.coefficient_spectrum(model, power=power)[0], caption, "svg")
-
-
-def _pictures_behind(
-    field: str, model: Model, data: Dataset | None, wavelengths_nm: Sequence[float | None], theta_i_deg: float
-) -> dict[str, Iterator[str]]:
-    """What is shown behind a field of the facts: parts by heading."""
-    phi_i_deg = _azimuth_deg(data)
-    if field == "fit":
-        at = {
-            "The model" + ("" if nm is None else f" at {nm:g} nm"): _model_pictures(model, nm, theta_i_deg, phi_i_deg)
-            for nm in wavelengths_nm
-        }
-        return {**at, "Coefficients": _spectra(model)}
-    if field == "residuals" and data is not None and _on_a_grid(data):
-        maps = (text for nm in data.wavelengths_nm for text in _residual_pictures(model, data, nm, phi_i_deg))
-        return {"Residuals on the hemisphere": maps}
-    return {}
+def _origin(source: Source) -> dict[str, Any]:
+    files = []
+    if source.model_file is None:
+        files.append(("model", source.name, ""))
+    elif os.fspath(source.model_file) in materials():
+        files.append(("model", f"{os.fspath(source.model_file)} (built in)", ""))
+    else:
+        files.append(("model", Path(source.model_file).name, _digest(source.model_file)))
+    if source.data is not None:
+        files.append(_file_of_data(source))
+    return {
+        "date": _utc_timestamp(),
+        "software": f"mmbrdf {__version__}",
+        "command": source.command or "mmbrdf.report() in Python",
+        "model": shlex.quote("MODEL" if source.model_file is None else Path(source.model_file).name),
+        "data": shlex.quote("DATA.csv" if source.data_file is None else Path(source.data_file).name),
+        "files": files,
+    }
 
 
 def _wavelengths(model: Model, data: Dataset | None) -> list[float] | None:
@@ -181,14 +102,102 @@ def _wavelengths(model: Model, data: Dataset | None) -> list[float] | None:
     return list(model.wavelengths_nm or (data.wavelengths_nm if data is not None else ()) or model.reflectance) or None
 
 
-def _samples_page(
-    data: Dataset, data_name: str, wavelength_nm: float | Sequence[float] | None, path: str | None = None
-) -> str:
-    from . import _inspection
+def _chosen(wavelength_nm: float | Sequence[float] | None) -> list[float] | None:
+    return None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
 
-    chosen = None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
-    data = data if chosen is None else data.at_wavelengths(chosen)
-    return _inspection.page(data, data_name, _inspection.fit_command(path or data_name, chosen))
+
+def _draw(source: Source, block: dict[str, Any]) -> Any:
+    """The figure of a block."""
+    from . import plot
+
+    things = [source.model, source.data] if block["of_data"] else [source.model]
+    function = getattr(plot, block["plot"].replace("-", "_"))
+    return function(*things, **block["arguments"], width_cm=block["width_cm"])[0]
+
+
+class Report(NamedTuple):
+    """Facts for programs, and the document that people read, both of report.hpp; of samples alone there are neither, and the
+    page is that of their inspection."""
+
+    source: Source
+    facts: dict[str, Any]
+    document: str
+
+
+def _checked(source: Source, look: Look) -> Source:
+    """With samples of the wavelengths that were asked for. Raises TypeError and ValueError."""
+    if source.model is not None or source.data is None:
+        require("model", source.model, Model)
+    if source.data is not None:
+        require("data", source.data, Dataset)
+        if len(source.data) == 0:
+            raise ValueError(f"{source.data_name}: no samples")
+    for name, value, known in (("notation", look.notation, NOTATIONS), ("paper", look.paper, tuple(PAPERS))):
+        if value not in known:
+            raise ValueError(f"{name} = {value!r}, expected {' or '.join(known)}")
+    chosen = _chosen(source.wavelength_nm)
+    if chosen is not None and source.data is not None:
+        source = source._replace(data=source.data.at_wavelengths(chosen))
+    return source._replace(theta_i_deg=number("theta_i_deg", source.theta_i_deg), wavelength_nm=chosen)
+
+
+def _made(source: Source, look: Look) -> Report:
+    """Of a model."""
+    model = source.model
+    assert model is not None
+    name = source.name or model.name or "the model"
+    chosen = source.wavelength_nm or _wavelengths(model, source.data)
+    text = report_json(model, name, chosen, source.data, source.data_name)
+    origin = _origin(source._replace(name=name))
+    whole = _report_document(model, text, origin, look.notation, source.theta_i_deg)
+    files = [{"what": what, "name": file, "sha256": digest or None} for what, file, digest in origin["files"]]
+    said = {name: origin[name] for name in ("date", "software", "command")}
+    return Report(source, {**json.loads(text), "origin": {**said, "files": files}}, whole)
+
+
+def _page(source: Source, look: Look, paper: str | None) -> str:
+    """As HTML."""
+    if source.model is None:
+        from . import _inspection
+
+        path = source.data_name if source.data_file is None else os.fspath(source.data_file)
+        return _inspection.page(
+            source.data,
+            source.data_name,
+            _inspection.fit_command(path, source.wavelength_nm),
+            paper,
+            _origin_lines(source),
+        )
+    made = _made(source, look)
+    whole = json.loads(made.document)
+    shown = parts(whole["blocks"], lambda block: _draw(made.source, block))
+    return document(whole["title"], [f"<h1>{html.escape(whole['title'])}</h1>", *shown], paper)
+
+
+def _origin_lines(source: Source) -> dict[str, str]:
+    what, name, digest = _file_of_data(source)
+    return {
+        "date": _utc_timestamp(),
+        what: name,
+        f"SHA-256 of the {what}": digest,
+        "software": f"mmbrdf {__version__}",
+        "command": source.command or "mmbrdf.report() in Python",
+    }
+
+
+def made(source: Source, kind: str, look: Look = Look()) -> str | bytes:
+    """The report as text, or as the bytes of a PDF. Raises ValueError where it cannot be made."""
+    source = _checked(source, look)
+    if kind == "html":
+        return _page(source, look, None)
+    if kind == "pdf":
+        return printed(_page(source, look, look.paper), _utc_timestamp())
+    if source.model is None:
+        raise ValueError(f"{source.data_name}: a report on samples alone is a page: .html or .pdf")
+    report = _made(source, look)
+    if kind == "json":
+        return json.dumps(report.facts, indent=2, ensure_ascii=False) + "\n"
+    return str(_report_markdown(report.document))
 
 
 def page(
@@ -201,50 +210,7 @@ def page(
     theta_i_deg: float = 45,
 ) -> str:
     """The report as HTML text: see mmbrdf.report()."""
-    if model is not None or data is None:
-        require("model", model, Model)
-    if data is not None:
-        require("data", data, Dataset)
-        if len(data) == 0:
-            raise ValueError(f"{data_name}: no samples")
-    if model is None:
-        return _samples_page(data, data_name, wavelength_nm)
-    theta_i_deg = number("theta_i_deg", theta_i_deg)
-    if wavelength_nm is None:
-        chosen = _wavelengths(model, data)
-    else:
-        chosen = [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
-    facts = json.loads(report_json(model, name or model.name or "the model", chosen, data, data_name))
-    title = html.escape(facts.pop("title"))
-    warnings = facts.pop("warnings")
-    alone = "instrument" not in model.provenance
-    if model.provenance.get("uncertainty") == "sample":
-        source = "of the sample" if alone else "of the sample and its instrument"
-    else:
-        source = "of the fit alone" if alone else "of the fit and its instrument"
-    parts = [
-        f"<h1>{title}</h1>",
-        f'<p class="dim">mmbrdf {__version__}; uncertainties are standard (k = 1) and {source}</p>',
-    ]
-    if warnings:
-        lines = "".join(f"<li>{html.escape(warning)}</li>" for warning in warnings)
-        parts.append(f'<ul class="warnings">{lines}</ul>')
-    for field, value in facts.items():
-        parts += [f"<h2>{html.escape(field.capitalize().replace('_', ' '))}</h2>", _section(value)]
-        for heading, pictures in _pictures_behind(field, model, data, chosen or [None], theta_i_deg).items():
-            parts += [f"<h2>{html.escape(heading)}</h2>", *pictures]
-    return document(title, parts, escaped=True)
-
-
-def document(title: str, parts: Sequence[str], *, escaped: bool = False) -> str:
-    """A whole page of these parts."""
-    title = title if escaped else html.escape(title)
-    body = "\n".join(parts)
-    return (
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{title}</title>\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{_STYLE}</style></head>\n'
-        f"<body>\n{body}\n</body></html>\n"
-    )
+    return str(made(Source(model, data, name, data_name, wavelength_nm, theta_i_deg), "html"))
 
 
 def write(path: str | os.PathLike[str], text: str | bytes) -> None:
@@ -261,43 +227,137 @@ def _require_kept(output: str, inputs: Sequence[str | None]) -> None:
             raise ValueError(f"{output}: would overwrite {name}")
 
 
-def _opened(name: str) -> Model | Dataset:
-    return material(name) if name in materials() else load(name)
+def _columns(text: str) -> dict[str, str]:
+    """NAME=THEIRS,…"""
+    pairs = [part.partition("=") for part in text.split(",")]
+    if not all(own and equals and theirs for own, equals, theirs in pairs):
+        raise argparse.ArgumentTypeError(f'"{text}": expected NAME=THEIRS[,...]')
+    return {own: theirs for own, _, theirs in pairs}
 
 
-def _page_of(options: argparse.Namespace) -> str:
-    """Of a model with or without samples, or of samples."""
-    model = _opened(options.model)
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'"{text}": expected numbers with commas between') from None
+
+
+class _Parser(argparse.ArgumentParser):
+    """Wrong usage is one line, and where to look, as it is of the program."""
+
+    def error(self, message: str) -> NoReturn:
+        print(f"{self.prog.split()[0] if self.prog.startswith('mmbrdf') else self.prog}: {message}", file=sys.stderr)
+        print(f"see {self.prog} --help", file=sys.stderr)
+        sys.exit(2)
+
+
+def _parser(prog: str) -> _Parser:
+    parser = _Parser(prog=prog, description=__doc__, allow_abbrev=False)
+    add = parser.add_argument
+    add("model", metavar="MODEL", help="built-in name, JSON model or coefficient CSV; or DATA.csv alone, before a fit")
+    add("data", metavar="DATA.csv", nargs="?", help="samples to set beside a model")
+    add(
+        "-o",
+        "--output",
+        metavar="REPORT",
+        default="-",
+        help="where it goes: .md, .html, .pdf or .json; - is standard output",
+    )
+    add("-w", "--wavelength", metavar="NM[,NM...]", type=_numbers, help="wavelengths to report on")
+    add(
+        "-i",
+        "--incident",
+        "--theta-i",
+        dest="theta_i",
+        metavar="DEG",
+        type=float,
+        default=45,
+        help="angle of incidence of the pictures of a model [45]",
+    )
+    add("--format", choices=tuple(dict.fromkeys(KINDS.values())), help="whatever the ending of REPORT")
+    add("--notation", choices=NOTATIONS, default="brackets", help="0.98412(32), or 0.98412 ± 0.00032 [brackets]")
+    add("--paper", choices=tuple(PAPERS), default="a4", help="of a PDF [a4]")
+    add("--columns", metavar="NAME=THEIRS[,...]", type=_columns, default={}, help="of DATA.csv that have other names")
+    add(
+        "--skip-incomplete",
+        action="store_true",
+        help="pass over rows with NA or NaN, or without an angle or wavelength",
+    )
+    add(
+        "--frame",
+        choices=("xy", "sp", "scattering_plane"),
+        help="of the matrices of DATA.csv [xy; sp of f_ss ... f_pp]",
+    )
+    add("--convention", default="germer2017", help="signs of their Stokes vectors [germer2017]")
+    add("--made-by", default="", help=argparse.SUPPRESS)
+    return parser
+
+
+def _opened(name: str, options: argparse.Namespace) -> Model | Dataset:
+    """Of a model or of samples, whose table is read as the options say."""
+    if name in materials():
+        return material(name)
+    if not _holds_samples(name):
+        return load(name)
+    return read_samples(
+        name,
+        columns=options.columns,
+        skip_incomplete=options.skip_incomplete,
+        frame=options.frame,
+        convention=options.convention,
+    )
+
+
+def _source_of(options: argparse.Namespace, command: str) -> Source:
+    model = _opened(options.model, options)
     if isinstance(model, Dataset) and options.data is None:
-        return _samples_page(model, Path(options.model).name, options.wavelength, options.model)
-    data = load(options.data) if options.data else None
+        source = Source(None, model, "", Path(options.model).name, options.wavelength, data_file=options.model)
+        return source._replace(command=command)
+    data = _opened(options.data, options) if options.data else None
     for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
         if thing is not None and not isinstance(thing, kind):
-            raise ValueError(f"{name}: expected a {kind.__name__.lower()}")
-    names = {"name": Path(options.model).name, "data_name": Path(options.data or "").name}
-    return page(model, data, wavelength_nm=options.wavelength, theta_i_deg=options.theta_i, **names)
+            raise ValueError(f"{name}: expected {'a model' if kind is Model else 'samples'}")
+    assert isinstance(model, Model) and not isinstance(data, Model)
+    names = Path(options.model).name, Path(options.data or "").name
+    return Source(model, data, *names, options.wavelength, options.theta_i, options.model, options.data, command)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """python3 -m mmbrdf.report"""
-    parser = argparse.ArgumentParser(prog="python3 -m mmbrdf.report", description=__doc__)
-    parser.add_argument(
-        "model",
-        metavar="MODEL",
-        help="built-in name, JSON model or coefficient CSV; or DATA.csv alone, before it is fitted",
-    )
-    parser.add_argument("data", metavar="DATA.csv", nargs="?", help="samples to set beside a model")
-    parser.add_argument("-o", "--output", metavar="REPORT.html", required=True, help="where the page goes")
-    parser.add_argument("-w", "--wavelength", metavar="NM", type=float, nargs="+", help="wavelengths to report on")
-    parser.add_argument(
-        "--theta-i", metavar="DEG", type=float, default=45, help="angle of incidence of the pictures of a model [45]"
-    )
-    options = parser.parse_args(arguments)
-    built_in = options.model in materials()
+def _command(prog: str, words: Sequence[str], paths: Sequence[str | None]) -> str:
+    """As one would type it, with the folders left out of these paths."""
+    shown = []
+    for word in words:
+        path = next((each for each in paths if each and word.endswith(each)), None)
+        shown.append(word if path is None else word[: len(word) - len(path)] + Path(path).name)
+    return f"{prog} {shlex.join(shown)}"
+
+
+def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.report") -> int:
+    """python3 -m mmbrdf.report. Exit status: 0, 1 for bad input, 2 for wrong usage."""
+    parser = _parser(prog)
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    options = parser.parse_args(words)
+    output, there = options.output, options.output != "-"
+    if not there and options.format is None:
+        options.format = "markdown"
     try:
-        _require_kept(options.output, [options.data] if built_in else [options.model, options.data])
-        write(options.output, _page_of(options))
+        kind = kind_of(output, options.format)
+    except ValueError as error:
+        parser.error(f"--output {error}, or --format")
+    built_in = options.model in materials()
+    own = "mmbrdf" if options.made_by else parser.prog
+    command = options.made_by or _command(prog, words, [options.model, options.data, output])
+    try:
+        _require_kept(output, [options.data] if built_in else [options.model, options.data])
+        report = made(_source_of(options, command), kind, Look(options.notation, options.paper))
+        if there:
+            write(output, report)
+        else:
+            sys.stdout.buffer.write(report if isinstance(report, bytes) else report.encode())
+            sys.stdout.flush()
+    except ImportError as error:
+        print(f"{own}: a report with pictures needs matplotlib: {error}", file=sys.stderr)
+        return 1
     except (OSError, ValueError) as error:
-        print(f"{parser.prog}: {error}", file=sys.stderr)
+        print(f"{own}: {error}", file=sys.stderr)
         return 1
     return 0

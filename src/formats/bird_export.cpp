@@ -2,10 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -15,6 +13,7 @@
 #include "formats/bird.hpp"
 #include "formats/export_table.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/text/date.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "text/json_text.hpp"
 #include "text/numbers.hpp"
@@ -165,31 +164,6 @@ BirdValues values_at(const Model& model, double wavelength, const std::vector<St
   return result;
 }
 
-/// Now, or at SOURCE_DATE_EPOCH, as those who build reproducibly set it; in UTC: "2026-11-30T00:20:00+00:00".
-std::string timestamp() {
-  namespace chrono = std::chrono;
-  auto at = chrono::floor<chrono::seconds>(chrono::system_clock::now());
-  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    double seconds = -1;
-    try {
-      seconds = parse_number(epoch);
-    } catch (const std::invalid_argument&) {  // said below
-    }
-    if (!(seconds >= 0 && seconds < 253402300800.0) || seconds != std::floor(seconds))
-      throw std::invalid_argument("SOURCE_DATE_EPOCH = " + in_quotes(epoch) + ": must be whole seconds since 1970");
-    at = chrono::sys_seconds(chrono::seconds(static_cast<long>(seconds)));
-  }
-  const auto day = chrono::floor<chrono::days>(at);
-  const chrono::year_month_day date(day);
-  const chrono::hh_mm_ss time(at - day);
-  std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02ld:%02ld:%02ld+00:00", static_cast<int>(date.year()),
-                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                static_cast<long>(time.hours().count()), static_cast<long>(time.minutes().count()),
-                static_cast<long>(time.seconds().count()));
-  return text.data();
-}
-
 /// A UUID that differs where values, model or time do (RFC 9562, version 8).
 std::string identifier(const std::vector<BirdValues>& all, const std::string& text) {
   std::array<std::uint64_t, 2> hash{14695981039346656037U, 1099511628211U};
@@ -245,7 +219,7 @@ ordered_json sample_of(const std::string& name, bool turns_matter) {
 
 /// What the schema requires; it has no word but text for what is not known.
 ordered_json metadata(const Model& model, bool turns_matter, const std::vector<BirdValues>& all) {
-  const std::string name = model.name.empty() ? not_stated : printable(model.name, 200), time = timestamp();
+  const std::string name = model.name.empty() ? not_stated : printable(model.name, 200), time = utc_timestamp();
   ordered_json provenance = ordered_json::object();
   for (const auto& [key, text] : model.provenance) provenance[key] = text;
   return {{"schema", bird_schema},

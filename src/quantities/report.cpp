@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "mmbrdf/mixed/sample_traits.hpp"
-#include "mmbrdf/model/prepared.hpp"
-#include "mmbrdf/radiometry/reflectance.hpp"
+#include "mmbrdf/quantities/answer.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "quantities/report_fields.hpp"
@@ -19,22 +18,11 @@
 namespace mmbrdf {
 namespace {
 
-struct Reported {
-  const Model& model;
-  const std::string& name;
-  std::vector<double> wavelengths;  // to report on
-  bool known_wavelengths;           // no: there is one, and it stands for a wavelength that nobody has said
-};
-
-std::string in_words(const Reported& reported, double wavelength) {
+std::string in_words(const ReportSubject& reported, double wavelength) {
   return reported.known_wavelengths ? nm(wavelength) : "its wavelength";
 }
 
-Json wavelength_json(const Reported& reported, double wavelength) {
-  return reported.known_wavelengths ? Json(nanometres(wavelength)) : Json(nullptr);
-}
-
-Warnings range_warnings(const Reported& reported) {
+Warnings range_warnings(const ReportSubject& reported) {
   const Model& model = reported.model;
   Warnings warnings;
   if (std::string line = unknown_range_line(reported.name, model.validity); !line.empty()) warnings.push_back(line);
@@ -56,11 +44,21 @@ Warnings range_warnings(const Reported& reported) {
   return warnings;
 }
 
-Json model_json(const Reported& reported) {
+Warnings range_notes(const ReportSubject& reported) {
+  Warnings notes;
+  for (const double wavelength : reported.wavelengths)
+    if (outside(reported.model.validity, wavelength) & interpolated)
+      notes.push_back(nm(wavelength) + " lies between the fitted wavelengths " +
+                      nanometre_list(reported.model.validity.wavelengths) + ": what is said of it is interpolated");
+  return notes;
+}
+
+Json model_json(const ReportSubject& reported) {
   const Model& model = reported.model;
   Json json{{"name", model.name.empty() ? reported.name : model.name},
             {"basis", basis_line(model)},
             {"fitted range", fitted_range(model.validity)}};
+  if (model.not_measured.any()) json["not measured"] = not_measured_line(model.not_measured);
   const ReflectanceTable& table = model.reflectance;
   if (!table.values.empty())
     json["reflectance table"] =
@@ -100,74 +98,67 @@ std::vector<double> polar_limits(const Validity& validity) {
   return fitted < radians(90) ? std::vector{fitted, radians(90)} : std::vector{fitted};
 }
 
-Warnings unphysical(const ModelDiagnostics& d, const std::string& wavelength) {
-  const bool fitted = d.theta_max < radians(90);
+Warnings unphysical(const ModelDiagnostics& d, const std::string& wavelength, bool fitted) {
   const std::string where = (fitted ? "within the fitted angles at " : "up to the horizon at ") + wavelength;
   Warnings warnings;
   if (d.unrealizable > 0)
     warnings.push_back(std::to_string(d.unrealizable) + " of " + std::to_string(d.geometries) + " matrices " + where +
-                       " cannot exist; the smallest eigenvalue / f11 is " + rounded(d.margin.value, 3) + " at " +
+                       " cannot exist; the smallest eigenvalue / f11 is " + rounded(d.margin.value, 2) + " at " +
                        at(d.margin.geometry));
   if (std::string line = not_positive_line(d, where); !line.empty()) warnings.push_back(line);
   if (std::string line = energy_line(d, where); fitted && !line.empty()) warnings.push_back(line);
   return warnings;
 }
 
-ReportField realizability(const Reported& reported) {
+/// Standard uncertainties of the extremes of a model, null where they are not known.
+struct ExtremesUncertainty {
+  Json margin, f11, dhr;
+};
+
+ExtremesUncertainty uncertainty_of_extremes(const ReportSubject& reported, const ModelDiagnostics& d) {
+  const Model& model = reported.model;
+  if (!knows_uncertainty(model)) return {};
+  const UncertainModel u = uncertain(model, d.wavelength);
+  ExtremesUncertainty result;
+  result.f11 = u.fit.standard_uncertainty(d.f11.geometry)(0, 0);
+  result.dhr = standard_uncertainty(directional_hemispherical_budget(u, {d.dhr_theta_i, 0}));
+  if (!d.whole) return result;
+  for (const Answered& one : Answers(model, {.parts = false}).at(d.wavelength).at(d.margin.geometry).quantities)
+    if (one.quantity->name == "eigenvalue_min" && one.uncertainty) result.margin = *one.uncertainty;
+  return result;
+}
+
+/// What is beyond a known range of angles is only to be noted: nothing was measured there.
+ReportField realizability(const ReportSubject& reported) {
   ReportField field;
+  const double fitted = fitted_theta_max(reported.model.validity);
   for (const double wavelength : reported.wavelengths)
     for (const double theta_max : polar_limits(reported.model.validity)) {
       const ModelDiagnostics d = model_diagnostics(reported.model, wavelength, theta_max);
-      field.value.push_back({{"wavelength_nm", wavelength_json(reported, wavelength)},
+      const ExtremesUncertainty u = uncertainty_of_extremes(reported, d);
+      field.value.push_back({{"wavelength_nm", reported.wavelength_json(wavelength)},
                              {"theta_max_deg", degrees(theta_max)},
                              {"geometries", d.geometries},
                              {"unrealizable", d.whole ? Json(d.unrealizable) : Json(nullptr)},
                              {"smallest_margin", d.whole ? Json(d.margin.value) : Json(nullptr)},
+                             {"u_margin", u.margin},
                              {"margin_at", d.whole ? Json(at(d.margin.geometry)) : Json(nullptr)},
                              {"f11_not_positive", d.not_positive_f11},
                              {"smallest_f11", d.f11.value},
+                             {"u_smallest_f11", u.f11},
                              {"largest_dhr", d.dhr},
+                             {"u_largest_dhr", u.dhr},
                              {"dhr_at_theta_i_deg", degrees(d.dhr_theta_i)}});
-      std::ranges::move(unphysical(d, in_words(reported, wavelength)), std::back_inserter(field.warnings));
+      const Warnings found = unphysical(d, in_words(reported, wavelength), theta_max < radians(90));
+      std::ranges::copy(found, std::back_inserter(theta_max > fitted ? field.notes : field.warnings));
     }
   return field;
 }
 
-/// Quantities at one wavelength, each with its uncertainty where there is a covariance.
-void add_reflectances(Json& rows, const Reported& reported, double wavelength) {
-  const Model& model = reported.model;
-  std::optional<UncertainModel> u;
-  if (knows_uncertainty(model)) u = uncertain(model, wavelength);
-  const auto add = [&](const std::string& quantity, double value, auto uncertainty) {
-    rows.push_back({{"wavelength_nm", wavelength_json(reported, wavelength)},
-                    {"quantity", quantity},
-                    {"value", value},
-                    {"u", u ? Json(uncertainty()) : Json(nullptr)}});
-  };
-  for (const int theta : {0, 8, 45, 60, 75}) {
-    const Direction incident{radians(theta), 0};
-    add("dhr, theta_i " + std::to_string(theta), directional_hemispherical_reflectance(model, wavelength, incident),
-        [&] { return standard_uncertainty(directional_hemispherical_budget(*u, incident)); });
-  }
-  add("bhr", bihemispherical_reflectance(model, wavelength),
-      [&] { return standard_uncertainty(bihemispherical_budget(*u)); });
-  const PreparedModel prepared = prepare(model, wavelength);
-  for (const auto& [name, geometry] : {std::pair("0:45", Geometry{{0, 0}, {radians(45), radians(180)}}),
-                                       std::pair("45:0", Geometry{{radians(45), 0}, {0, 0}})})
-    add(std::string("reflectance factor ") + name, reflectance_factor(prepared.f11(geometry)),
-        [&, &place = geometry] { return reflectance_factor(u->fit.standard_uncertainty(place)(0, 0)); });
-}
-
-Json reflectances(const Reported& reported) {
-  Json rows = Json::array();
-  for (const double wavelength : reported.wavelengths) add_reflectances(rows, reported, wavelength);
-  return rows;
-}
-
 /// Throws unless there is something to report on.
-Reported reported(const Model& model, const std::string& name, std::span<const double> wavelengths) {
+ReportSubject reported(const Model& model, const std::string& name, std::span<const double> wavelengths) {
   require_valid(model);
-  Reported result{
+  ReportSubject result{
       model, name, {wavelengths.begin(), wavelengths.end()}, !wavelengths.empty() || knows_wavelength(model)};
   if (wavelengths.empty()) result.wavelengths = known_wavelengths(model);
   if (result.wavelengths.empty())
@@ -180,13 +171,13 @@ Reported reported(const Model& model, const std::string& name, std::span<const d
 
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths,
                         const std::optional<ReportedSamples>& samples) {
-  const Reported what = reported(model, name, wavelengths);
-  Json report{{"title", "Report on " + name}, {"warnings", range_warnings(what)}};
+  const ReportSubject what = reported(model, name, wavelengths);
+  Json report{{"title", "Report on " + name}, {"warnings", range_warnings(what)}, {"notes", range_notes(what)}};
   report["model"] = model_json(what);
   report["fit"] = fit_json(model);
   if (model.posterior) report["sample"] = sample_json(*model.posterior);
   add(report, "realizability", realizability(what));
-  report["reflectances"] = reflectances(what);
+  add_reflectances(report, what);
   if (samples) add_samples(report, model, *samples);
   return report.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

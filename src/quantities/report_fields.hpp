@@ -16,10 +16,22 @@ namespace mmbrdf {
 using Json = nlohmann::ordered_json;
 using Warnings = std::vector<std::string>;
 
-/// A field of the report, and what there is to warn of in it.
+/// A field of the report, what there is to warn of in it, and what is only to be noted.
 struct ReportField {
   Json value = Json::array();
-  Warnings warnings{};
+  Warnings warnings{}, notes{};
+};
+
+/// What is reported on.
+struct ReportSubject {
+  const Model& model;
+  const std::string& name;
+  std::vector<double> wavelengths;  // micrometres
+  bool known_wavelengths;           // no: there is one, and it stands for a wavelength that nobody has said
+
+  Json wavelength_json(double wavelength) const {
+    return known_wavelengths ? Json(nanometres(wavelength)) : Json(nullptr);
+  }
 };
 
 inline std::string at(const Geometry& geometry) { return place_line(geometry); }
@@ -33,7 +45,11 @@ inline std::string nm(double wavelength) { return nanometre_list(std::array{wave
 inline void add(Json& report, const std::string& name, ReportField field) {
   report[name] = std::move(field.value);
   for (std::string& warning : field.warnings) report["warnings"].push_back(std::move(warning));
+  for (std::string& note : field.notes) report["notes"].push_back(std::move(note));
 }
+
+/// The fields uncertainty, reflectances and budgets.
+void add_reflectances(Json& report, const ReportSubject& subject);
 
 /// All that samples say of a model, and of themselves.
 void add_samples(Json& report, const Model& model, const ReportedSamples& data);

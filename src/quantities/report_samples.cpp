@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/fitting/leverage.hpp"
@@ -89,7 +91,7 @@ ReportField noise(const Model& model, std::span<const Sample> samples) {
                              {"exponent_cos_theta_r", law.reflected_exponent},
                              {"u_exponent_r", std::sqrt(covariance[8])}});
     } catch (const std::invalid_argument& error) {
-      field.warnings.push_back("the law of the noise at " + nm(wavelength) + " is not known: " + error.what());
+      field.notes.push_back("the law of the noise at " + nm(wavelength) + " is not known: " + error.what());
     }
   }
   return field;
@@ -184,10 +186,55 @@ ReportField repeats(std::span<const Sample> samples, const FitResult& fitted) {
   return field;
 }
 
+/// Azimuth and polar angle of a source in tenths of degrees, as pictures of samples tell them apart; without an azimuth near
+/// the normal.
+constexpr double normal_deg = 0.2, same_azimuth_deg = 0.4;
+double tenths(double angle) { return std::round(10 * degrees(angle)) / 10; }
+double azimuth_of(const Sample& s) {
+  const double phi = std::fmod(tenths(s.geometry.incident.phi), 360);
+  return phi < 0 ? phi + 360 : phi;
+}
+
+/// Angles of incidence of the samples from one azimuth.
+std::vector<double> incidence_angles(std::span<const Sample> samples, double phi_deg) {
+  std::set<double> angles;
+  for (const Sample& s : samples) {
+    const double turn = std::remainder(degrees(s.geometry.incident.phi) - phi_deg, 360);
+    if (std::abs(turn) < same_azimuth_deg || degrees(s.geometry.incident.theta) < normal_deg)
+      angles.insert(tenths(s.geometry.incident.theta));
+  }
+  const std::vector<double> all(angles.begin(), angles.end());
+  if (all.empty()) return {};
+  const std::set<double> shown{all.front(), all[all.size() / 2], all.back()};
+  return {shown.begin(), shown.end()};
+}
+
+/// Which directions pictures show.
+Json directions_json(std::span<const Sample> samples) {
+  constexpr std::size_t many = 50;
+  constexpr double from_the_left = 180;
+  std::set<std::array<double, 3>> sources;
+  std::map<double, int> azimuths;
+  for (const Sample& s : samples) {
+    sources.insert({s.wavelength, tenths(s.geometry.incident.theta), azimuth_of(s)});
+    if (degrees(s.geometry.incident.theta) >= normal_deg) ++azimuths[azimuth_of(s)];
+  }
+  const std::vector<double> measured = wavelengths(samples);
+  const bool grid = samples.size() >= many * sources.size();
+  const auto most = std::ranges::max_element(azimuths, {}, [](const auto& one) { return one.second; });
+  const double phi = grid && most != azimuths.end() ? most->first : from_the_left;
+  Json json{{"wavelengths_nm", Json::array()}, {"grid", grid}, {"phi_i_deg", phi}};
+  for (const double one : measured) json["wavelengths_nm"].push_back(nanometres(one));
+  const double middle = measured[(measured.size() - 1) / 2];
+  json["theta_i_deg"] = incidence_angles(at_wavelengths(samples, std::array{middle}), phi);
+  return json;
+}
+
 }  // namespace
 
 void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
   add(report, "data", data_field(model, data));
+  report["directions"] = directions_json(data.samples);
   const Comparison compared = compare(model, data.samples);
   ReportField differences{residuals_json(compared)};
   if (compared.dark > 0) differences.warnings.push_back(dark_line(compared));

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "mmbrdf/model/description.hpp"
@@ -113,6 +114,13 @@ std::string usual_causes(double dhr) {
   if (dhr > 10) return "is f11, or a reflectance that was given, in percent?";
   if (dhr > 2) return "is f11 multiplied by pi, or are the matrices divided by their element 11?";
   return "is the scale of f11 right?";
+}
+
+/// Whether one of the errors of a posterior from `first` to `end` has a size.
+bool declares(const Model& model, std::size_t first, std::size_t end) {
+  if (!model.posterior) return false;
+  const std::span<const SharedError> errors(model.posterior->data().errors);
+  return std::ranges::any_of(errors.subspan(first, end - first), [](const SharedError& e) { return e.size > 0; });
 }
 
 }  // namespace
@@ -223,6 +231,27 @@ std::string energy_line(const F11Diagnostics& found, const std::string& where) {
 std::string place_line(const Geometry& g) {
   return "theta_i " + rounded(degrees(g.incident.theta), 4) + ", theta_r " + rounded(degrees(g.reflected.theta), 4) +
          ", phi_r - phi_i " + rounded(std::remainder(degrees(g.reflected.phi - g.incident.phi), 360), 4) + " degrees";
+}
+
+std::string uncertain_of(const Model& model) {
+  const bool instrument = model.provenance.contains("instrument"),
+             certificate = model.provenance.contains("certificate");
+  return std::string(model.posterior
+                         ? declares(model, 0, declared_errors) ? "the sample with declared errors" : "the sample"
+                         : "the fit") +
+         (instrument ? certificate ? ", its instrument" : " and its instrument" : "") +
+         (certificate ? " and its certificate" : "");
+}
+
+std::string missing_from_uncertainty(const Model& model) {
+  std::vector<std::string> missing;
+  if (!model.provenance.contains("certificate") && !declares(model, 0, 1)) missing.emplace_back("scale");
+  if (!declares(model, 1, declared_errors)) missing.emplace_back("angles");
+  if (!model.posterior) missing.emplace_back("sample");
+  std::string text;
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < missing.size() ? ", " : " and ") + missing[i];
+  return text + (missing.empty() ? "" : missing.size() == 1 ? " is not in it" : " are not in it");
 }
 
 }  // namespace mmbrdf

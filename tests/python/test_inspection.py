@@ -248,7 +248,8 @@ def test_the_page_says_what_the_program_says(faulty, tmp_path, program):
         assert line[13:] in text
 
 
-def test_the_page_of_samples_without_a_fault_has_the_verdict_and_three_pictures(samples):
+def test_the_page_of_samples_without_a_fault_has_the_verdict_and_three_pictures(samples, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
     page = _report.page(None, samples, data_name="d.csv")
     assert mmbrdf.inspect(samples).verdict in shown(page)
     assert len(re.findall('src="data:image/png', page)) == 3
@@ -303,7 +304,7 @@ def test_a_file_of_samples_alone_makes_the_page(samples, tmp_path):
         (("bad.csv", "-o", "other.html"), "bad.csv:1: no column theta_r_deg"),
         (("d.csv", "d.csv", "-o", "other.html"), "d.csv: expected a model"),
         (("d.csv", "-w", "633", "-o", "other.html"), "633"),
-        (("d.csv", "-o", "d.csv"), "would overwrite"),
+        (("d.csv", "-o", "d.csv", "--format", "html"), "would overwrite"),
     ):
         done = run_module(*arguments, folder=tmp_path)
         assert done.returncode == 1 and message in done.stderr and done.stderr.count("\n") == 1

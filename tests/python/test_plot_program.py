@@ -33,8 +33,9 @@ def called(text):
 
 KINDS = {
     "anisotropy": "ptfe",
+    "by-wavelength": "ptfe -w 351 532 -i 30",
     "calibration": "instrument.json references.csv --film 1.4607,1.0,4.15,0.044",
-    "coefficient-spectrum": "model.json",
+    "coefficient-spectrum": "ptfe --power 1",
     "depolarization-map": "ptfe -w 532 -i 60",
     "directions": "data.csv",
     "hemisphere": "data.csv -i 60 --scale paper",
@@ -47,6 +48,7 @@ KINDS = {
     "reflectance-against-wavelength": "ptfe -w 400 500 -i 8 45",
     "reflectance-factor": "ptfe -w 351 532 --view 0,0 --view 30,180 --term scale=0.3% --coverage 1",
     "residual-map": "model.json data.csv -i 60",
+    "residuals": "model.json data.csv",
     "suspicious": "data.csv",
     "uncertainty-parts": "ptfe -w 532 --quantity f_ss --term calibration=0.001",
 }

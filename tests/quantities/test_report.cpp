@@ -34,10 +34,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array green{0.532};
 
-const std::vector<std::string> of_the_model{"title", "warnings", "model", "fit", "realizability", "reflectances"};
-const std::vector<std::string> of_samples{
-    "data",  "residuals", "chi_squared", "conventions", "reciprocity", "mirror_symmetry", "dependence_on_phi_i",
-    "noise", "repeats",   "leverage",    "outliers"};
+const std::vector<std::string> of_the_model{"title",         "warnings",    "notes",        "model",  "fit",
+                                            "realizability", "uncertainty", "reflectances", "budgets"};
+const std::vector<std::string> of_samples{"data",        "directions",  "residuals",       "chi_squared",
+                                          "conventions", "reciprocity", "mirror_symmetry", "dependence_on_phi_i",
+                                          "noise",       "repeats",     "leverage",        "outliers"};
 
 std::vector<std::string> names(const Json& object) {
   std::vector<std::string> result;
@@ -59,10 +60,11 @@ std::vector<Sample> measured(const Model& model, int count = 300) {
 }
 
 /// Whether one of the warnings begins so.
-bool warns(const Json& report, const std::string& beginning) {
-  return std::ranges::any_of(report["warnings"],
-                             [&](const Json& line) { return line.get<std::string>().starts_with(beginning); });
+bool says(const Json& lines, const std::string& beginning) {
+  return std::ranges::any_of(lines, [&](const Json& line) { return line.get<std::string>().starts_with(beginning); });
 }
+bool warns(const Json& report, const std::string& beginning) { return says(report["warnings"], beginning); }
+bool notes(const Json& report, const std::string& beginning) { return says(report["notes"], beginning); }
 
 /// A small fit of what was measured, so that it has all there is to report on.
 Model fitted(std::span<const Sample> samples) { return fit(samples, {Family::isotropic, {4, 2}}).model; }
@@ -75,10 +77,10 @@ TEST(Report, HasItsFieldsInOrder) {
   std::vector<std::string> all = of_the_model;
   all.insert(all.end(), of_samples.begin(), of_samples.end());
   EXPECT_EQ(names(beside), all);
-  for (const char* name : {"title", "model", "fit", "realizability", "reflectances"})
+  for (const char* name : {"title", "model", "fit", "realizability", "uncertainty", "reflectances", "budgets"})
     EXPECT_EQ(alone[name], beside[name]) << name;
   for (const auto& [name, rows] : beside.items()) {
-    if (!rows.is_array() || name == "warnings") continue;
+    if (!rows.is_array() || name == "warnings" || name == "notes") continue;
     for (const Json& row : rows) EXPECT_EQ(names(row), names(rows.front())) << name;
   }
   EXPECT_EQ(beside["residuals"].size(), 17U);
@@ -225,6 +227,67 @@ TEST(Report, WarnsOfAModelThatIsNotPhysical) {
   EXPECT_TRUE(warns(report(model), "f11 is not positive at 27225 of 27225 directions within the fitted angles"));
 }
 
+TEST(Report, OnlyNotesWhatIsWrongBeyondTheFittedRange) {
+  std::vector<Sample> samples = simulate(diffuser({0.3}), green, random_geometries(300, 3));
+  const auto square = [](double x) { return x * x; };
+  for (Sample& s : samples)  // negative far from the normal
+    s.f11 -= 0.25 * (square(std::sin(s.geometry.incident.theta)) + square(std::sin(s.geometry.reflected.theta)));
+  Model model = fit(samples, {Family::isotropic, {4, 0}}).model;
+  model.validity = {{0.532}, radians(30), radians(30)};
+  const Json json = report(model);
+  ASSERT_EQ(json["realizability"][0]["f11_not_positive"], 0);
+  ASSERT_GT(json["realizability"][1]["f11_not_positive"], 0);
+  EXPECT_FALSE(warns(json, "f11 is not positive"));
+  EXPECT_TRUE(notes(json, "f11 is not positive at "));
+  model.validity = {};
+  EXPECT_TRUE(warns(report(model), "f11 is not positive at "));  // who knows what was fitted
+}
+
+TEST(Report, NotesWavelengthsBetweenThoseOfTheFit) {
+  const Json json = report(least_squares("ptfe"), std::array{0.443});
+  EXPECT_TRUE(notes(json, "443 nm lies between the fitted wavelengths 351, 532, 633, 1064 nm"));
+  EXPECT_EQ(json["reflectances"][0]["validity"], "interpolated");
+}
+
+TEST(Report, HasBudgetsWhoseCausesMakeTheUncertainty) {
+  const Json json = report(material("ptfe-532"));
+  ASSERT_FALSE(json["budgets"].empty());
+  for (const char* quantity : {"dhr, theta_i 8", "reflectance factor 0:45"}) {
+    double sum = 0, together = 0, u = 0;
+    for (const Json& row : json["budgets"]) {
+      if (row["quantity"] != quantity) continue;
+      if (row["cause"] != "together") {
+        sum += std::pow(row["u"].get<double>(), 2);
+        EXPECT_TRUE(row["U"].is_null());
+        continue;
+      }
+      together = row["u"];
+      EXPECT_EQ(row["U"].get<double>(), reported_coverage * together);
+    }
+    for (const Json& row : json["reflectances"])
+      if (row["quantity"] == quantity) u = row["u"];
+    EXPECT_GT(u, 0);
+    EXPECT_DOUBLE_EQ(together, std::sqrt(sum));
+    EXPECT_NEAR(together, u, 1e-12 * u);  // the same sum in another frame
+  }
+  Model without = least_squares("ptfe-532");
+  without.blocks[0].covariance.clear();
+  EXPECT_EQ(report(without)["budgets"], Json::array());
+  EXPECT_EQ(report(without)["uncertainty"], "not known");
+}
+
+TEST(Report, SaysWhichDirectionsPicturesHave) {
+  const Model model = least_squares("ptfe-532");
+  std::vector<Sample> samples = simulate(model, green, germer2017_grid());
+  const Json grid = report(model, samples)["directions"];
+  EXPECT_EQ(grid["grid"], true);
+  EXPECT_EQ(grid["phi_i_deg"], degrees(samples.back().geometry.incident.phi));
+  EXPECT_EQ(grid["theta_i_deg"].size(), 3U);
+  const Json random = report(model, measured(model))["directions"];
+  EXPECT_EQ(random["grid"], false);
+  EXPECT_EQ(random["phi_i_deg"], 180);
+}
+
 TEST(Report, WarnsOfWhatIsNotKnown) {
   const Model model = least_squares("ptfe-532");
   EXPECT_TRUE(warns(report(model, std::array{0.6}), "600 nm lies outside the fitted range"));
@@ -277,7 +340,7 @@ TEST(Report, WarnsOfSamplesBeyondTheRangeAndOfFewOfThem) {
   std::vector<Sample> samples = simulate(model, green, std::vector{in_degrees(80, 0, 10, 0), in_degrees(30, 0, 20, 9)});
   const Json json = report(model, samples);
   EXPECT_TRUE(warns(json, "1 of 2 samples lies outside the fitted range"));
-  EXPECT_TRUE(warns(json, "the law of the noise at 532 nm is not known: "));
+  EXPECT_TRUE(notes(json, "the law of the noise at 532 nm is not known: "));
   EXPECT_EQ(json["noise"], Json::array());
   EXPECT_TRUE(warns(json, "sample 1 decides block 11 almost alone where it is: its leverage is 1.00"));
 }

@@ -120,7 +120,7 @@ constexpr const char* footer =
     "Of\n"
     "these it says which could not be seen in such data, and why. mmbrdf fit warns of most. Ends with the command that "
     "fits\n"
-    "the file. The same with pictures: python3 -m mmbrdf.report DATA.csv -o PAGE.html\n"
+    "the file. The same with pictures: mmbrdf report DATA.csv -o PAGE.html or .pdf\n"
     "\n"
     "Example:\n"
     "  mmbrdf inspect data.csv";

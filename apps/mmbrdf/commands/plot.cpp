@@ -1,46 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // mmbrdf plot: a picture of a model or of samples, drawn by the Python package.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <iostream>
-#include <stdexcept>
 
 #include "command.hpp"
 #include "options/option.hpp"
+#include "streams/python.hpp"
 
 namespace mmbrdf::program {
 
 namespace {
-
-/// Python's interpreter, and after it whatever draws the picture, or says in a line why there is none.
-constexpr const char* program_of_python =
-    "import sys\n"
-    "try:\n"
-    "    from mmbrdf.plot.__main__ import main\n"
-    "except ImportError as error:\n"
-    "    sys.exit(f'mmbrdf: plot needs the Python package mmbrdf and matplotlib: {error}')\n"
-    "sys.exit(main(prog='mmbrdf plot'))\n";
-
-/// Becomes Python's interpreter; throws std::runtime_error where there is none.
-[[noreturn]] void become_python(const std::vector<std::string>& words) {
-  const char* chosen = std::getenv("MMBRDF_PYTHON");
-  const std::string interpreter = chosen != nullptr && *chosen != '\0' ? chosen : "python3";
-  std::vector<std::string> arguments = {interpreter, "-c", program_of_python};
-  arguments.insert(arguments.end(), words.begin(), words.end());
-  std::vector<char*> pointers;
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
-  std::cout.flush();
-  ::execvp(pointers.front(), pointers.data());
-  throw std::runtime_error("plot is drawn by Python: " + interpreter + ": " + std::strerror(errno) +
-                           "; MMBRDF_PYTHON names another interpreter");
-}
 
 constexpr const char* footer =
     "mmbrdf plot KIND MODEL [DATA.csv] -o FILE.pdf|.png|.svg [options]\n"
@@ -48,8 +18,9 @@ constexpr const char* footer =
     "Python draws it, with the package mmbrdf and matplotlib; MMBRDF_PYTHON names the interpreter [python3]. KIND is "
     "a\n"
     "function of mmbrdf.plot: hemisphere, map, residual-map, in-plane-curves, polar-in-plane, reflectance-factor,\n"
-    "reflectance-against-angle, reflectance-against-wavelength, uncertainty-parts, anisotropy, coefficient-spectrum,\n"
-    "depolarization-map, realizability-map, directions, suspicious, low-order-residuals or calibration.\n"
+    "reflectance-against-angle, reflectance-against-wavelength, by-wavelength, uncertainty-parts, anisotropy,\n"
+    "coefficient-spectrum, depolarization-map, realizability-map, residuals, directions, suspicious,\n"
+    "low-order-residuals or calibration.\n"
     "mmbrdf plot map --help tells the options.\n"
     "\n"
     "Examples:\n"
@@ -67,7 +38,7 @@ Run plot_command(CLI::App& app, const CommandLine& line) {
   words.erase(words.begin(), own == words.end() ? own : own + 1);
   return [words] {
     if (words.empty()) throw missing("KIND");
-    become_python(words);
+    become_python("plot", "mmbrdf.plot.__main__", words);
   };
 }
 

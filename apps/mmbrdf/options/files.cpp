@@ -25,11 +25,6 @@ namespace mmbrdf::program {
 
 namespace {
 
-bool is_built_in(const std::string& name) {
-  const std::vector<std::string> names = materials();
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// A truncated coefficient file is a valid one, of fewer modes.
 void warn_of_missing_elements(const Model& model) {
   Elements there = model.not_measured;  // that is no surprise
@@ -80,6 +75,11 @@ std::string model_name(const std::string& text) {
 }  // namespace
 
 std::string base_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+bool is_built_in(const std::string& name) {
+  const std::vector<std::string> names = materials();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 Model open_model(const std::string& name) {
   if (!is_built_in(name) && !std::filesystem::exists(name))

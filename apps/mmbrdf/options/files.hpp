@@ -19,6 +19,9 @@ namespace mmbrdf::program {
 /// The last part of a path.
 std::string base_name(const std::string& path);
 
+/// Whether this is the name of a built-in model, which comes before a file of that name.
+bool is_built_in(const std::string& name);
+
 /// A built-in model, or one from a file. Warns of elements without modes.
 Model open_model(const std::string& name);
 

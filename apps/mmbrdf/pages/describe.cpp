@@ -90,38 +90,6 @@ nlohmann::ordered_json normal_reflectance_json(const Model& model) {
   return json;
 }
 
-namespace {
-
-/// Whether one of the errors of a posterior from `first` to `end` has a size.
-bool declares(const Model& model, std::size_t first, std::size_t end) {
-  if (!model.posterior) return false;
-  const std::span<const SharedError> errors(model.posterior->data().errors);
-  return std::ranges::any_of(errors.subspan(first, end - first), [](const SharedError& e) { return e.size > 0; });
-}
-
-}  // namespace
-
-std::string uncertain_of(const Model& model) {
-  const bool instrument = model.provenance.contains("instrument"),
-             certificate = model.provenance.contains("certificate");
-  return std::string(model.posterior
-                         ? declares(model, 0, declared_errors) ? "the sample with declared errors" : "the sample"
-                         : "the fit") +
-         (instrument ? certificate ? ", its instrument" : " and its instrument" : "") +
-         (certificate ? " and its certificate" : "");
-}
-
-std::string missing_from_uncertainty(const Model& model) {
-  std::vector<std::string> missing;
-  if (!model.provenance.contains("certificate") && !declares(model, 0, 1)) missing.emplace_back("scale");
-  if (!declares(model, 1, declared_errors)) missing.emplace_back("angles");
-  if (!model.posterior) missing.emplace_back("sample");
-  std::string text;
-  for (std::size_t i = 0; i < missing.size(); ++i)
-    text += (i == 0 ? "" : i + 1 < missing.size() ? ", " : " and ") + missing[i];
-  return text + (missing.empty() ? "" : missing.size() == 1 ? " is not in it" : " are not in it");
-}
-
 std::string uncertainty_line(const std::string& uncertain, const std::string& missing,
                              const std::vector<std::string>& terms) {
   const std::string start = "u: standard uncertainty of " + uncertain;

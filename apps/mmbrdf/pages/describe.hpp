@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mmbrdf/model/model.hpp"
+#include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
 namespace mmbrdf::program {
@@ -30,11 +31,6 @@ void warn_if_above_one(const Model& model, std::span<const double> wavelengths);
 /// Directional-hemispherical reflectance at normal incidence: "0.9751 +- 0.0031 at 351 nm, 0.9842 +- 0.0036 at 532 nm"
 std::string normal_reflectance_line(const Model& model);
 nlohmann::ordered_json normal_reflectance_json(const Model& model);
-
-/// What the uncertainties of a model hold: "the fit, its instrument and its certificate"
-std::string uncertain_of(const Model& model);
-/// "scale, angles and sample are not in it": what uncertainties of that leave out, as far as is known. Empty for nothing.
-std::string missing_from_uncertainty(const Model& model);
 
 /// "u: standard uncertainty of the fit alone; scale is not in it" and a line end, of those two; of the terms that were added.
 std::string uncertainty_line(const std::string& uncertain, const std::string& missing,

@@ -6,21 +6,31 @@
 /// object, and all rows of a field have the same names:
 ///
 ///   title                 "Report on" and the name that the model was called by
-///   warnings              sentences, without a full stop; none if there is nothing to be wary of
+///   warnings              sentences, without a full stop; none if there is nothing to be wary of within the fitted range
+///   notes                 the same of what is only to be noted: beyond that range, between wavelengths, not to be told
 ///   model                 name, basis and fitted range in words, reflectance table if there is one; then what the
 ///                         provenance says, with its own names, or "provenance: name" where one of those is taken
 ///   fit                   row by block: block, coefficients, rank, condition, covariance (true or false: known)
 ///   sample                of a posterior, row by wavelength and block: wavelength_nm, block, noise, once_per_turn,
 ///                         twice_per_turn, thrice_per_turn, nonreciprocal (sample_traits)
 ///   realizability         row by wavelength and largest polar angle, the fitted one where it is known and 90 degrees:
-///                         wavelength_nm, theta_max_deg, geometries, unrealizable, smallest_margin, margin_at,
-///                         f11_not_positive, smallest_f11, largest_dhr, dhr_at_theta_i_deg (model_diagnostics)
-///   reflectances          row by wavelength and quantity: wavelength_nm, quantity, value, u. Quantities are "dhr,
-///                         theta_i 0", 8, 45, 60 and 75 degrees, "bhr", "reflectance factor 0:45" and "… 45:0"
+///                         wavelength_nm, theta_max_deg, geometries, unrealizable, smallest_margin, u_margin, margin_at,
+///                         f11_not_positive, smallest_f11, u_smallest_f11, largest_dhr, u_largest_dhr,
+///                         dhr_at_theta_i_deg (model_diagnostics)
+///   uncertainty           what u holds, in words (uncertain_of), or "not known"
+///   reflectances          row by wavelength and quantity: wavelength_nm, quantity, value, u, validity (to_string(Outside)).
+///                         Quantities are "dhr, theta_i 0", 8, 45, 60 and 75 degrees, "bhr", "reflectance factor 0:45" and
+///                         "… 45:0"
+///   budgets               row by wavelength, quantity ("dhr, theta_i 8" and "reflectance factor 0:45") and cause, the last
+///                         "together": wavelength_nm, quantity, cause, u, degrees_of_freedom (null: infinite), U (of
+///                         "together" reported_coverage u, else null); none where u is not known
 ///
 /// and with samples also
 ///
 ///   data                  name, samples, wavelengths in words, and which of the following is of which model
+///   directions            for pictures: wavelengths_nm; grid, whether there are 50 samples or more for each direction of
+///                         the source; phi_i_deg, the azimuth of most sources if so, else 180; theta_i_deg, the smallest, a
+///                         middle and the largest angle of incidence there at the middle one of the wavelengths
 ///   residuals             samples − model: a row for f11 in sr⁻¹, one for f11 relative to f11, one for each of the 15
 ///                         other elements: element ("11" … "44"), unit ("sr^-1" or "f11"), rms, mean, largest,
 ///                         wavelength_nm, at (compare)
@@ -50,9 +60,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/samples/samples.hpp"
+#include "mmbrdf/text/notation.hpp"
 
 namespace mmbrdf {
 
@@ -67,6 +79,9 @@ inline constexpr double high_leverage = 0.5;
 inline constexpr double outlier_threshold = 5;
 inline constexpr std::size_t listed_outliers = 20;
 
+/// k of the expanded uncertainties of a report.
+inline constexpr double reported_coverage = 2;
+
 /// Samples to set beside a model, and what they are called.
 struct ReportedSamples {
   std::string name;
@@ -79,5 +94,43 @@ struct ReportedSamples {
 /// if there is no wavelength to report on, and for samples as compare(), symmetry_tests() and fit() do.
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths = {},
                         const std::optional<ReportedSamples>& samples = {});
+
+/// Where a report comes from: nothing of it is looked up.
+struct ReportOrigin {
+  struct File {
+    std::string what;    ///< "model", "data"
+    std::string name;    ///< without its folder
+    std::string sha256;  ///< empty: not known
+  };
+  std::string date, software, command;  ///< as they are to be printed; empty ones are left out
+  std::vector<File> files{};
+  std::string model = "MODEL", data = "DATA.csv";  ///< in the commands that draw its pictures: words of a shell
+};
+
+struct ReportStyle {
+  Notation notation = Notation::brackets;
+  double theta_i_deg = 45;  ///< of the pictures of the model
+};
+
+/// The report as a document for people, as JSON text: title, and blocks one behind the other, each an object with its
+/// kind and
+///
+///   summary     subject, text: the first sentence
+///   warnings    lines: sentences, none if there is nothing to be wary of
+///   notes       the same, of what lies beyond the fitted range or could not be told
+///   contents    here stands a list of the headings; lines is empty
+///   heading     text, anchor: the name of a link to it
+///   paragraph   text
+///   table       number, caption, columns (heading, align: "left" or "right"), rows of as many texts, perhaps remark
+///   figure      number, caption, plot: a kind of `mmbrdf plot`, of_data: whether it takes the samples too, arguments as
+///               mmbrdf.plot has them, width_cm, and command, which draws it
+///
+/// Numbers are text, with no more digits than their uncertainties leave (notation.hpp). `report_json` is what
+/// report_json() gave of the same model. All text may hold what others wrote: it is no markup.
+std::string report_document(const Model& model, const std::string& report_json, const ReportOrigin& origin = {},
+                            const ReportStyle& style = {});
+
+/// Such a document as Markdown (GitHub's, for its tables); pictures are the commands that draw them.
+std::string report_markdown(const std::string& document);
 
 }  // namespace mmbrdf

@@ -72,6 +72,11 @@ struct MissingShares {
 };
 MissingShares missing_shares(const Validity& validity, double wavelength);
 
+/// What the uncertainties of a model hold: "the fit, its instrument and its certificate"
+std::string uncertain_of(const Model& model);
+/// "scale, angles and sample are not in it": what uncertainties of that leave out, as far as is known. Empty for nothing.
+std::string missing_from_uncertainty(const Model& model);
+
 /// How a geometry is called in sentences: "theta_i 45, theta_r 60, phi_r - phi_i 90 degrees".
 std::string place_line(const Geometry& geometry);
 

@@ -22,6 +22,7 @@ from .curves import in_plane_curves, polar_in_plane, subset_study
 from .designs import plan
 from .instruments import calibration
 from .maps import depolarization_map, map, realizability_map
+from .multiples import by_wavelength, residuals
 from .panels import hemisphere, residual_map
 from .reflectances import reflectance_against_angle, reflectance_against_wavelength, reflectance_factor
 from .samples import directions, low_order_residuals, suspicious
@@ -29,6 +30,7 @@ from .spectrum import coefficient_spectrum
 
 __all__ = [
     "anisotropy",
+    "by_wavelength",
     "calibration",
     "coefficient_spectrum",
     "depolarization_map",
@@ -44,6 +46,7 @@ __all__ = [
     "reflectance_against_wavelength",
     "reflectance_factor",
     "residual_map",
+    "residuals",
     "subset_study",
     "suspicious",
     "uncertainty_parts",

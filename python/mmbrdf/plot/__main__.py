@@ -20,6 +20,7 @@ FORMATS = (".pdf", ".png", ".svg")
 
 _SOURCES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "anisotropy": (("model",), ()),
+    "by-wavelength": (("model",), ()),
     "calibration": (("instrument", "references"), ()),
     "coefficient-spectrum": (("model",), ()),
     "depolarization-map": (("any",), ()),
@@ -34,12 +35,20 @@ _SOURCES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "reflectance-against-wavelength": (("model",), ()),
     "reflectance-factor": (("model",), ()),
     "residual-map": (("model", "data"), ()),
+    "residuals": (("model", "data"), ()),
     "suspicious": (("data",), ()),
     "uncertainty-parts": (("model",), ()),
 }
 """What each kind is drawn of, and what may be drawn with it: kinds of files, the latter names of arguments, too."""
 
-_SEVERAL_NM = {"polar-in-plane", "reflectance-against-angle", "reflectance-against-wavelength", "reflectance-factor"}
+_SEVERAL_NM = {
+    "by-wavelength",
+    "polar-in-plane",
+    "reflectance-against-angle",
+    "reflectance-against-wavelength",
+    "reflectance-factor",
+    "residuals",
+}
 _SEVERAL_DEG = {"reflectance-against-angle", "reflectance-against-wavelength", "reflectance-factor"}
 
 
@@ -75,6 +84,7 @@ def _parser(prog: str) -> argparse.ArgumentParser:
     )
     add("--term", dest="terms", metavar="KIND=U", action="append", help="of type B: scale=0.3%%, theta_r=0.02deg")
     add("--coverage", metavar="K", type=float, help="standard uncertainties to each side of a band [2]")
+    add("--power", metavar="N", type=int, help="of the wavelength, of a coefficient-spectrum [0]")
     add("--film", metavar="INDEX,UM,N,K", help="of the wafers of a calibration")
     add("--dial-sense", type=int, choices=(1, -1), help="of the polarizer of a calibration")
     add("--width", dest="width_cm", metavar="CM", type=float, help="of the figure: 8 and 17 are columns of a journal")

@@ -133,7 +133,7 @@ def map(
         raise ValueError("terms: they count in u, so show must be u or value / u")
     asked = scalar(quantity, frame, stokes)
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
-    found = _shown(asked, source, minus, show, wavelength_nm, view, terms, samples)
+    found = shown(asked, source, minus, show, wavelength_nm, view, terms, samples)
     if minus is not None and limits is None and found.measured and show != "u":
         scale = residual_scale(found.image.values, show == "value / u", cmap)
     else:
@@ -167,7 +167,7 @@ def residual_scale(values: NDArray[np.float64], over_u: bool, cmap: Colormap | s
     )._replace(said=said)
 
 
-def _shown(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.View, terms, samples) -> Shown:
+def shown(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.View, terms, samples) -> Shown:
     """Of a model on a lattice, of samples in their cells; ``show`` as map() has it."""
     measured = isinstance(source, mmbrdf.Dataset)
     label = asked.label
@@ -307,7 +307,7 @@ def realizability_map(
     require_measured(source)
     wavelength_nm, theta_i_deg = disc.question(source, wavelength_nm, theta_i_deg)
     view = disc.View(theta_i_deg, phi_i_deg, getattr(source, "theta_r_max_deg", None))
-    found = _shown(scalar(_margin), source, None, "value", wavelength_nm, view, None, samples)
+    found = shown(scalar(_margin), source, None, "value", wavelength_nm, view, None, samples)
     values = found.image.values
     # All that can be has a place on the scale, beyond the fit too: red is for nothing else.
     can_be = found.image.within(None) & (values >= 0)

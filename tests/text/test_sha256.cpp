@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/text/sha256.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace mmbrdf {
+namespace {
+
+// FIPS 180-4's examples, and what sha256sum prints.
+TEST(Sha256, IsThatOfTheStandard) {
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+}
+
+TEST(Sha256, OfAStreamIsThatOfItsBytesWhateverTheirNumber) {
+  for (const std::size_t size : {0U, 1U, 55U, 56U, 63U, 64U, 65U, 65536U, 70000U}) {
+    const std::string bytes(size, '\xff');
+    std::istringstream in(bytes);
+    EXPECT_EQ(sha256(in), sha256(bytes)) << size;
+  }
+  EXPECT_EQ(sha256(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+}  // namespace
+}  // namespace mmbrdf
