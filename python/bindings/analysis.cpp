@@ -3,6 +3,7 @@
 #include "mmbrdf/polarization/analysis.hpp"
 
 #include <pybind11/complex.h>
+#include <pybind11/stl.h>
 
 #include <cctype>
 

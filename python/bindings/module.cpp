@@ -3,6 +3,10 @@
 // micrometres.
 #include "bindings.hpp"
 
+namespace mmbrdf::python {
+void bind_images(py::module_& m);
+}
+
 namespace {
 
 namespace py = pybind11;
@@ -45,4 +49,9 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_diagnostics(m);
   bind_report(m);
   bind_sampling(m);
+  bind_images(m);
+  m.def(
+      "_limit_threads", limit_threads, py::arg("most"),
+      "How many threads functions called by this thread take that are not told; 0: one for each core. Returns what it "
+      "was.");
 }

@@ -254,6 +254,11 @@ void bind_instrument(py::module_& m) {
       .def("covariance", reduced_covariance, py::arg("variances"),
            "Of the sixteen elements, from independent readings with these variances: array (..., 16, 16), NaN as "
            "reduce()")
+      .def(py::pickle(
+          [](const Polarimeter& p) { return py::make_tuple(array_of(p.generator), array_of(p.analyzer), pairs_of(p)); },
+          [](const py::tuple& t) {
+            return reading({states_from(t[0], "generator"), states_from(t[1], "analyzer")}, pairs_from(t[2]));
+          }))
       .def("__repr__", [](const Polarimeter& p) {
         return "<mmbrdf.Polarimeter: " + std::to_string(p.generator.size()) + " generator states, " +
                std::to_string(p.analyzer.size()) + " analyzer states" +

@@ -2,8 +2,11 @@
 // Directions that are drawn.
 #include "mmbrdf/model/sampling.hpp"
 
+#include <pybind11/stl.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "question.hpp"
@@ -14,8 +17,11 @@ namespace {
 /// A sampler as Python holds it.
 struct SamplerObject {
   SamplerObject(const ModelPointer& its_model, const std::optional<double>& wavelength_nm)
-      : model(its_model), sampler(prepare(model->model(), model->wavelength(wavelength_nm))) {}
+      : model(its_model),
+        wavelength(wavelength_nm),
+        sampler(prepare(model->model(), model->wavelength(wavelength_nm))) {}
   ModelPointer model;
+  std::optional<double> wavelength;  // nm, as it was asked for
   DirectionSampler sampler;
 };
 
@@ -116,7 +122,11 @@ void bind_sampling(py::module_& m) {
            "M cos theta_r / pdf, (..., 4, 4): its mean over uniform u1, u2 is the reflectance, for any Stokes vector.\n"
            "nan in elements that the model does not know: without polarization take [..., 0, 0], which is always "
            "known.\n"
-           "Warns (ExtrapolationWarning) as Model.evaluate() does, also of the wavelength.");
+           "Warns (ExtrapolationWarning) as Model.evaluate() does, also of the wavelength.")
+      .def(py::pickle([](const SamplerObject& o) { return py::make_tuple(o.model, o.wavelength); },
+                      [](const py::tuple& t) {
+                        return SamplerObject(t[0].cast<ModelPointer>(), t[1].cast<std::optional<double>>());
+                      }));
 }
 
 }  // namespace mmbrdf::python

@@ -19,6 +19,7 @@ from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
 
+from . import _lazy
 from ._mmbrdf import *  # noqa: F403: the names of the library
 from ._mmbrdf import Dataset as Dataset
 from ._mmbrdf import Model as Model
@@ -173,3 +174,7 @@ def _write_report(
 
 
 report = _write_report
+
+_lazy.install(globals())
+
+from . import images as images  # noqa: E402: of what is above

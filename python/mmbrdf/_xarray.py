@@ -72,8 +72,20 @@ def labelled(
     shape = values.shape[:-2]
     names = _dimension_names(shape, given)
     coordinates = _coordinates(shape, names, given)
-    coordinates["row"] = (["row"], np.arange(1, 5), {"long_name": "outgoing Stokes component"})
-    coordinates["column"] = (["column"], np.arange(1, 5), {"long_name": "incoming Stokes component"})
+    labels = {name: ([name], *label) for name, label in _MATRIX_AXES.items()}
+    attributes = _attributes(quantity, model, frame, as_printed, terms)
+    return xarray.DataArray(values, coordinates | labels, [*names, "row", "column"], quantity, attributes)
+
+
+_MATRIX_AXES = {
+    "row": (np.arange(1, 5), {"long_name": "outgoing Stokes component"}),
+    "column": (np.arange(1, 5), {"long_name": "incoming Stokes component"}),
+}
+
+
+def _attributes(
+    quantity: str, model: Model, frame: str, as_printed: bool, terms: Mapping[str, float] | None
+) -> dict[str, Any]:
     attributes = {
         "units": "sr-1",
         "long_name": _LONG_NAMES[quantity],
@@ -87,4 +99,20 @@ def labelled(
     }
     if quantity == "uncertainty":
         attributes["terms"] = json.dumps({name: float(value) for name, value in (terms or {}).items()})
-    return xarray.DataArray(values, coordinates, [*names, "row", "column"], quantity, attributes)
+    return attributes
+
+
+def with_attributes(
+    values: xarray.DataArray,
+    quantity: str,
+    model: Model,
+    frame: str,
+    *,
+    as_printed: bool = False,
+    terms: Mapping[str, float] | None = None,
+) -> xarray.DataArray:
+    """What was evaluated of named arguments, with the name, labels and attributes that labelled() gives."""
+    labels = {name: ([name], *label) for name, label in _MATRIX_AXES.items()}
+    result = values.assign_coords(labels).rename(quantity)
+    result.attrs = {**values.attrs, **_attributes(quantity, model, frame, as_printed, terms)}
+    return result
