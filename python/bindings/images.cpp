@@ -32,10 +32,11 @@ py::array_t<double> array_of(const std::vector<double>& numbers, std::size_t pix
                              numbers.data());
 }
 
-Floats reduced(const PixelInverses& inverses, const Floats& readings, int threads) {
-  Floats result({static_cast<py::ssize_t>(inverses.pixels()), py::ssize_t{4}, py::ssize_t{4}});
-  const std::span<float> out(result.mutable_data(), 16 * inverses.pixels());
-  without_gil([&] { muellers(inverses, all(readings), out, threads); });
+Floats reduced(const PixelInverses& inverses, const Floats& readings, std::size_t first, int threads) {
+  const std::size_t pixels = static_cast<std::size_t>(readings.size()) / std::max<std::size_t>(1, inverses.readings);
+  Floats result({static_cast<py::ssize_t>(pixels), py::ssize_t{4}, py::ssize_t{4}});
+  const std::span<float> out(result.mutable_data(), 16 * pixels);
+  without_gil([&] { muellers(inverses, all(readings), out, threads, first); });
   return result;
 }
 
@@ -118,7 +119,7 @@ void bind_images(py::module_& m) {
            }),
            py::arg("generators"), py::arg("analyzers"), py::arg("like"), py::arg("threads") = 0)
       .def_property_readonly("pixels", &PixelInverses::pixels)
-      .def("reduce", reduced, py::arg("readings"), py::arg("threads") = 0);
+      .def("reduce", reduced, py::arg("readings"), py::arg("first") = 0, py::arg("threads") = 0);
   py::class_<Cameras>(m, "_Cameras")
       .def(py::init(&cameras_from), py::arg("references"), py::arg("generators"), py::arg("analyzers"),
            py::arg("wavelength_nm"), py::arg("noise"), py::arg("dial_sense"), py::arg("fit_polarizer_phase"),

@@ -472,7 +472,7 @@ class _PixelInverses:
     def __init__(self, generators: ArrayLike, analyzers: ArrayLike, like: Polarimeter, threads: int = ...) -> None: ...
     @property
     def pixels(self) -> int: ...
-    def reduce(self, readings: ArrayLike, threads: int = ...) -> NDArray[np.float32]: ...
+    def reduce(self, readings: ArrayLike, first: int = ..., threads: int = ...) -> NDArray[np.float32]: ...
 
 class _Cameras:
     def __init__(
@@ -495,6 +495,35 @@ class _Cameras:
     def calibrate(
         self, start: Calibration, readings: ArrayLike, threads: int, most_misfit: float
     ) -> dict[str, NDArray[np.float64]]: ...
+
+class _Influence:
+    def __init__(
+        self,
+        wavelength_nm: float,
+        theta_i_deg: ArrayLike,
+        phi_i_deg: ArrayLike,
+        theta_r_deg: ArrayLike,
+        phi_r_deg: ArrayLike,
+        basis: str,
+        orders: tuple[int, ...],
+        mapping: str,
+        weights: ArrayLike | None,
+        f11_only: bool,
+        minimum_norm: bool,
+    ) -> None: ...
+    @property
+    def coefficients(self) -> int: ...
+    @property
+    def geometries(self) -> int: ...
+    @property
+    def blocks(self) -> tuple[tuple[str, int], ...]: ...
+    def fit_float(
+        self, values: NDArray[np.float32], each: int, threads: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def fit_double(
+        self, values: NDArray[np.float64], each: int, threads: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def model(self, coefficients: ArrayLike, variances: ArrayLike, name: str) -> Model: ...
 
 class Calibration:
     @property

@@ -4,6 +4,7 @@
     instrument = mmbrdf.images.calibrate(references, stacks)             # one for each pixel, from (reference, y, x, frame)
     matrices = mmbrdf.images.reduce(stack, instrument, dark=dark, saturation=4000)    # (y, x, 4, 4), NaN where unknown
     mmbrdf.depolarization(matrices, invalid="nan")                       # and all else that takes matrices
+    models = mmbrdf.images.PixelFit(532, geometry).fit(values)           # a BRDF in each pixel
 
 A stack has the axes (y, x, frame): frames are those of the instrument, in the order of its readings, all generator states
 of the first analyzer state first. numpy arrays are worked on at once, on all cores; Dask arrays and xarray.DataArrays, whose
@@ -22,15 +23,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _lazy, _mmbrdf
 from ._mmbrdf import Calibration, Polarimeter
+from ._pixel_fits import PixelFit, PixelModels, load_models
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = [
     "FAILURES",
+    "PixelFit",
     "PixelInstrument",
+    "PixelModels",
     "Reference",
     "calibrate",
+    "load_models",
     "quantities",
     "readings",
     "reduce",
@@ -225,10 +230,10 @@ def _reduced(
         if isinstance(instrument, Polarimeter):
             result[here] = instrument.reduce(some.reshape(*some.shape[:-1], *_core_shape(instrument)), invalid="nan")
         else:
-            part = instrument if here is ... or rows >= outer[0] else instrument[here, slice(None)]
             limit = _mmbrdf._limit_threads(0)
             _mmbrdf._limit_threads(limit)
-            matrices = part._prepared().reduce(some.reshape(-1, frames), threads=limit)
+            pixel = first * outer[-1] if len(outer) > 1 else 0
+            matrices = instrument._prepared().reduce(some.reshape(-1, frames), pixel, limit)
             result[here] = matrices.reshape(*some.shape[:-1], 4, 4)
     return result
 

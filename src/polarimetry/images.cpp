@@ -119,23 +119,25 @@ PixelInverses pixel_inverses(std::span<const double> generators, std::span<const
   return result;
 }
 
-void muellers(const PixelInverses& inverses, std::span<const float> readings, std::span<float> elements, int threads) {
-  const std::size_t pixels = inverses.pixels(), n = inverses.readings;
-  if (readings.size() != n * pixels || elements.size() != 16 * pixels)
+void muellers(const PixelInverses& inverses, std::span<const float> readings, std::span<float> elements, int threads,
+              std::size_t first) {
+  const std::size_t all = inverses.pixels(), n = inverses.readings, pixels = elements.size() / 16;
+  if (first > all || pixels > all - first || elements.size() != 16 * pixels || readings.size() != n * pixels)
     throw std::invalid_argument(std::to_string(readings.size()) + " readings and " + std::to_string(elements.size()) +
-                                " elements, expected " + std::to_string(n * pixels) + " and " +
-                                std::to_string(16 * pixels));
+                                " elements from pixel " + std::to_string(first) + " on, there are " +
+                                std::to_string(all) + " pixels of " + std::to_string(n) + " and 16");
   const ReductionKernel& kernel = best_reduction_kernel();
   const float* const a = inverses.numbers.data();
-  const float* const w = a + 4 * inverses.analyzers * pixels;
-  in_parts(pixels, threads, [&](std::size_t first, std::size_t count) {
-    const float* const from = readings.data() + n * first;
-    float* const to = elements.data() + 16 * first;
+  const float* const w = a + 4 * inverses.analyzers * all;
+  in_parts(pixels, threads, [&](std::size_t begin, std::size_t count) {
+    const std::size_t pixel = first + begin;
+    const float* const from = readings.data() + n * begin;
+    float* const to = elements.data() + 16 * begin;
     if (inverses.analyzers > 0)
-      kernel.run_arms(a + 4 * inverses.analyzers * first, w + 4 * inverses.generators * first, inverses.analyzers,
+      kernel.run_arms(a + 4 * inverses.analyzers * pixel, w + 4 * inverses.generators * pixel, inverses.analyzers,
                       inverses.generators, from, count, to);
     else
-      kernel.run_each(a + 16 * n * first, n, from, count, to);
+      kernel.run_each(a + 16 * n * pixel, n, from, count, to);
     for (std::size_t i = 0; i < 16 * count; i += 16)  // what is not finite is in every sum of the first element
       if (!std::isfinite(to[i])) std::fill_n(to + i, 16, nothing);
   });

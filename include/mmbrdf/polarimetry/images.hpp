@@ -30,10 +30,11 @@ struct PixelInverses {
 PixelInverses pixel_inverses(std::span<const double> generators, std::span<const double> analyzers,
                              const Polarimeter& like, int threads = 1);
 
-/// The matrices of pixels, 16 numbers each in rows, from their readings, summed in double precision. NaN for a pixel with
-/// a reading or an inverse that is not finite. Throws std::invalid_argument for sizes that are not those of as many pixels.
+/// The matrices of pixels, from `first` on as many as there are elements for, 16 numbers each in rows, from their
+/// readings, summed in double precision. NaN for a pixel with a reading or an inverse that is not finite. Throws
+/// std::invalid_argument for sizes that are not those of as many pixels, and for more of them than there are.
 void muellers(const PixelInverses& inverses, std::span<const float> readings, std::span<float> elements,
-              int threads = 1);
+              int threads = 1, std::size_t first = 0);
 
 /// Why a pixel has no calibration.
 enum class PixelFailure : std::uint8_t {
