@@ -92,6 +92,36 @@ def chunks(stack, instrument):
             say(f"Dask, {workers} threads, chunks of {rows * side / 1e6:.2g} Mpixel", best(run, count), "Mpixel", 1e6)
 
 
+def files(pixels):
+    """From chunked files to chunked files: the stack is never whole in memory."""
+    import tempfile
+
+    try:
+        import dask
+        import dask.array as da
+        import xarray
+        import zarr  # noqa: F401
+    except ImportError:
+        print("no Dask and zarr: ./dev packages clusters")
+        return
+    side = int(np.sqrt(pixels)) // 64 * 64
+    camera = images.simulate((64, 64), seed=1)
+    strip = tiled(camera.stack, (64, side))
+    instrument = camera.instrument.at(0, 0)
+    plain = {"raw": {"compressor": None}}
+    with tempfile.TemporaryDirectory() as name, dask.config.set(scheduler="threads", num_workers=2):
+        rows = da.concatenate([da.from_array(strip, chunks=(64, side, 16))] * (side // 64)).rechunk((128, side, 16))
+        raw = xarray.DataArray(rows, dims=["y", "x", "frame"], name="raw")
+        raw.to_dataset().to_zarr(f"{name}/raw", encoding=plain)
+
+        def run():
+            stack = xarray.open_zarr(f"{name}/raw").raw
+            mueller = images.reduce(stack, instrument).to_dataset()
+            mueller.to_zarr(f"{name}/mueller", mode="w", encoding={"mueller": {"compressor": None}})
+
+        say("from Zarr to Zarr, 2 threads, no compression", best(run, side * side), "Mpixel", 1e6)
+
+
 def calibrations():
     camera = images.simulate((32, 32), seed=1)
     run = lambda: images.calibrate(camera.references, camera.stacks, wavelength_nm=532)  # noqa: E731
@@ -144,10 +174,12 @@ def archives():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pixels", type=int, default=1 << 22)
-    parser.add_argument("--only", choices=["reductions", "calibrations", "fits", "archives"])
+    parser.add_argument("--only", choices=["reductions", "files", "calibrations", "fits", "archives"])
     asked = parser.parse_args()
     if asked.only in (None, "reductions"):
         reductions(asked.pixels)
+    if asked.only in (None, "files"):
+        files(asked.pixels)
     if asked.only in (None, "calibrations"):
         calibrations()
     if asked.only in (None, "fits"):

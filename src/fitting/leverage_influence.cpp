@@ -27,6 +27,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr std::size_t geometries_at_once = 32;  // sixteen elements of them stay in the second-level cache
+// From one element to the next: not a multiple of 4096 bytes, which would be the same lines of the first-level cache.
+constexpr std::size_t of_element = geometries_at_once * influence_sets + 40;
 
 /// Rows of an element, one for each geometry, over the modes of its block.
 MatrixXd rows_at(std::span<const Geometry> geometries, const Rows& rows, std::size_t element, const Basis& basis) {
@@ -37,43 +39,17 @@ MatrixXd rows_at(std::span<const Geometry> geometries, const Rows& rows, std::si
   return result;
 }
 
-/// Of one element: its part of (Xᵀ W X)⁺ Xᵀ W, in tiles.
-struct OfElement {
-  std::size_t element, block, rows;
-  std::vector<double> tiles;
-};
+std::size_t filled_up(std::size_t modes) { return (modes + influence_tile - 1) / influence_tile * influence_tile; }
 
-struct OfBlock {
-  std::size_t first, modes;  // of its coefficients
-  MatrixXd normal;           // Xᵀ W X
-  double freedom;
-  std::size_t first_row = 0;  // of its sums
-};
-
-void put_in_tiles(const MatrixXd& p, OfElement& to) {
+/// A matrix as the kernel takes it.
+std::vector<double> in_tiles(const MatrixXd& p) {
   const auto modes = static_cast<std::size_t>(p.rows()), columns = static_cast<std::size_t>(p.cols());
-  to.rows = (modes + influence_tile - 1) / influence_tile * influence_tile;
-  to.tiles.assign(to.rows * columns, 0);
+  std::vector<double> tiles(filled_up(modes) * columns);
   for (std::size_t j = 0; j < modes; ++j)
     for (std::size_t g = 0; g < columns; ++g)
-      to.tiles[(j / influence_tile * columns + g) * influence_tile + j % influence_tile] = p(index(j), index(g));
+      tiles[(j / influence_tile * columns + g) * influence_tile + j % influence_tile] = p(index(j), index(g));
+  return tiles;
 }
-
-/// Some sets beside each other, and what becomes of them: one for each thread.
-struct Sets {
-  std::vector<double> values, sums, squares;  // values of an element after those of another
-
-  Sets(std::size_t elements, std::size_t rows, std::size_t blocks)
-      : values(elements * geometries_at_once * influence_sets),
-        sums(rows * influence_sets),
-        squares(blocks * influence_sets) {}
-
-  void clear() {
-    std::ranges::fill(sums, 0.);
-    std::ranges::fill(squares, 0.);
-  }
-  double* of(std::size_t element) { return values.data() + element * geometries_at_once * influence_sets; }
-};
 
 /// f of some geometries of each set as f11 and m, side by side.
 void pack(const float* const* from, std::size_t count, double* const* to) {
@@ -86,6 +62,33 @@ void pack(const double* const* from, std::size_t count, double* const* to) {
 }  // namespace
 
 struct Influence::Parts {
+  /// Of one element: its part of (Xᵀ W X)⁺ Xᵀ W, in tiles.
+  struct OfElement {
+    std::size_t element, block, rows;
+    std::vector<double> tiles;
+  };
+
+  struct OfBlock {
+    std::size_t first, modes;  // of its coefficients
+    MatrixXd normal;           // Xᵀ W X
+    double freedom;
+    std::size_t first_row = 0;  // of its sums
+  };
+
+  /// Some sets beside each other, and what becomes of them: one for each thread.
+  struct Sets {
+    std::vector<double> values, sums, squares;  // values of an element after those of another
+
+    Sets(std::size_t elements, std::size_t rows, std::size_t blocks)
+        : values(elements * of_element), sums(rows * influence_sets), squares(blocks * influence_sets) {}
+
+    void clear() {
+      std::ranges::fill(sums, 0.);
+      std::ranges::fill(squares, 0.);
+    }
+    double* of(std::size_t element) { return values.data() + element * of_element; }
+  };
+
   std::size_t geometries = 0, coefficients = 0;
   bool f11_only = false;
   std::vector<Mueller> weights;
@@ -121,14 +124,11 @@ void Influence::Parts::add_block(std::size_t b, std::span<const Geometry> where,
     p.emplace_back(inverse * weighted);
     product.noalias() += p.back() * x.back();
   }
-  for (std::size_t k = 0; k < p.size(); ++k) {  // what rounding left is taken away: (2 − P X) P
-    OfElement of{block.elements[k].index(), b, 0, {}};
-    put_in_tiles(2 * p[k] - product * p[k], of);
-    elements.push_back(std::move(of));
-  }
+  for (std::size_t k = 0; k < p.size(); ++k)  // what rounding left is taken away: (2 − P X) P
+    elements.push_back({block.elements[k].index(), b, filled_up(rows.columns()), in_tiles(2 * p[k] - product * p[k])});
   blocks.push_back(
       {coefficients, rows.columns(), std::move(normal), static_cast<double>(solution.degrees_of_freedom()), sum_rows});
-  sum_rows += (rows.columns() + influence_tile - 1) / influence_tile * influence_tile;
+  sum_rows += filled_up(rows.columns());
   coefficients += rows.columns();
 }
 
@@ -247,7 +247,7 @@ void Influence::fit_all(std::span<const Number> values, std::span<double> coeffi
   std::atomic<bool> no_memory = false;
   const auto work = [&] {
     try {
-      Sets sets(parts.elements.size(), parts.sum_rows, parts.blocks.size());
+      Parts::Sets sets(parts.elements.size(), parts.sum_rows, parts.blocks.size());
       for (std::size_t i = next.fetch_add(influence_sets); i < count; i = next.fetch_add(influence_sets)) {
         const std::size_t here = std::min(influence_sets, count - i);
         parts.sum(values.data() + i * size, here, sets);

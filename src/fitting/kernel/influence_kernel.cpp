@@ -49,12 +49,37 @@ void square(const double* weights, size_t count, double* values, double* squares
   }
 }
 
+/// Four elements of four sets, as four sets of each of the elements.
+template <class Number>
+MMBRDF_INLINE void turn(const Number* const* from, size_t at, double* to) {
+  typedef Number Four __attribute__((vector_size(4 * sizeof(Number))));
+  typedef double FourDoubles __attribute__((vector_size(32)));
+  Four in[4];
+  for (size_t k = 0; k < 4; ++k) __builtin_memcpy(&in[k], from[k] + at, sizeof in[k]);
+  const Four a = __builtin_shufflevector(in[0], in[1], 0, 4, 1, 5),
+             b = __builtin_shufflevector(in[0], in[1], 2, 6, 3, 7),
+             c = __builtin_shufflevector(in[2], in[3], 0, 4, 1, 5),
+             d = __builtin_shufflevector(in[2], in[3], 2, 6, 3, 7);
+  const Four out[4] = {__builtin_shufflevector(a, c, 0, 1, 4, 5), __builtin_shufflevector(a, c, 2, 3, 6, 7),
+                       __builtin_shufflevector(b, d, 0, 1, 4, 5), __builtin_shufflevector(b, d, 2, 3, 6, 7)};
+  for (size_t k = 0; k < 4; ++k) {
+    const FourDoubles whole = __builtin_convertvector(out[k], FourDoubles);
+    __builtin_memcpy(to + k * influence_sets, &whole, sizeof whole);
+  }
+}
+
+constexpr size_t ahead = 12;  // geometries
+
 template <class Number>
 MMBRDF_INLINE void pack(const Number* const* from, size_t count, double* const* to) {
   alignas(64) double f[16][influence_sets];
   for (size_t g = 0; g < count; ++g) {
+    // So many places are read in turn that the processor does not see what comes next.
     for (size_t s = 0; s < influence_sets; ++s)
-      for (size_t e = 0; e < 16; ++e) f[e][s] = static_cast<double>(from[s][16 * g + e]);
+      for (size_t line = 0; line < 16; line += 64 / sizeof(Number))
+        __builtin_prefetch(from[s] + 16 * (g + ahead) + line);
+    for (size_t s = 0; s < influence_sets; s += 4)
+      for (size_t e = 0; e < 16; e += 4) turn(from + s, 16 * g + e, &f[e][s]);
     double* const first = to[0] + g * influence_sets;
     R inverse[influence_sets / width];
     for (size_t v = 0; v < influence_sets / width; ++v) {
