@@ -26,6 +26,7 @@ add_kernel_objects(mmbrdf kernel src/model/kernel/kernel.cpp)
 add_kernel_objects(mmbrdf analysis_kernel src/polarization/kernel/analysis_kernel.cpp)
 add_kernel_objects(mmbrdf variances_kernel src/uncertainty/variances_kernel.cpp)
 add_kernel_objects(mmbrdf reduction_kernel src/polarimetry/kernel/reduction_kernel.cpp)
+add_kernel_objects(mmbrdf influence_kernel src/fitting/kernel/influence_kernel.cpp)
 set(every_kernel ${kernels})
 list(REMOVE_ITEM kernels avx512)   # products of matrices gain too little from it
 add_kernel_objects(mmbrdf gram_kernel src/numerics/gram_kernel.cpp)

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 namespace mmbrdf::python {
 
@@ -198,13 +199,20 @@ std::invalid_argument Broadcast::at_place(const std::invalid_argument& error, st
   return std::invalid_argument(error.what() + std::string(", at ") + place);
 }
 
+namespace {
+thread_local int limit = 0;  // of threads that this one starts unless told otherwise; 0: none
+}
+
+int limit_threads(int most) { return std::exchange(limit, std::clamp(most, 0, most_threads)); }
+
 void in_parts(std::size_t size, int threads, std::size_t least,
               const std::function<void(std::size_t, std::size_t)>& work) {
   if (threads < 0 || threads > most_threads)
     throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be from 0 to " +
                                 std::to_string(most_threads));
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t wanted = threads == 0 ? cores : static_cast<std::size_t>(threads);
+  const int asked = threads == 0 ? limit : threads;
+  const std::size_t wanted = asked == 0 ? cores : static_cast<std::size_t>(asked);
   const std::size_t parts = std::clamp<std::size_t>(size / std::max<std::size_t>(least, 1), 1, wanted);
   std::vector<std::exception_ptr> errors(parts);
   const auto part = [&](std::size_t p) {

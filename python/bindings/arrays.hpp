@@ -93,6 +93,10 @@ class Broadcast {
 inline constexpr int most_threads = 1024;
 void in_parts(std::size_t size, int threads, std::size_t least, const std::function<void(std::size_t, std::size_t)>&);
 
+/// How many threads in_parts() takes for `threads` 0 when called by this thread, as where another program has a thread
+/// on each core; 0: as many as there are cores. Returns what it was.
+int limit_threads(int most);
+
 /// Runs without the GIL.
 template <class Work>
 auto without_gil(Work work) {

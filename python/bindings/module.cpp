@@ -3,6 +3,11 @@
 // micrometres.
 #include "bindings.hpp"
 
+namespace mmbrdf::python {
+void bind_images(py::module_& m);
+void bind_influence(py::module_& m);
+}  // namespace mmbrdf::python
+
 namespace {
 
 namespace py = pybind11;
@@ -46,4 +51,10 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_diagnostics(m);
   bind_report(m);
   bind_sampling(m);
+  bind_images(m);
+  bind_influence(m);
+  m.def(
+      "_limit_threads", limit_threads, py::arg("most"),
+      "How many threads functions called by this thread take that are not told; 0: one for each core. Returns what it "
+      "was.");
 }

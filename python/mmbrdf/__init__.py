@@ -21,7 +21,7 @@ from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
 
-from . import _asking, _calls, _mmbrdf, _summaries
+from . import _asking, _calls, _lazy, _mmbrdf, _summaries
 
 _calls.install(_mmbrdf, _asking.answering(_mmbrdf))
 _asking.install(_mmbrdf)
@@ -191,3 +191,8 @@ def __getattr__(name: str) -> _Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), "plot"})
+
+
+_lazy.install(globals())
+
+from . import images as images  # noqa: E402: of what is above

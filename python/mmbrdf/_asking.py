@@ -314,29 +314,8 @@ reflectance_factor_uncertainty.__doc__ = (
 )
 
 
-def _of_labelled(plain: Callable[..., Any]) -> Callable[..., Any]:
-    """reflectance_factor() that leaves names to what has them, and refuses matrices, which names betray."""
-
-    @functools.wraps(plain)
-    def call(*given: Any, **named: Any) -> Any:
-        f11 = given[0] if given else named.get("f11")
-        dims = getattr(f11, "dims", ())
-        if "row" in dims and "column" in dims:
-            raise ValueError("f11: sixteen elements, expected one: give f.sel(row=1, column=1)")
-        result = plain(*given, **named)
-        if not dims or not hasattr(f11, "copy"):
-            return result
-        labelled = f11.copy(data=np.asarray(result))
-        labelled.name, kept = "reflectance_factor", {k: v for k, v in f11.attrs.items() if k in ("model", "software")}
-        labelled.attrs = {"units": "1", "long_name": "reflectance factor", **kept}
-        return labelled.drop_vars([name for name in ("row", "column") if name in labelled.coords])
-
-    return _calls.dressed(call, "reflectance_factor", plain.__doc__ + " A DataArray keeps its names and coordinates.")
-
-
 def install(compiled: Any) -> None:
     """What is of Python alone."""
     wrap = answering(compiled)
     for function in (reflectance_factor_uncertainty, reflectance_factor):
         _calls.install_function(compiled.Model, function, wrap)
-    compiled.reflectance_factor = _of_labelled(compiled.reflectance_factor)

@@ -61,6 +61,29 @@ def _coordinates(shape: tuple[int, ...], names: list[str], arguments: dict[str, 
     return coordinates
 
 
+_MATRIX_AXES = {
+    "row": (["row"], np.arange(1, 5), {"long_name": "outgoing Stokes component"}),
+    "column": (["column"], np.arange(1, 5), {"long_name": "incoming Stokes component"}),
+}
+
+
+def _of_frame(frame: str) -> dict[str, str]:
+    return {
+        "frame": frame,
+        "axes": f"{_AXES[frame]} of each beam",
+        "convention": "germer2017: S2 = first axis - second axis, S4 = left - right, time factor exp(-i omega t)",
+    }
+
+
+def _about(model: Model, as_printed: bool) -> dict[str, Any]:
+    return {
+        "directions": "away from the sample; forward scattering is phi_r - phi_i = 180 degrees",
+        "as_printed": int(as_printed or model.as_printed),  # netCDF has no truth values
+        "model": model.name,
+        "software": f"mmbrdf {__version__}",
+    }
+
+
 class _Names:
     """The axes of an answer, and what is known of it."""
 
@@ -71,26 +94,11 @@ class _Names:
         given = {name: _as_float(value) for name, value in own.items() if value is not None}
         self.axes = _dimension_names(shape, given)
         self.coordinates = _coordinates(shape, self.axes, given)
-        self.about = {
-            "directions": "away from the sample; forward scattering is phi_r - phi_i = 180 degrees",
-            "as_printed": int(bool(arguments.get("as_printed")) or model.as_printed),  # netCDF has no truth values
-            "model": model.name,
-            "software": f"mmbrdf {__version__}",
-        }
+        self.about = _about(model, bool(arguments.get("as_printed")))
 
     def matrices(self, frame: str) -> tuple[list[str], dict[str, Any], dict[str, str]]:
         """Axes, coordinates and attributes of arrays (..., 4, 4)."""
-        coordinates = {
-            **self.coordinates,
-            "row": (["row"], np.arange(1, 5), {"long_name": "outgoing Stokes component"}),
-            "column": (["column"], np.arange(1, 5), {"long_name": "incoming Stokes component"}),
-        }
-        attributes = {
-            "frame": frame,
-            "axes": f"{_AXES[frame]} of each beam",
-            "convention": "germer2017: S2 = first axis - second axis, S4 = left - right, time factor exp(-i omega t)",
-        }
-        return [*self.axes, "row", "column"], coordinates, attributes
+        return [*self.axes, "row", "column"], {**self.coordinates, **_MATRIX_AXES}, _of_frame(frame)
 
 
 def _as_float(value: Any) -> np.ndarray:
@@ -115,11 +123,32 @@ def labelled(
     import xarray
 
     names = _Names(model, values.shape[:-2], {**arguments, "as_printed": as_printed})
-    axes, coordinates, attributes = names.matrices(frame)
-    attributes = {"units": "sr-1", "long_name": _LONG_NAMES[quantity], **attributes, **names.about}
-    if quantity == "uncertainty":
-        attributes["terms"] = _terms(terms)
-    return xarray.DataArray(values, coordinates, axes, quantity, attributes)
+    axes, coordinates, _ = names.matrices(frame)
+    return xarray.DataArray(
+        values, coordinates, axes, quantity, _matrix_attributes(quantity, model, frame, as_printed, terms)
+    )
+
+
+def _matrix_attributes(
+    quantity: str, model: Model, frame: str, as_printed: bool, terms: Mapping[str, float] | None
+) -> dict[str, Any]:
+    attributes = {"units": "sr-1", "long_name": _LONG_NAMES[quantity], **_of_frame(frame), **_about(model, as_printed)}
+    return {**attributes, "terms": _terms(terms)} if quantity == "uncertainty" else attributes
+
+
+def with_attributes(
+    values: xarray.DataArray,
+    quantity: str,
+    model: Model,
+    frame: str,
+    *,
+    as_printed: bool = False,
+    terms: Mapping[str, float] | None = None,
+) -> xarray.DataArray:
+    """What was evaluated of named arguments, with the name, labels and attributes that labelled() gives."""
+    result = values.assign_coords(_MATRIX_AXES).rename(quantity)
+    result.attrs = {**values.attrs, **_matrix_attributes(quantity, model, frame, as_printed, terms)}
+    return result
 
 
 _FLAGS = [flag for flag in Outside if flag]

@@ -163,7 +163,7 @@ def required(name, one):
     """The names of the arguments that it must have, and of the angles and the light that it may have."""
     if name.startswith("Model."):
         return ["model", "wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg"]
-    if inspect.isfunction(one):  # of Python, which says what it takes
+    if inspect.isfunction(one) and not hasattr(one, "__wrapped__"):  # of Python, which says what it takes
         all_of_them = inspect.signature(one).parameters.values()
         return [a.name for a in all_of_them if a.default is a.empty or a.name == "wavelength_nm"]
     arguments = re.search(r"\((.*)\)", one.__doc__.split("\n")[0]).group(1)

@@ -19,6 +19,12 @@ struct ReductionKernel {
   bool (*run_double)(const double* inverse, size_t readings, const double* from, size_t count, double* out);
   /// From and to single precision; `room` for count × readings numbers.
   bool (*run_float)(const double* inverse, size_t readings, const float* from, size_t count, float* out, double* room);
+  /// Each pixel has an inverse of its own, one behind the other.
+  void (*run_each)(const float* inverses, size_t readings, const float* from, size_t count, float* out);
+  /// A⁺ B W⁺ of each pixel: A⁺ is 4 × analyzers, W⁺ generators × 4, B analyzers × generators, all in rows. The sums, over
+  /// generators and then over analyzers, are in double precision.
+  void (*run_arms)(const float* analyzers_inverse, const float* generators_inverse, size_t analyzers, size_t generators,
+                   const float* from, size_t count, float* out);
 };
 
 }  // namespace mmbrdf

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// One constant matrix times the values of many sets of samples. influence_kernel.cpp is compiled once for each instruction
+/// set; influence_kernels.cpp chooses. This header is what both sides see: plain data, nothing inline.
+#pragma once
+
+#include <stddef.h>
+
+namespace mmbrdf {
+
+/// Sets stand side by side, `influence_sets` of them: in lanes. What a set gives does not depend on its neighbours.
+inline constexpr size_t influence_sets = 48;
+/// Rows of the constant matrix stand in tiles of this height.
+inline constexpr size_t influence_tile = 4;
+
+struct InfluenceKernel {
+  const char* name;
+  bool (*runs_here)();
+  /// squares (influence_sets) += Σ weights[g] values². A weight of 0 makes 0 of values.
+  void (*square)(const double* weights, size_t count, double* values, double* squares);
+  /// f of `count` geometries of each set, `from[s]`, 16 numbers each, as f11 and f_ij / f11: of element e at
+  /// to[e][g × influence_sets + s], unless that is null.
+  void (*pack_float)(const float* const* from, size_t count, double* const* to);
+  void (*pack_double)(const double* const* from, size_t count, double* const* to);
+  /// out (rows × influence_sets) += p · values (count × influence_sets). `p` has its rows in tiles, the last filled up with
+  /// zeros: number r of column g of tile t is at p[(t × columns + g) × influence_tile + r]; columns first … first + count − 1
+  /// are used. `rows` is a multiple of influence_tile.
+  void (*multiply)(const double* p, size_t rows, size_t columns, size_t first, size_t count, const double* values,
+                   double* out);
+};
+
+}  // namespace mmbrdf

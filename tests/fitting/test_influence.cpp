@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "mmbrdf/fitting/leverage.hpp"
+#include "mmbrdf/samples/samples.hpp"
+
+namespace mmbrdf {
+namespace {
+
+constexpr Basis small{Family::isotropic, {3, 2}};
+
+std::vector<Geometry> some_geometries(std::size_t count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> polar(0, 1.3), azimuth(-3, 3);
+  std::vector<Geometry> result;
+  for (std::size_t g = 0; g < count; ++g)
+    result.push_back({{polar(random), azimuth(random)}, {polar(random), azimuth(random)}});
+  return result;
+}
+
+/// f of sets of 16 elements, f11 near 0.3.
+std::vector<double> some_values(std::size_t sets, std::size_t geometries) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  std::vector<double> result(16 * sets * geometries);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = (i % 16 == 0 ? 0.3 : 0) + 0.02 * normal(random);
+  return result;
+}
+
+// Each within 1e-12 of the largest: what a triangle and a product round differently.
+TEST(Influence, GivesTheCoefficientsOfEachFit) {
+  const std::vector<Geometry> where = some_geometries(300);
+  const std::vector<double> values = some_values(50, 300);
+  const Influence influence(where, 0.532, small);
+  std::vector<double> coefficients(50 * influence.coefficients()), variances(50 * influence.model().blocks.size());
+  influence.fit(values, coefficients, variances);
+  for (const std::size_t set : {0U, 17U, 49U}) {
+    std::vector<Sample> samples(300);
+    for (std::size_t g = 0; g < 300; ++g) {
+      const double* const f = values.data() + 16 * (300 * set + g);
+      samples[g].wavelength = 0.532;
+      samples[g].geometry = where[g];
+      samples[g].f11 = f[0];
+      for (std::size_t e = 0; e < 16; ++e) samples[g].normalized.elements[e] = f[e] / f[0];
+    }
+    const FitResult alone = fit(samples, small);
+    std::size_t next = set * influence.coefficients();
+    for (std::size_t b = 0; b < alone.model.blocks.size(); ++b) {
+      for (const double expected : alone.model.blocks[b].coefficients)
+        EXPECT_NEAR(coefficients[next++], expected, 1e-12);
+      EXPECT_NEAR(variances[set * alone.model.blocks.size() + b] / alone.solutions[b].variance(), 1, 1e-10);
+    }
+  }
+}
+
+TEST(Influence, OfSingleValuesThreadsAndNeighboursIsThatOfOneSet) {
+  const std::vector<Geometry> where = some_geometries(200);
+  const std::vector<double> values = some_values(100, 200);
+  const std::vector<float> single(values.begin(), values.end());
+  const std::vector<double> same(single.begin(), single.end());
+  const Influence influence(where, 0.532, small);
+  const std::size_t n = influence.coefficients(), blocks = influence.model().blocks.size();
+  std::vector<double> a(100 * n), b(100 * n), c(n), v(100 * blocks), w(blocks);
+  influence.fit(single, a, v, 3);
+  influence.fit(same, b, v, 1);
+  EXPECT_EQ(a, b);
+  influence.fit(std::span(same).subspan(16 * 200 * 77, 16 * 200), c, w);
+  EXPECT_TRUE(std::equal(c.begin(), c.end(), a.begin() + static_cast<std::ptrdiff_t>(77 * n)));
+}
+
+TEST(Influence, HasNoNumbersForSetsWithAValueThatCounts) {
+  const std::vector<Geometry> where = some_geometries(200);
+  std::vector<double> values = some_values(2, 200);
+  values[16 * 5] = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Mueller> weights(200);
+  for (std::size_t g = 0; g < 200; ++g) weights[g].elements.fill(g == 5 ? 0 : 1);
+  const Influence plain(where, 0.532, small), weighted(where, 0.532, small, weights);
+  const std::size_t n = plain.coefficients();
+  std::vector<double> a(2 * n), v(2 * plain.model().blocks.size());
+  plain.fit(values, a, v);
+  for (std::size_t i = 0; i < 2 * n; ++i) EXPECT_EQ(std::isnan(a[i]), i < n);
+  weighted.fit(values, a, v);
+  for (const double coefficient : a) EXPECT_TRUE(std::isfinite(coefficient));
+}
+
+TEST(Influence, RefusesWhatItCannotFit) {
+  EXPECT_THROW(Influence(some_geometries(300), 0.532, Basis{Family::germer2017, {3, 2}}), std::invalid_argument);
+  EXPECT_THROW(Influence(some_geometries(3), 0.532, small), std::invalid_argument);
+  const Influence influence(some_geometries(300), 0.532, small);
+  std::vector<double> a(influence.coefficients()), v(influence.model().blocks.size());
+  EXPECT_THROW(influence.fit(std::vector<double>(16 * 299), a, v), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mmbrdf

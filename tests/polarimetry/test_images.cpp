@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/polarimetry/images.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "mmbrdf/polarimetry/reduction.hpp"
+
+namespace mmbrdf {
+namespace {
+
+/// Instruments near to the best one, one behind the other.
+struct Camera {
+  std::vector<Polarimeter> pixels;
+  std::vector<double> generators, analyzers;
+  std::vector<float> readings;
+
+  Camera(Polarimeter like, std::size_t count) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (auto* arm : {&like.generator, &like.analyzer})
+        for (Stokes& state : *arm)
+          for (double& component : state) component += 0.003 * normal(random);
+      pixels.push_back(like);
+      for (const Stokes& s : like.generator) generators.insert(generators.end(), s.begin(), s.end());
+      for (const Stokes& s : like.analyzer) analyzers.insert(analyzers.end(), s.begin(), s.end());
+      Mueller m = diagonal(1, 0.5, 0.4, 0.3);
+      for (std::size_t e = 1; e < 16; ++e) m.elements[e] += 0.05 * normal(random);
+      for (const double reading : mmbrdf::readings(like, m)) readings.push_back(static_cast<float>(reading));
+    }
+  }
+};
+
+void expect_as_alone(const Camera& camera, double tolerance) {
+  const std::size_t count = camera.pixels.size(), n = camera.pixels[0].readings();
+  const PixelInverses inverses = pixel_inverses(camera.generators, camera.analyzers, camera.pixels[0]);
+  ASSERT_EQ(inverses.pixels(), count);
+  std::vector<float> elements(16 * count);
+  muellers(inverses, camera.readings, elements);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::vector<double> own(camera.readings.begin() + static_cast<std::ptrdiff_t>(n * i),
+                                  camera.readings.begin() + static_cast<std::ptrdiff_t>(n * (i + 1)));
+    const Mueller alone = Reduction(camera.pixels[i]).mueller(own);
+    for (std::size_t e = 0; e < 16; ++e) EXPECT_NEAR(elements[16 * i + e], alone.elements[e], tolerance);
+  }
+}
+
+// Inverses of single precision, of condition 3 and 4: some units of 6e-8, sixteen and sixty-one of them.
+TEST(Images, ReduceEachPixelAsItsOwnInstrumentDoes) {
+  const std::vector<double> angles{radians(-51.69), radians(-15.12), radians(15.12), radians(51.69)};
+  expect_as_alone(Camera(ideal_polarimeter(radians(131.81), angles), 50), 2e-6);
+  const std::vector<double> six{radians(-60), radians(-40), radians(-15), radians(10), radians(35), radians(70)};
+  expect_as_alone(Camera(ideal_polarimeter(radians(120), six), 50), 2e-6);
+  RotatingRetarders retarders;
+  retarders.generator.retardance = retarders.analyzer.retardance = radians(127);
+  expect_as_alone(Camera(polarimeter(retarders, dial_angles(5, radians(6), 61)), 20), 2e-6);
+}
+
+TEST(Images, DoNotDependOnThreadsOrNeighbours) {
+  const std::vector<double> angles{radians(-51.69), radians(-15.12), radians(15.12), radians(51.69)};
+  const Camera camera(ideal_polarimeter(radians(131.81), angles), 10000);
+  const PixelInverses inverses = pixel_inverses(camera.generators, camera.analyzers, camera.pixels[0]);
+  std::vector<float> one(16 * 10000), many(16 * 10000);
+  muellers(inverses, camera.readings, one, 1);
+  muellers(inverses, camera.readings, many, 3);
+  EXPECT_EQ(one, many);
+  const PixelInverses few = pixel_inverses(std::span(camera.generators).subspan(16 * 7, 16 * 3),
+                                           std::span(camera.analyzers).subspan(16 * 7, 16 * 3), camera.pixels[0]);
+  std::vector<float> three(48);
+  muellers(few, std::span(camera.readings).subspan(16 * 7, 48), three);
+  EXPECT_TRUE(std::equal(three.begin(), three.end(), one.begin() + 16 * 7));
+}
+
+TEST(Images, HaveNoNumbersWhereThereAreNone) {
+  const std::vector<double> angles{radians(-51.69), radians(-15.12), radians(15.12), radians(51.69)};
+  Camera camera(ideal_polarimeter(radians(131.81), angles), 3);
+  for (std::size_t k = 0; k < 4; ++k) camera.generators[16 + 4 * k + 3] = 0;  // of the second: no circular light
+  camera.readings[2 * 16 + 5] = std::nanf("");
+  std::vector<float> elements(48);
+  muellers(pixel_inverses(camera.generators, camera.analyzers, camera.pixels[0]), camera.readings, elements);
+  for (std::size_t i = 0; i < 48; ++i) EXPECT_EQ(std::isnan(elements[i]), i >= 16);
+}
+
+TEST(Images, RefuseSizesThatDoNotFit) {
+  const Polarimeter like = ideal_polarimeter(radians(131.81), std::vector{0.1, 0.5, 1.0, 2.0});
+  EXPECT_THROW(pixel_inverses(std::vector<double>(31), std::vector<double>(32), like), std::invalid_argument);
+  const PixelInverses inverses = pixel_inverses(std::vector<double>(32), std::vector<double>(32), like);
+  std::vector<float> elements(32);
+  EXPECT_THROW(muellers(inverses, std::vector<float>(31), elements), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mmbrdf

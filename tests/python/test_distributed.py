@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One fit of many files: the same bits by whoever fits, and what faults cost."""
+
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import mmbrdf
+from mmbrdf import distributed as archive
+
+OPTIONS = {"orders": (2, 1)}
+
+
+@pytest.fixture(scope="module")
+def files(ptfe, tmp_path_factory):
+    """Seven, of different lengths and at two wavelengths."""
+    folder = tmp_path_factory.mktemp("archive")
+    paths = []
+    for k in range(7):
+        geometry = mmbrdf.random_geometries(150 + 20 * k, seed=k)
+        paths.append(folder / f"run{k}.csv")
+        mmbrdf.simulate(ptfe, 532 if k % 3 else 633, geometry, speckle=0.01, seed=k).save(paths[-1])
+    return paths
+
+
+def coefficients(fitted):
+    return np.concatenate([block.coefficients.ravel() for block in fitted.result.model.blocks])
+
+
+@pytest.fixture(scope="module")
+def plain(files):
+    return coefficients(archive.fit(files, **OPTIONS))
+
+
+def test_files_fitted_together_are_one_fit(files, plain):
+    one = mmbrdf.FitAccumulator(orders=OPTIONS["orders"])
+    for path in files:
+        one.add(mmbrdf.read_samples(path))
+    fitted = archive.fit(files, **OPTIONS)
+    assert fitted.samples == one.samples and fitted.skipped == {}
+    expected = np.concatenate([block.coefficients.ravel() for block in one.solve().model.blocks])
+    np.testing.assert_allclose(plain, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("count", range(1, 8))
+def test_the_tree_depends_on_the_number_of_files_alone(count):
+    """In this process it is that of levels, in which an odd one out goes up as it is."""
+
+    level = [str(k) for k in range(count)]
+    while len(level) > 1:
+        pairs = [f"({a}{b})" for a, b in zip(level[::2], level[1::2])]
+        level = pairs + level[len(pairs) * 2 :]
+    merged = archive._merged
+    try:
+        archive._merged = lambda a, b: f"({a}{b})"
+        assert archive._here(str(k) for k in range(count)) == level[0]
+    finally:
+        archive._merged = merged
+
+
+def test_a_broken_file_is_named_and_left_out_only_if_that_was_asked(files, plain, tmp_path):
+    broken = tmp_path / "broken.csv"
+    broken.write_text("wavelength_nm,theta_i_deg\n532,x\n")
+    missing = tmp_path / "missing.csv"
+    some = [*files[:3], broken, *files[3:], missing]
+    with pytest.raises(OSError, match="broken.csv"):
+        archive.fit(some, **OPTIONS)
+    fitted = archive.fit(some, skip_broken=True, **OPTIONS)
+    assert sorted(fitted.skipped) == sorted(map(str, (broken, missing)))
+    assert "missing.csv" in fitted.skipped[str(missing)]
+    np.testing.assert_allclose(coefficients(fitted), plain, rtol=0, atol=1e-12 * np.abs(plain).max())
+    with pytest.raises(ValueError, match="none of 1 can be read; the first: .*missing.csv"):
+        archive.fit([missing], skip_broken=True, **OPTIONS)
+    with pytest.raises(ValueError, match="files: none"):
+        archive.fit([], **OPTIONS)
+
+
+def test_another_call_continues_with_what_was_finished(files, plain, tmp_path, monkeypatch):
+    read, asked = archive.read_samples, []
+
+    def failing(path, **options):
+        asked.append(os.fspath(path))
+        if len(asked) == 5:
+            raise KeyboardInterrupt
+        return read(path, **options)
+
+    monkeypatch.setattr(archive, "read_samples", failing)
+    with pytest.raises(KeyboardInterrupt):
+        archive.fit(files, checkpoint=tmp_path, **OPTIONS)
+    assert len(list(tmp_path.iterdir())) == 4
+    fitted = archive.fit(files, checkpoint=tmp_path, **OPTIONS)
+    assert asked[5:] == [os.fspath(path) for path in files[4:]]
+    np.testing.assert_array_equal(coefficients(fitted), plain)
+
+
+def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    with pytest.raises(OSError, match="No space left"):
+        archive.fit(files[:1], checkpoint=tmp_path, **OPTIONS)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    with (
+        cluster_of.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+        ) as cluster,
+        cluster_of.Client(cluster) as client,
+    ):
+        np.testing.assert_array_equal(coefficients(archive.fit(files, client, **OPTIONS)), plain)
+        before = client.run(os.getpid)
+        found = []
+        # Many pieces, so that some run and some are done when a worker dies.
+        work = threading.Thread(target=lambda: found.append(archive.fit(files * 40, client, **OPTIONS)))
+        work.start()
+        time.sleep(0.3)
+        os.kill(next(iter(before.values())), signal.SIGKILL)
+        work.join(200)
+        assert len(found) == 1
+        expected = archive.fit(files * 40, **OPTIONS)
+        np.testing.assert_array_equal(coefficients(found[0]), coefficients(expected))
+        assert found[0].samples == expected.samples

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Imaging polarimeters: a simulated one, whose states vary over the image, is the truth."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import mmbrdf
+from mmbrdf import images
+
+SHAPE = (6, 8)
+DIALS = mmbrdf.dial_angles(5, 6.0, 61)
+
+
+@pytest.fixture(scope="module")
+def camera():
+    """Four states in each arm, and 54 references with noise of 0.1 %."""
+    return images.simulate(SHAPE, seed=1)
+
+
+@pytest.fixture(scope="module")
+def calibrated(camera):
+    return images.calibrate(camera.references, camera.stacks, wavelength_nm=532)
+
+
+def relative(matrices, truth):
+    return np.abs(matrices - truth).max(axis=(-2, -1)) / truth[..., 0, 0]
+
+
+@pytest.mark.parametrize("dials", [None, DIALS], ids=["grid", "retarders"])
+def test_matrices_come_back_from_the_instrument_of_each_pixel(dials):
+    camera = images.simulate(SHAPE, dials_deg=dials, noise=0, seed=2)
+    matrices = images.reduce(camera.stack, camera.instrument)
+    assert matrices.dtype == np.float32 and matrices.shape == (*SHAPE, 4, 4)
+    assert relative(matrices, camera.mueller).max() < 1e-5  # of single precision: 24 bits, condition 3 and 13
+    one = camera.instrument.at(3, 4)
+    frames = camera.stack[3, 4].astype(float)
+    alone = one.reduce(frames.reshape(4, 4) if dials is None else frames)
+    np.testing.assert_allclose(matrices[3, 4], alone, rtol=0, atol=1e-5 * alone[0, 0])
+
+
+def test_one_instrument_for_all_pixels_has_the_bits_of_its_own_reduction(camera):
+    instrument = camera.instrument.at(0, 0)
+    expected = instrument.reduce(camera.stack.reshape(*SHAPE, 4, 4))
+    np.testing.assert_array_equal(images.reduce(camera.stack, instrument), expected)
+    np.testing.assert_array_equal(images.reduce(camera.stack, instrument, dark=0.0, progress=iter), expected)
+    assert images.reduce(camera.stack.astype(float), instrument).dtype == float
+    assert images.reduce((1000 * camera.stack).astype(np.uint16), instrument).dtype == np.float32
+
+
+def test_dark_frames_saturation_and_masks(camera):
+    instrument = camera.instrument
+    matrices = images.reduce(camera.stack, instrument)
+    dark = np.linspace(10, 11, SHAPE[1], dtype=np.float32) * np.ones((SHAPE[0], 1), np.float32)
+    raw = camera.stack + dark[..., None]
+    mask = np.ones(SHAPE, bool)
+    mask[0, 1] = False
+    raw[2, 3, 5] = 4095
+    reduced = images.reduce(raw, instrument, dark=dark, mask=mask, saturation=4000)
+    bad = np.isnan(reduced).all(axis=(-2, -1))
+    assert np.argwhere(bad).tolist() == [[0, 1], [2, 3]] and np.isnan(reduced).sum() == 32
+    assert relative(reduced, matrices)[~bad].max() < 1e-4  # a dark signal ten times the readings takes digits
+    raw[4, 4, 0] = np.inf
+    assert np.isnan(images.reduce(raw, instrument)[4, 4]).all()
+
+
+def test_many_rows_are_worked_on_in_blocks_with_the_same_bits(camera, monkeypatch):
+    whole = images.reduce(camera.stack, camera.instrument, dark=0.125)
+    monkeypatch.setattr(images, "_ROWS_AT_ONCE", 2 * SHAPE[1])
+    np.testing.assert_array_equal(images.reduce(camera.stack, camera.instrument, dark=0.125), whole)
+
+
+def test_pixels_are_calibrated_within_their_uncertainties(camera, calibrated):
+    assert not calibrated.failure.any()
+    assert np.abs(calibrated.misfit.mean() - 1) < 0.05  # 700 degrees of freedom in each of 48 pixels: 0.8 %
+    truth = camera.instrument
+    # The scale of A to W is a convention: that of the first components of W, which have mean 1.
+    scale = truth.generator[..., 0].mean(axis=-1)[..., None, None]
+    for found, u, true in (
+        (calibrated.generator, calibrated.u_generator, truth.generator / scale),
+        (calibrated.analyzer, calibrated.u_analyzer, truth.analyzer * scale),
+    ):
+        off = (found - true) / u
+        assert 0.9 < np.sqrt(np.mean(off**2)) < 1.1
+        assert np.abs(off).max() < 5
+    matrices = images.reduce(camera.stack, calibrated)
+    assert np.sqrt(np.mean(relative(matrices, camera.mueller) ** 2)) < 5e-3  # noise of single frames
+    wrong = images.reduce(camera.stack, calibrated.start)
+    assert relative(wrong, camera.mueller).max() > 5 * relative(matrices, camera.mueller).max()
+
+
+def test_a_pixel_is_calibrated_as_it_would_be_alone(camera, calibrated):
+    y, x = 2, 5
+    alone = images.calibrate(camera.references, camera.stacks[:, y : y + 1, x : x + 1], wavelength_nm=532)
+    for name in ("generator", "analyzer", "u_generator", "u_analyzer"):
+        # Steps end below a thousandth of the standard uncertainties.
+        u = getattr(calibrated, f"u_{name[-9:].lstrip('_')}" if not name.startswith("u_") else name)[y, x]
+        assert np.abs((getattr(alone, name)[0, 0] - getattr(calibrated, name)[y, x]) / u).max() < 2e-3
+    eager = alone.start.polarimeter  # of the one pixel: what mmbrdf.calibrate() gives of it
+    assert np.abs((alone.generator[0, 0] - eager.generator) / alone.u_generator[0, 0]).max() < 2e-3
+    assert np.abs((alone.analyzer[0, 0] - eager.analyzer) / alone.u_analyzer[0, 0]).max() < 2e-3
+    full = alone.start.covariance
+    np.testing.assert_allclose(
+        np.concatenate([alone.u_generator[0, 0].ravel(), alone.u_analyzer[0, 0].ravel()]),
+        np.sqrt(np.diag(full)),
+        rtol=1e-2,
+    )
+
+
+def test_turning_retarders_are_calibrated_from_air_in_each_pixel():
+    camera = images.simulate(SHAPE, dials_deg=DIALS, repeats=2, seed=3)
+    found = images.calibrate(camera.references, camera.stacks, wavelength_nm=532, dials_deg=DIALS)
+    assert not found.failure.any()
+    matrices = images.reduce(camera.stack, found)
+    assert np.sqrt(np.mean(relative(matrices, camera.mueller) ** 2)) < 5e-3
+    alone = images.calibrate(camera.references, camera.stacks[:, 1:2, 1:2], wavelength_nm=532, dials_deg=DIALS)
+    for k, (name, (value, u)) in enumerate(alone.start.retarders.items()):
+        if u is None:
+            continue
+        assert abs(alone.retarders[0, 0, k] - value) < 0.02 * u + 1e-9, name
+        assert alone.u_retarders[0, 0, k] == pytest.approx(u, rel=0.02), name
+
+
+def test_failures_are_flagged_and_not_fatal(camera):
+    stacks = camera.stacks.copy()
+    stacks[3, 0, 0, 2] = np.nan
+    stacks[:, 0, 1] = 0
+    stacks[5:9, 0, 2] *= np.linspace(0.2, 5, 16)  # no instrument explains that
+    mask = np.ones(SHAPE, bool)
+    mask[5, 7] = mask[0, 1] = mask[0, 2] = False
+    start = images.calibrate(camera.references, stacks, wavelength_nm=532, mask=mask).start
+    mask[0, :] = True
+    found = images.calibrate(camera.references, stacks, wavelength_nm=532, mask=mask, start=start)
+    reasons = {tuple(place): images.FAILURES[found.failure[tuple(place)]] for place in np.argwhere(found.failure)}
+    assert reasons.pop((0, 2)) in ("misfit", "no convergence")
+    assert reasons == {(0, 0): "not finite", (0, 1): "not finite", (5, 7): "masked"}
+    matrices = images.reduce(camera.stack, found)
+    assert np.isnan(matrices[0, :3]).all() and np.isfinite(matrices[1:5]).all()
+    with pytest.raises(ValueError, match=r"pixel \(5, 7\) is not calibrated: masked"):
+        found.at(5, 7)
+
+
+def test_uncertainties_are_the_scatter_of_repeated_frames():
+    camera = images.simulate((40, 50), noise=0, seed=4)
+    matrix = np.broadcast_to(camera.mueller[20, 30], (40, 50, 4, 4))
+    random = np.random.default_rng(1)
+    for instrument in (camera.instrument.at(0, 0), camera.instrument):
+        exact = images.readings(matrix, instrument)
+        law = {"relative": 0.01, "dark": 0.002}
+        noisy = exact + random.normal(size=exact.shape) * np.sqrt((0.01 * exact) ** 2 + 0.002**2)
+        u = images.uncertainty(exact, instrument, law)
+        scatter = (images.reduce(noisy, instrument) - matrix) / u
+        np.testing.assert_allclose(scatter.std(axis=(0, 1)), 1, atol=0.07)  # 2000 pixels: 1.6 %
+        of_quantity = images.uncertainty(exact, instrument, law, quantity="depolarization")
+        values = mmbrdf.depolarization(images.reduce(noisy, instrument))
+        assert np.std((values - mmbrdf.depolarization(matrix[0, 0])) / of_quantity) == pytest.approx(1, abs=0.1)
+
+
+def test_images_are_analyzed_where_they_have_values(camera, calibrated):
+    matrices = images.reduce(camera.stack, calibrated, mask=np.arange(8) > 0 * np.ones((6, 1)))
+    found = images.quantities(matrices, ["depolarization", "purity"])
+    assert np.isnan(found["purity"][:, 0]).all() and np.isfinite(found["depolarization"][:, 1:]).all()
+    with pytest.raises(ValueError, match="quantity 'colour': expected one of"):
+        images.quantities(matrices, ["colour"])
+
+
+def test_instruments_can_be_sent_and_cut(camera, calibrated):
+    copy = pickle.loads(pickle.dumps(calibrated))
+    np.testing.assert_array_equal(images.reduce(camera.stack, copy), images.reduce(camera.stack, calibrated))
+    part = calibrated[1:3, 2:7]
+    assert part.shape == (2, 5)
+    np.testing.assert_array_equal(
+        images.reduce(camera.stack[1:3, 2:7], part), images.reduce(camera.stack, calibrated)[1:3, 2:7]
+    )
+
+
+def test_shapes_that_do_not_fit_are_named(camera, calibrated):
+    with pytest.raises(ValueError, match="the last axis has 15 frames, the instrument 16"):
+        images.reduce(camera.stack[..., :15], calibrated)
+    with pytest.raises(ValueError, match=r"axes y, x are \(5, 8\), those of the instrument \(6, 8\)"):
+        images.reduce(camera.stack[:5], calibrated)
+    with pytest.raises(ValueError, match=r"dark: shape \(8,\), expected a number"):
+        images.reduce(camera.stack, calibrated, dark=np.zeros(8))
+    with pytest.raises(ValueError, match=r"mask: float64 of shape \(6, 8\), expected truth values"):
+        images.reduce(camera.stack, calibrated, mask=np.ones(SHAPE))
+    with pytest.raises(TypeError, match="instrument: expected a Polarimeter"):
+        images.reduce(camera.stack, "instrument.json")
+    with pytest.raises(ValueError, match="with 53 references"):
+        images.calibrate(camera.references[1:], camera.stacks, wavelength_nm=532)
+    with pytest.raises(ValueError, match="noise: read: expected dark, shot or relative"):
+        images.uncertainty(camera.stack, calibrated, {"read": 1.0})
+
+
+def test_lazy_stacks_have_the_bits_of_the_eager_call(camera, calibrated):
+    da = pytest.importorskip("dask.array", reason="no Dask: ./dev packages clusters")
+    xarray = pytest.importorskip("xarray")
+    chunked = da.from_array(camera.stack, chunks=(4, 3, 16))
+    dark, mask = np.full(SHAPE, 0.01, np.float32), np.arange(48).reshape(SHAPE) != 11
+    for instrument in (calibrated, calibrated.start):
+        expected = images.reduce(camera.stack, instrument, dark=dark, mask=mask, saturation=1.2)
+        lazy = images.reduce(chunked, instrument, dark=dark, mask=mask, saturation=1.2)
+        assert isinstance(lazy, da.Array) and lazy.dtype == np.float32
+        np.testing.assert_array_equal(lazy.compute(), expected)
+    named = xarray.DataArray(
+        chunked, {"x": np.arange(8.0)}, ["y", "x", "frame"], "raw", {"camera": "A", "units": "counts"}
+    )
+    result = images.reduce(named.transpose("frame", "y", "x"), calibrated)
+    assert result.dims == ("y", "x", "row", "column") and result.attrs["camera"] == "A"
+    np.testing.assert_array_equal(result.values, images.reduce(camera.stack, calibrated))
+    np.testing.assert_array_equal(result.x, np.arange(8.0))
+    u = images.uncertainty(named, calibrated.start, {"shot": 1e-4}, quantity="purity")
+    expected = images.uncertainty(camera.stack, calibrated.start, {"shot": 1e-4}, quantity="purity")
+    np.testing.assert_array_equal(u.values, expected)
+    with pytest.raises(ValueError, match=r"stack: chunks \(8, 8\) cut the axis 'frame'"):
+        images.reduce(chunked.rechunk((6, 8, 8)), calibrated)

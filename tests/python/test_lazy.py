@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Dask arrays and DataArrays in, the same out: lazily, with names, and with the bits of the eager call."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import mmbrdf
+
+pytest.importorskip("dask.array", reason="no Dask: ./dev packages clusters")
+xarray = pytest.importorskip("xarray", reason="no xarray: ./dev packages python")
+import dask.array as da  # noqa: E402
+
+THETA_R = np.linspace(-60, 60, 35).reshape(5, 7)
+QUESTION = (532, 45.0, 0.0, THETA_R, np.full((5, 7), 30.0))
+
+
+def lazy_question():
+    return (532, 45.0, 0.0, da.from_array(THETA_R, chunks=(2, 3)), da.from_array(QUESTION[4], chunks=(5, 2)))
+
+
+def same(result, expected):
+    assert isinstance(result, da.Array)
+    computed = result.compute()
+    np.testing.assert_array_equal(computed, expected)
+    assert computed.dtype == np.asarray(expected).dtype == result.dtype
+    assert result.shape == np.shape(expected)
+
+
+@pytest.mark.parametrize(
+    "method, options",
+    [
+        ("evaluate", {"frame": "sp"}),
+        ("evaluate_uncertainty", {"terms": {"scale": 0.003}}),
+        ("covariance", {}),
+        ("outside", {}),
+        ("estimable", {}),
+    ],
+)
+def test_a_model_is_asked_in_chunks_with_the_bits_of_one_call(ptfe, method, options):
+    same(getattr(ptfe, method)(*lazy_question(), **options), getattr(ptfe, method)(*QUESTION, **options))
+
+
+def test_arguments_by_name_and_many_wavelengths_are_chunks_too(ptfe):
+    nm = np.array([351.0, 532.0, 633.0])
+    result = ptfe.evaluate(
+        wavelength_nm=da.from_array(nm, chunks=2), theta_i_deg=45, phi_i_deg=0, theta_r_deg=30, phi_r_deg=180
+    )
+    same(result, ptfe.evaluate(nm, 45, 0, 30, 180))
+
+
+def test_draws_are_the_first_axis(ptfe):
+    same(ptfe.evaluate_draws(3, 7, *lazy_question()), ptfe.evaluate_draws(3, 7, *QUESTION))
+
+
+def test_an_analysis_has_the_numbers_of_the_eager_one(samples):
+    small = mmbrdf.fit(samples, orders=(2, 1), uncertainty="noise").model
+    lazy = small.analyze(*lazy_question(), terms={"scale": 0.003}, stokes=[1, 0, 0, -1], draws=20, seed=2)
+    eager = small.analyze(*QUESTION, terms={"scale": 0.003}, stokes=[1, 0, 0, -1], draws=20, seed=2)
+    assert list(lazy) == list(eager)
+    for name in ("depolarization", "f_ss", "degree_of_polarization"):
+        for field in ("value", "u", "low", "high"):
+            same(getattr(lazy[name], field), getattr(eager[name], field))
+        assert list(lazy[name].parts) == list(eager[name].parts)
+        same(lazy[name].parts["scale"], eager[name].parts["scale"])
+
+
+def test_every_function_of_matrices_has_the_bits_of_the_eager_call(random_matrices):
+    chunked = da.from_array(random_matrices, chunks=(2, 3, 4, 4))
+    stokes = np.array([1.0, 0.2, 0.1, -0.3])
+    for q in mmbrdf.quantities():
+        function, more = getattr(mmbrdf, q.name), (stokes,) if q.takes_light else ()
+        same(function(chunked, *more, invalid="nan"), function(random_matrices, *more, invalid="nan"))
+    for name in ("normalized", "exchanged", "mirrored", "nearest_realizable", "realizable", "coherency"):
+        same(getattr(mmbrdf, name)(chunked), getattr(mmbrdf, name)(random_matrices))
+    for name in ("lu_chipman", "cloude_decomposition", "symmetric_decomposition", "co_and_cross_polarized"):
+        lazy, eager = getattr(mmbrdf, name)(chunked), getattr(mmbrdf, name)(random_matrices)
+        assert type(lazy) is type(eager)
+        for one, other in zip(lazy, eager):
+            same(one, other)
+    turned = mmbrdf.change_frame(chunked, 45, 0, da.from_array(THETA_R, chunks=2), 30.0, "xy", "sp")
+    same(turned, mmbrdf.change_frame(random_matrices, 45, 0, THETA_R, 30.0, "xy", "sp"))
+
+
+def test_reflectances_and_drawn_directions_are_lazy(ptfe):
+    theta = np.linspace(0, 70, 6)
+    chunks = da.from_array(theta, chunks=4)
+    same(
+        mmbrdf.directional_hemispherical_reflectance(ptfe, 532, chunks, 0),
+        mmbrdf.directional_hemispherical_reflectance(ptfe, 532, theta, 0),
+    )
+    sampler = mmbrdf.DirectionSampler(ptfe, 532)
+    for one, other in zip(sampler.sample(chunks, 0, 0.3, 0.7), sampler.sample(theta, 0, 0.3, 0.7)):
+        same(one, other)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_readings_are_reduced_in_chunks_and_keep_their_precision(random_matrices, dtype):
+    instrument = mmbrdf.ideal_polarimeter(131.81, [-51.69, -15.12, 15.12, 51.69])
+    readings = instrument.readings(random_matrices).astype(dtype)
+    chunked = da.from_array(readings, chunks=(2, 3, 4, 4))
+    same(instrument.reduce(chunked), instrument.reduce(readings))
+    same(instrument.readings(da.from_array(random_matrices, chunks=(3, 7, 4, 4))), instrument.readings(random_matrices))
+
+
+def test_names_and_attributes_are_kept_and_units_are_those_of_the_result(random_matrices):
+    labels = {"y": np.arange(5), "x": np.arange(7)}
+    image = xarray.DataArray(
+        random_matrices, labels, ["y", "x", "row", "column"], "brdf", {"units": "sr-1", "frame": "xy", "sample": "A"}
+    )
+    result = mmbrdf.depolarization(image)
+    assert (result.name, result.dims) == ("depolarization", ("y", "x"))
+    assert result.attrs["sample"] == "A" and "units" not in result.attrs
+    np.testing.assert_array_equal(result.values, mmbrdf.depolarization(random_matrices))
+    assert mmbrdf.f_ss(image).attrs["units"] == "sr-1"
+    lazy = mmbrdf.lu_chipman(image.transpose("row", "column", "x", "y").chunk({"x": 2}))
+    assert lazy.depolarizer.dims == ("x", "y", "row", "column") and lazy.depolarizer.chunks is not None
+    np.testing.assert_array_equal(lazy.retarder.transpose("y", ...).values, mmbrdf.lu_chipman(random_matrices).retarder)
+    turned = mmbrdf.change_frame(image, 45, 0, xarray.DataArray(np.full(7, 30.0), dims="x"), 0, "xy", "sp")
+    assert turned.attrs["frame"] == "sp" and turned.attrs["units"] == "sr-1"
+
+
+def test_a_model_broadcasts_named_angles_by_their_names(ptfe):
+    theta_i = xarray.DataArray([10.0, 50.0], dims="theta_i", coords={"theta_i": [10.0, 50.0]})
+    theta_r = xarray.DataArray(da.from_array(np.linspace(0, 60, 9), chunks=4), dims="theta_r")
+    result = ptfe.evaluate(532, theta_i, 0, theta_r, 180)
+    assert result.dims == ("theta_i", "theta_r", "row", "column") and result.name == "brdf"
+    assert result.attrs["units"] == "sr-1" and result.attrs["frame"] == "xy"
+    assert list(result.row.values) == [1, 2, 3, 4]
+    np.testing.assert_array_equal(result.values, ptfe.evaluate(532, [[10], [50]], 0, np.linspace(0, 60, 9), 180))
+
+
+def test_what_was_evaluated_goes_through_a_file_in_chunks(ptfe, tmp_path):
+    theta_r = xarray.DataArray(np.linspace(0, 60, 9), dims="theta_r", name="theta_r_deg").chunk({"theta_r": 4})
+    ptfe.evaluate(532, 45, 0, theta_r, 180).to_dataset().to_netcdf(tmp_path / "brdf.nc")
+    with xarray.open_dataset(tmp_path / "brdf.nc", chunks={"theta_r": 5}) as read:
+        result = mmbrdf.depolarization(read.brdf)
+        assert result.chunks == ((5, 4),)
+        expected = mmbrdf.depolarization(ptfe.evaluate(532, 45, 0, np.linspace(0, 60, 9), 180))
+        np.testing.assert_array_equal(result.values, expected)
+
+
+def test_chunks_that_cut_a_matrix_are_refused_with_the_call_that_joins_them(random_matrices):
+    cut = da.from_array(random_matrices, chunks=(5, 7, 2, 4))
+    with pytest.raises(
+        ValueError, match=r"mueller: chunks \(2, 2\) cut the axis 'row': .*mueller.rechunk\(\{-2: -1, -1: -1\}\)"
+    ):
+        mmbrdf.depolarization(cut)
+    named = xarray.DataArray(cut, dims=["y", "x", "row", "column"])
+    with pytest.raises(ValueError, match=r"mueller.chunk\(\{'row': -1, 'column': -1\}\)"):
+        mmbrdf.depolarization(named)
+    instrument = mmbrdf.ideal_states(["s", "p", "+45", "L"])
+    frames = xarray.DataArray(da.ones((6, 4, 4), chunks=(6, 4, 2)), dims=["y", "analyzer", "generator"])
+    with pytest.raises(ValueError, match=r"readings: chunks \(2, 2\) cut the axis 'generator'"):
+        instrument.reduce(frames)
+
+
+def test_shapes_and_names_that_do_not_fit_are_named(ptfe, random_matrices):
+    with pytest.raises(ValueError, match="mueller: axis 'column' has 3 places, expected 4"):
+        mmbrdf.depolarization(xarray.DataArray(random_matrices[..., :3], dims=["y", "x", "row", "column"]))
+    with pytest.raises(TypeError, match="phi_r_deg: an array without names beside an xarray.DataArray"):
+        ptfe.evaluate(532, 45, 0, xarray.DataArray([0.0, 30.0], dims="theta_r"), [0.0, 180.0])
+    with pytest.raises(TypeError, match="out is not for Dask arrays"):
+        ptfe.evaluate(532, 45, 0, da.zeros(3), 0, out=np.zeros((3, 4, 4)))
+    with pytest.raises(ValueError, match=r"readings: last axes \(3, 4\), the instrument has \(4, 4\)"):
+        mmbrdf.ideal_states(["s", "p", "+45", "L"]).reduce(da.zeros((2, 3, 4)))
+    with pytest.raises(TypeError, match="got theta_r_deg twice"):
+        ptfe.evaluate(532, 45, 0, da.zeros(3), 0, theta_r_deg=0)
+
+
+def test_what_a_chunk_needs_can_be_sent_to_other_processes(ptfe, random_matrices):
+    instrument = mmbrdf.rotating_retarders(mmbrdf.dial_angles(5, 6.0, 61))
+    copy = pickle.loads(pickle.dumps(instrument))
+    np.testing.assert_array_equal(copy.pairs, instrument.pairs)
+    np.testing.assert_array_equal(copy.readings(random_matrices), instrument.readings(random_matrices))
+    sampler = pickle.loads(pickle.dumps(mmbrdf.DirectionSampler(ptfe, 532)))
+    assert sampler.sample(45, 0, 0.3, 0.7) == mmbrdf.DirectionSampler(ptfe, 532).sample(45, 0, 0.3, 0.7)
+    question = lazy_question()
+    lazily = pickle.loads(pickle.dumps(ptfe.evaluate(*question)))
+    same(lazily, ptfe.evaluate(*QUESTION))
+
+
+def test_warnings_of_extrapolation_come_when_it_is_computed(ptfe):
+    lazy = ptfe.evaluate(532, 45, 0, da.from_array(np.array([30.0, 89.0]), chunks=1), 180)
+    with pytest.warns(mmbrdf.ExtrapolationWarning):
+        lazy.compute(scheduler="synchronous")
