@@ -26,7 +26,7 @@ A line that differs is still equal if only its numbers and the width of its gaps
 by at most 1e-9 of its value or 1e-12. A number is a decimal literal that does not continue a word:
 f11 and germer2017 hold none. Empty lines at the end of an output do not count.
 
-Of a Markdown page, the code blocks that begin with a command are the transcript; --update leaves pages alone.
+Of a Markdown page, the code blocks that begin with a command are the transcript.
 A code block that begins with a remark which is the name of a file, "# plaque.py" or "// tracer.cpp", is that
 file, there when the commands below it run. Pictures that a page shows and that do not lie beside it are made by its
 commands; --pictures FOLDER keeps them.
@@ -53,6 +53,7 @@ PIPE = re.compile(r"(?<!\|)\|(?!\|)")
 
 
 PICTURE = re.compile(r"!\[[^\]]*\]\(([\w.-]+)\)")
+PAGE_BLOCK = re.compile(r"^```\w*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE_BLOCK = re.compile(r"(?:#|//) (\w[\w-]*\.\w+)\n")
 
 
@@ -67,7 +68,7 @@ class Step:
 def steps_of_page(text):
     """The code blocks of a Markdown page that begin with a command, and those that are files."""
     steps = []
-    for block in re.findall(r"^```\w*\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL):
+    for block in PAGE_BLOCK.findall(text):
         if block.startswith("$ "):
             steps += parse(block)[1]
         elif name := FILE_BLOCK.match(block):
@@ -94,6 +95,17 @@ def parse(text):
             tail += 1
         step.expected, step.after = lines[:tail], lines[tail:]
     return before, steps
+
+
+def page_with_steps(text, steps):
+    """A page whose blocks of commands are these, in their order."""
+    left = iter(step for step in steps if step.kind != ">")
+
+    def block(found):
+        here = [next(left) for _ in parse(found[1])[1]] if found[1].startswith("$ ") else []
+        return found[0].replace(found[1], unparse([], here)) if here else found[0]
+
+    return PAGE_BLOCK.sub(block, text)
 
 
 def unparse(before, steps):
@@ -175,7 +187,7 @@ def replay(path, options):
     if not any(step.kind == "$" for step in steps):
         print(f"{path}: no command")
         return 1
-    failed = skipped = False
+    failed = skipped = unmade = False
     with tempfile.TemporaryDirectory(prefix="mmbrdf-cli-") as folder:
         shell = Shell(folder, options.programs.resolve(), options.source.resolve())
         for step in steps:
@@ -196,15 +208,15 @@ def replay(path, options):
             if not Path(folder, name).is_file():
                 if not (path.parent / name).is_file():
                     print(f"{path}: no command makes {name}")
-                    failed = True
+                    unmade = True
             elif options.pictures and not failed:
                 options.pictures.mkdir(parents=True, exist_ok=True)
                 shutil.copy(Path(folder, name), options.pictures / name)
-    if failed and options.update and not is_page:
-        path.write_text(unparse(before, steps), encoding="utf-8")
+    if failed and options.update:
+        path.write_text(page_with_steps(text, steps) if is_page else unparse(before, steps), encoding="utf-8")
         print(f"{path}: updated")
         failed = False
-    return 1 if failed else SKIPPED if skipped else 0
+    return 1 if failed or unmade else SKIPPED if skipped else 0
 
 
 def main(arguments=None):

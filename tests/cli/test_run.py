@@ -103,6 +103,12 @@ class Replay(unittest.TestCase):
         self.assertEqual(self.replay(page.format(2, "![b](b.png)\n"), *keep, ending=".md"), 0)
         self.assertEqual([path.name for path in kept.iterdir()], ["a.png"])
 
+    def test_update_rewrites_what_differs_in_a_page(self):
+        page = "# A\n```python\n# a.py\nprint(2)\n```\n```\n$ python3 a.py\n{}\n$ echo 3; echo 4\n...\n4\n```\n"
+        page += "and\n```\n$ echo 5\n{}\n```\n"
+        self.assertEqual(self.replay(page.format(1, 1), "--update", ending=".md"), 0)
+        self.assertEqual(self.path.read_text(), page.format(2, 5))
+
 
 if __name__ == "__main__":
     unittest.main()
