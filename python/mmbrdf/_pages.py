@@ -28,7 +28,8 @@ p.summary { font-size: 1.07em; border-left: 4px solid #12408c; padding: .1rem 0 
 nav { columns: 2; font-size: .92rem; margin: 1rem 0; } nav a { color: inherit; text-decoration: none; display: block; }
 nav a:hover { text-decoration: underline; }
 figure { margin: 1rem 0 1.4rem; } figcaption b { color: var(--text); }
-figure.table figcaption { margin-bottom: .35rem; }
+figure.table figcaption { margin-bottom: .35rem; } figure.picture figcaption { margin-top: .4rem; }
+table.wide td.long { min-width: 6.5rem; } table.wide th, table.wide td { padding-left: .3rem; padding-right: .3rem; }
 figure img { display: block; max-width: 100%; height: auto; }
 .pair { display: flex; flex-wrap: wrap; gap: 0 .6rem; align-items: flex-start; } .pair figure { flex: 0 0 auto; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; max-width: 100%; }
@@ -54,6 +55,7 @@ _RASTER = {"hemisphere", "realizability-map", "residual-map", "residuals", "by-w
 
 _DPI = 220
 _HALF_CM = 8.5
+_FEW_COLUMNS = 8
 _ROWS_THAT_STAY = 24
 """Tables of more rows may go on on the next page."""
 
@@ -131,7 +133,7 @@ def _table(block: dict[str, Any]) -> str:
             cells[0] = f"<th>{_text(row[0])}</th>"
         rows.append("<tr>" + "".join(cells) + "</tr>")
     table = (
-        "<table>"
+        f'<table class="{"wide" if len(aligned) > _FEW_COLUMNS else "narrow"}">'
         + ("" if of_names else f"<thead><tr>{head}</tr></thead>")
         + f"<tbody>{chr(10).join(rows)}</tbody></table>"
     )

@@ -358,6 +358,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.
         print(f"{own}: a report with pictures needs matplotlib: {error}", file=sys.stderr)
         return 1
     except (OSError, ValueError) as error:
-        print(f"{own}: {error}", file=sys.stderr)
+        said = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
+        print(f"{own}: {said}", file=sys.stderr)
         return 1
     return 0

@@ -41,6 +41,11 @@ def source(reported):
     return _report.Source(*reported, name=name, data_name="d.csv", command="mmbrdf report " + "word" * 60)
 
 
+@pytest.fixture(scope="module")
+def page(reported):
+    return _report.made(source(reported), "html")
+
+
 @pytest.fixture(scope="module", params=sorted(PAPERS))
 def pdf(request, reported, tmp_path_factory):
     path = tmp_path_factory.mktemp("paper") / f"{request.param}.pdf"
@@ -117,16 +122,15 @@ def dumped(page, width_px, folder):
 
 
 @pytest.mark.parametrize("width_mm", [176, 182])
-def test_on_paper_no_table_is_clipped_and_nothing_scrolls(reported, tmp_path, width_mm):
-    page = _report.made(source(reported), "html")
+def test_on_paper_no_table_is_clipped_and_nothing_scrolls(page, tmp_path, width_mm):
     # As it is printed, in a window as wide as what is between the margins.
     page = page.replace("@media print", "@media all").replace("@media screen", "@media not all")
     page = page.replace("</style>", f"body {{ width: {width_mm}mm; margin: 0; }}</style>")
     assert dumped(page, 1000, tmp_path) == []
 
 
-def test_on_a_screen_all_pictures_are_there_and_nothing_scrolls(reported, tmp_path):
-    assert dumped(_report.made(source(reported), "html"), 1200, tmp_path) == []
+def test_on_a_screen_all_pictures_are_there_and_nothing_scrolls(page, tmp_path):
+    assert dumped(page, 1200, tmp_path) == []
 
 
 def test_the_page_of_samples_alone_is_printed_too(reported, tmp_path):

@@ -92,6 +92,8 @@ Json with_origin(Json facts, const ReportOrigin& origin) {
 /// With pictures: Python draws them, and says what is wrong with its words.
 [[noreturn]] void report_by_python(const Options& options, const CommandLine& line) {
   if (options.data == "-") throw std::invalid_argument("-: a report with pictures takes data from a file");
+  if (!is_samples(options.model)) open_model(options.model);  // whose messages are the program's
+  if (!options.data.empty()) read_input(options.data, [](std::istream&, const std::string&) {});
   std::vector<std::string> words = line.words;
   words.erase(words.begin());
   words.erase(std::ranges::find(words, "report"));
