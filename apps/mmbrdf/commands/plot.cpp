@@ -26,7 +26,7 @@ constexpr const char* footer =
     "Examples:\n"
     "  mmbrdf plot hemisphere ptfe -w 532 -i 60 -o hemisphere.pdf --width 17\n"
     "  mmbrdf plot in-plane-curves sample.json data.csv -w 532 -i 45 -o curves.svg --width 8\n"
-    "  mmbrdf plot reflectance-factor ptfe -w 443 555 670 --view 0,0 --view 45,180 -o plaque.png";
+    "  mmbrdf plot reflectance-factor ptfe -w 443,555,670 --view 0,0 --view 45,180 -o plaque.png";
 
 }  // namespace
 

@@ -66,8 +66,8 @@ def _parser(prog: str) -> argparse.ArgumentParser:
         "sources", metavar="MODEL", nargs="+", help="built-in name, model, samples or instrument, and what goes with it"
     )
     add("-o", "--output", metavar="FILE", required=True, help="where it goes: .pdf, .png or .svg")
-    add("-w", "--wavelength", dest="wavelength_nm", metavar="NM", type=float, nargs="+", help="wavelengths")
-    add("-i", "--theta-i", dest="theta_i_deg", metavar="DEG", type=float, nargs="+", help="angles of incidence [45]")
+    add("-w", "--wavelength", dest="wavelength_nm", metavar="NM[,NM...]", type=_list, nargs="+", help="wavelengths")
+    add("-i", "--theta-i", dest="theta_i_deg", metavar="DEG[,DEG...]", type=_list, nargs="+", help="incidence [45]")
     add("--phi-i", dest="phi_i_deg", metavar="DEG", type=float, help="azimuth of the source [180]")
     add("--frame", choices=("xy", "sp", "scattering_plane"), help="of the matrices")
     add("--quantity", metavar="NAME", help="of a map or of uncertainty-parts: 11, 22, depolarization, dhr, ...")
@@ -90,6 +90,14 @@ def _parser(prog: str) -> argparse.ArgumentParser:
     add("--width", dest="width_cm", metavar="CM", type=float, help="of the figure: 8 and 17 are columns of a journal")
     add("--dpi", metavar="N", type=float, default=300, help="dots per inch of a PNG [300]")
     return parser
+
+
+def _list(text: str) -> list[float]:
+    """443,555: as the program has them; blanks between them are taken, too."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: expected numbers, as in 443,555") from None
 
 
 def _numbers(text: str, count: int, name: str) -> list[float]:
@@ -126,6 +134,8 @@ def _terms(texts: Sequence[str]) -> dict[str, float]:
 
 def _converted(name: str, value: Any, kind: str) -> Any:
     """An option as the function takes it."""
+    if name in ("wavelength_nm", "theta_i_deg"):
+        value = [number for part in value for number in part]
     if name == "wavelength_nm" and kind not in _SEVERAL_NM or name == "theta_i_deg" and kind not in _SEVERAL_DEG:
         if len(value) != 1:
             raise ValueError(f"{kind} takes one {'wavelength' if name == 'wavelength_nm' else 'angle of incidence'}")
