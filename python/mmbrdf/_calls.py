@@ -286,6 +286,13 @@ def install_function(cls: type, function: Callable[..., Any], wrap: Callable[...
     setattr(cls, function.__name__, wrap(function, f"{cls.__name__}.{function.__name__}"))
 
 
+def _nobody_makes(cls: type) -> Callable[..., None]:
+    def __init__(self: Any, *given: Any, **named: Any) -> None:
+        raise TypeError(f"{cls.__name__}: functions give it, it has no constructor")
+
+    return __init__
+
+
 def _install_methods(cls: type, wrap: Callable[..., Any]) -> None:
     for name, member in list(vars(cls).items()):
         if isinstance(member, property) or not callable(getattr(cls, name)):
@@ -294,7 +301,7 @@ def _install_methods(cls: type, wrap: Callable[..., Any]) -> None:
         if isinstance(member, staticmethod):
             setattr(cls, name, staticmethod(wrap(getattr(cls, name), title)))
         elif name == "__init__":
-            if "(self: " in (member.__doc__ or ""):
-                setattr(cls, name, wrapped(member, cls.__name__, member.__doc__))
+            made = "(self: " in (member.__doc__ or "")
+            setattr(cls, name, wrapped(member, cls.__name__, member.__doc__) if made else _nobody_makes(cls))
         elif not name.startswith("__"):
             setattr(cls, name, wrap(getattr(cls, name), title))

@@ -77,9 +77,10 @@ def _reflectances(model: Any, nm: float) -> Rows:
 
 def _fit(result: Any) -> Rows:
     yield "fit", repr(result)[1:-1].partition(": ")[2]
-    yield "chi^2 / dof", ", ".join(
-        f"{name} {value:.3g}" for name, value in list(result.chi_squared_per_dof.items())[:2]
-    )
+    if result.model.provenance.get("weights") == "data":  # else the unit of chi^2 is nobody's
+        yield "chi^2 / dof", ", ".join(
+            f"{name} {value:.3g}" for name, value in list(result.chi_squared_per_dof.items())[:2]
+        )
     told = _told_of_a_fit[0](result).splitlines()[1:]
     for line in told:
         if not line.startswith("warning: "):

@@ -23,7 +23,7 @@ def bound():
             method = getattr(thing, member)
             if isinstance(value, property) or not callable(method):
                 continue
-            if member == "__init__" and inspect.isfunction(method):
+            if member == "__init__" and "__signature__" in getattr(method, "__dict__", {}):
                 yield name, thing, 0
             elif not member.startswith("_"):
                 yield f"{name}.{member}", method, int(not isinstance(value, staticmethod))
@@ -111,6 +111,8 @@ def test_signatures_are_those_of_help():
         (lambda p: mmbrdf.Aperture.cone(1, 2), "Aperture.cone: half_angle_deg missing: expected a number"),
         (lambda p: mmbrdf.load_model(3), "load_model: path: expected a path, not int 3"),
         (lambda p: mmbrdf.materials(1), "materials: takes no arguments without a name, not 1"),
+        (lambda p: mmbrdf.Model(), "Model: functions give it, it has no constructor"),
+        (lambda p: mmbrdf.Block(p, 0), "Block: functions give it, it has no constructor"),
         (lambda p: p.save(), "Model.save: path missing: expected a path"),
         (
             lambda p: mmbrdf.fit(mmbrdf.simulate(p, 532, mmbrdf.germer2017_grid()), "isotropic", 7),

@@ -4,6 +4,7 @@
 import re
 import xml.etree.ElementTree as xml
 
+import numpy as np
 import pytest
 
 import mmbrdf
@@ -22,12 +23,15 @@ def things(ptfe, samples, tmp_path_factory):
     turning = mmbrdf.calibrate(
         folder / "air.csv", film=turning.film, dials_deg=mmbrdf.dial_angles(5, 6, 30), retardance_deg=127
     )
+    u = 0.01 * np.concatenate([samples.f11[:, None], np.ones((len(samples), 15))], axis=1).reshape(-1, 4, 4)
+    known = mmbrdf.Dataset(532, *samples.geometry, samples.mueller, uncertainty=u)
     few = mmbrdf.Dataset(532, 45, 0, [0, 30], 180, [[[0.3] + [float("nan")] * 3] + [[float("nan")] * 4] * 3] * 2)
     return {
         "model": ptfe,
         "one wavelength": mmbrdf.material("ptfe-532"),
         "published": mmbrdf.in_published_form(ptfe),
         "fit": mmbrdf.fit(samples),
+        "weighted": mmbrdf.fit(known, weights="data"),
         "f11 alone": few,
         "samples": samples,
         "reduced": mmbrdf.reduce(folder / "raw.csv", instrument, solid_angle=goniometer.solid_angle),
@@ -62,7 +66,8 @@ def test_numbers_have_two_digits_of_their_uncertainty(ptfe):
 def test_a_summary_says_what_there_is_to_know(things):
     assert "uncertainties  hold for the sample (k = 1)" in things["model"].summary()
     assert "not known" in things["published"].summary()
-    assert "chi^2 / dof" in things["fit"].summary() and "sample" in things["fit"].summary()
+    assert "chi^2" not in things["fit"].summary() and "noise 0.0099 of f11" in things["fit"].summary()
+    assert re.search(r"chi\^2 / dof +f11 [01]\.\d+, others [01]\.\d+", things["weighted"].summary())
     assert "12, 13, 14" in things["f11 alone"].summary() and "uncertainties  not known" in things["f11 alone"].summary()
     assert "raw.csv by references.csv" in things["reduced"].summary()
     for name in ("instrument", "loaded", "turning"):
