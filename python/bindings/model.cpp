@@ -267,10 +267,22 @@ void require_place(const std::filesystem::path& path) {
     refuse(PyExc_FileNotFoundError, ENOENT);
 }
 
+namespace {
+
+/// Of a warning: that of the caller, also where mmbrdf._lazy stands between.
+int stack_level() {
+  const py::handle globals(PyEval_GetGlobals());
+  if (!globals || !PyDict_Check(globals.ptr())) return 1;
+  PyObject* const name = PyDict_GetItemString(globals.ptr(), "__name__");
+  return name && PyUnicode_Check(name) && PyUnicode_CompareWithASCIIString(name, "mmbrdf._lazy") == 0 ? 2 : 1;
+}
+
+}  // namespace
+
 void warn_outside(const ModelObject& model, const RangeCount& range) {
   const auto warn = [](const std::string& text) {
     const py::object category = py::module_::import("mmbrdf").attr("ExtrapolationWarning");
-    if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+    if (PyErr_WarnEx(category.ptr(), text.c_str(), stack_level()) != 0) throw py::error_already_set();
   };
   const std::string unknown = unknown_range_line(model.model().name, model.model().validity);
   if (!unknown.empty() && model.is_first_of_unknown_range()) warn(unknown);

@@ -214,3 +214,15 @@ def test_lazy_stacks_have_the_bits_of_the_eager_call(camera, calibrated):
     np.testing.assert_array_equal(u.values, expected)
     with pytest.raises(ValueError, match=r"stack: chunks \(8, 8\) cut the axis 'frame'"):
         images.reduce(chunked.rechunk((6, 8, 8)), calibrated)
+
+
+def test_stacks_go_from_chunked_files_to_chunked_files(camera, calibrated, tmp_path):
+    pytest.importorskip("zarr", reason="no zarr: ./dev packages clusters")
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("dask.array", reason="no Dask: ./dev packages clusters")
+    named = xarray.DataArray(camera.stack, dims=["y", "x", "frame"], name="raw", attrs={"camera": "A"})
+    named.chunk({"y": 3}).to_dataset().to_zarr(tmp_path / "raw")
+    images.reduce(xarray.open_zarr(tmp_path / "raw").raw, calibrated).to_dataset().to_zarr(tmp_path / "mueller")
+    read = xarray.open_zarr(tmp_path / "mueller").mueller
+    assert read.dims == ("y", "x", "row", "column") and read.attrs["camera"] == "A" and read.dtype == np.float32
+    np.testing.assert_array_equal(read.values, images.reduce(camera.stack, calibrated))
