@@ -175,6 +175,18 @@ def test_instruments_can_be_sent_and_cut(camera, calibrated):
     )
 
 
+def test_rows_that_are_calibrated_apart_are_one_instrument(camera, calibrated):
+    parts = [
+        images.calibrate(camera.references, camera.stacks[:, rows], wavelength_nm=532, start=calibrated.start)
+        for rows in (slice(0, 2), slice(2, 6))
+    ]
+    whole = images.join(parts)
+    for name in ("generator", "analyzer", "u_generator", "misfit", "failure"):
+        np.testing.assert_array_equal(getattr(whole, name), getattr(calibrated, name))
+    with pytest.raises(ValueError, match="number 1 has 3 columns of 16 frames, the first 8 of 16"):
+        images.join([calibrated, calibrated[:, 2:5]])
+
+
 def test_shapes_that_do_not_fit_are_named(camera, calibrated):
     with pytest.raises(ValueError, match="the last axis has 15 frames, the instrument 16"):
         images.reduce(camera.stack[..., :15], calibrated)
