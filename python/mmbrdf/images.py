@@ -35,6 +35,7 @@ __all__ = [
     "PixelModels",
     "Reference",
     "calibrate",
+    "join",
     "load_models",
     "quantities",
     "readings",
@@ -146,6 +147,35 @@ class PixelInstrument:
         if self._inverses is None:
             self._inverses = _mmbrdf._PixelInverses(self.generator, self.analyzer, self.polarimeter)
         return self._inverses
+
+
+def join(instruments: Sequence[PixelInstrument]) -> PixelInstrument:
+    """Instruments of rows of an image, one below the other, as one. Raises ValueError for others than of the same columns and kind."""
+    if not instruments:
+        raise ValueError("instruments: none")
+    first = instruments[0]
+    names = ("misfit", "failure", "u_generator", "u_analyzer", "retarders", "u_retarders")
+    for k, one in enumerate(instruments):
+        if (
+            one.shape[1] != first.shape[1]
+            or one.frames != first.frames
+            or (one.retarders is None) != (first.retarders is None)
+        ):
+            raise ValueError(
+                f"instruments: number {k} has {one.shape[1]} columns of {one.frames} frames, the first {first.shape[1]} of {first.frames}"
+            )
+    values = {
+        name: np.concatenate([getattr(one, name) for one in instruments])
+        for name in names
+        if all(getattr(one, name) is not None for one in instruments)
+    }
+    return PixelInstrument(
+        np.concatenate([one.generator for one in instruments]),
+        np.concatenate([one.analyzer for one in instruments]),
+        pairs=first.pairs,
+        values=values,
+        start=first.start,
+    )
 
 
 _Instrument = Polarimeter | Calibration | PixelInstrument

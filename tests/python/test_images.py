@@ -175,6 +175,18 @@ def test_instruments_can_be_sent_and_cut(camera, calibrated):
     )
 
 
+def test_rows_that_are_calibrated_apart_are_one_instrument(camera, calibrated):
+    parts = [
+        images.calibrate(camera.references, camera.stacks[:, rows], wavelength_nm=532, start=calibrated.start)
+        for rows in (slice(0, 2), slice(2, 6))
+    ]
+    whole = images.join(parts)
+    for name in ("generator", "analyzer", "u_generator", "misfit", "failure"):
+        np.testing.assert_array_equal(getattr(whole, name), getattr(calibrated, name))
+    with pytest.raises(ValueError, match="number 1 has 3 columns of 16 frames, the first 8 of 16"):
+        images.join([calibrated, calibrated[:, 2:5]])
+
+
 def test_shapes_that_do_not_fit_are_named(camera, calibrated):
     with pytest.raises(ValueError, match="the last axis has 15 frames, the instrument 16"):
         images.reduce(camera.stack[..., :15], calibrated)
@@ -214,3 +226,15 @@ def test_lazy_stacks_have_the_bits_of_the_eager_call(camera, calibrated):
     np.testing.assert_array_equal(u.values, expected)
     with pytest.raises(ValueError, match=r"stack: chunks \(8, 8\) cut the axis 'frame'"):
         images.reduce(chunked.rechunk((6, 8, 8)), calibrated)
+
+
+def test_stacks_go_from_chunked_files_to_chunked_files(camera, calibrated, tmp_path):
+    pytest.importorskip("zarr", reason="no zarr: ./dev packages clusters")
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("dask.array", reason="no Dask: ./dev packages clusters")
+    named = xarray.DataArray(camera.stack, dims=["y", "x", "frame"], name="raw", attrs={"camera": "A"})
+    named.chunk({"y": 3}).to_dataset().to_zarr(tmp_path / "raw")
+    images.reduce(xarray.open_zarr(tmp_path / "raw").raw, calibrated).to_dataset().to_zarr(tmp_path / "mueller")
+    read = xarray.open_zarr(tmp_path / "mueller").mueller
+    assert read.dims == ("y", "x", "row", "column") and read.attrs["camera"] == "A" and read.dtype == np.float32
+    np.testing.assert_array_equal(read.values, images.reduce(camera.stack, calibrated))

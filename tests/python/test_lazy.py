@@ -185,3 +185,12 @@ def test_warnings_of_extrapolation_come_when_it_is_computed(ptfe):
     lazy = ptfe.evaluate(532, 45, 0, da.from_array(np.array([30.0, 89.0]), chunks=1), 180)
     with pytest.warns(mmbrdf.ExtrapolationWarning):
         lazy.compute(scheduler="synchronous")
+
+
+def test_warnings_are_those_of_the_line_that_asked(ptfe):
+    """So that a filter for one warning of each place does not take all places for one."""
+    with pytest.warns(mmbrdf.ExtrapolationWarning) as warned:
+        ptfe.evaluate(532, 45, 0, 89.5, 180)
+        ptfe.evaluate(532, 45, 0, 89.5, 180)
+    assert [one.filename for one in warned] == [__file__] * 2
+    assert warned[1].lineno == warned[0].lineno + 1
