@@ -233,9 +233,9 @@ Json directions_json(std::span<const Sample> samples) {
 }  // namespace
 
 void add_samples(Json& report, const Model& model, const ReportedSamples& data) {
+  const Comparison compared = compare(model, data.samples);  // refuses no samples
   add(report, "data", data_field(model, data));
   report["directions"] = directions_json(data.samples);
-  const Comparison compared = compare(model, data.samples);
   ReportField differences{residuals_json(compared)};
   if (compared.dark > 0) differences.warnings.push_back(dark_line(compared));
   add(report, "residuals", std::move(differences));

@@ -35,7 +35,7 @@ def test_elements_are_unknown_in_a_model_and_in_all_that_is_asked_of_it(nine):
 def test_elements_leave_no_picture_of_what_needs_them_and_no_gap_in_a_report(nine, tmp_path):
     model = mmbrdf.fit(nine, orders=(4, 3)).model
     mmbrdf.report(model, nine, tmp_path / "nine.html")
-    assert (tmp_path / "nine.html").read_text().count("<figure>") > 2
+    assert (tmp_path / "nine.html").read_text().count('<figure class="picture">') > 2
     mmbrdf.plot.in_plane_curves(model, 532)
     with pytest.raises(ValueError, match="^not measured, and needed here: 14, 24"):
         mmbrdf.plot.realizability_map(model, 532, 45)
