@@ -91,7 +91,7 @@ export interface ModelAt {
   /** nm */
   readonly wavelength: number;
 
-  /** Matrices, 16 numbers for each geometry. Bits are those of the C++ library compiled for this machine. */
+  /** Matrices, 16 numbers for each geometry: those of the program to 1e-12 of f11. */
   evaluate(geometries: Geometries, options?: MatrixOptions): Float64Array;
 
   /** Standard uncertainties of the elements. They do not depend on the convention. The first call takes longer. */
