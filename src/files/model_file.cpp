@@ -265,6 +265,10 @@ ordered_json model_json(const Model& model) {
   return root;
 }
 
+void require_text(std::string_view piece, const std::string& path) {
+  if (piece.find('\0') != std::string_view::npos) throw std::runtime_error(path + ": binary file, not a model");
+}
+
 /// All that a text file holds.
 std::string contents(const std::string& path) {
   std::ifstream in = open_input(path);
@@ -272,8 +276,7 @@ std::string contents(const std::string& path) {
   std::vector<char> piece(1 << 16);
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
     text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.find('\0', text.size() - static_cast<std::size_t>(in.gcount())) != std::string::npos)
-      throw std::runtime_error(path + ": binary file, not a model");
+    require_text({piece.data(), static_cast<std::size_t>(in.gcount())}, path);
   }
   if (in.bad()) throw std::runtime_error(path + ": read error");
   return text;
@@ -326,8 +329,10 @@ std::string to_json(const Model& model) {
   }
 }
 
-Model load_model(const std::string& path) {
-  const std::string text = contents(path);
+Model load_model(const std::string& path) { return model_from_text(contents(path), path); }
+
+Model model_from_text(std::string_view text, const std::string& path) {
+  require_text(text, path);
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string::npos) throw std::runtime_error(path + ": empty file, without a model");
   const ModelFormat* format = std::ranges::find(formats, text[first], &ModelFormat::first);

@@ -163,6 +163,21 @@ TEST(Json, SavedIsLoaded) {
   expect_same(load_model(folder / "m.json"), model);
 }
 
+TEST(ModelFile, OfATextIsThatOfTheFile) {
+  const Model published = model_from_text("1, 1, 0, 0, 0, 0, 0, 2.5\n", "folder/sample.csv");
+  EXPECT_EQ(published.family, Family::germer2017);
+  EXPECT_EQ(published.name, "sample");
+  expect_same(model_from_text(to_json(any_model()), "any.json"), any_model());
+  for (const auto& [text, message] : {std::pair{std::string_view(), "a.csv: empty file, without a model"},
+                                      {std::string_view("{}\0", 3), "a.csv: binary file, not a model"}})
+    try {
+      model_from_text(text, "a.csv");
+      FAIL() << message;
+    } catch (const std::runtime_error& e) {
+      EXPECT_STREQ(e.what(), message);
+    }
+}
+
 TEST(Json, ThatNobodyCouldReadIsNotSaved) {
   const Folder folder;
   put(folder / "m.json", "old");

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The sixteen pictures: a canvas that the module paints, with names, limits and marks over it.
+import type { Hemisphere, Mmbrdf, ModelAt } from "mmbrdf";
+
+import { f11Gradient, palette, signedGradient } from "./colors";
+import { short } from "./numbers";
+import { folded, type State } from "./state";
+
+export const pixels = 192;
+const grasp = 14; // px around a mark
+
+type Angles = [number, number];
+type Moved = (what: "source" | "detector", to: Angles) => void;
+
+export class Hemispheres {
+  #grid?: Hemisphere;
+  #projection = "";
+  readonly #box = document.querySelector<HTMLElement>("#hemispheres")!;
+  readonly #canvas = document.querySelector<HTMLCanvasElement>("#canvas")!;
+  readonly #context: CanvasRenderingContext2D;
+  readonly #tiles: HTMLElement[];
+
+  constructor(
+    readonly mmbrdf: Mmbrdf,
+    moved: Moved,
+  ) {
+    this.#canvas.width = this.#canvas.height = 4 * pixels;
+    this.#context = this.#canvas.getContext("2d")!;
+    this.#tiles = [...Array(16).keys()].map(() => {
+      const tile = document.createElement("div");
+      tile.innerHTML =
+        '<b></b><span class="limit"></span><i class="mark source"></i><i class="mark detector"></i>';
+      document.querySelector("#tiles")!.append(tile);
+      return tile;
+    });
+    this.#listen(moved);
+  }
+
+  /** The limits that were used; times go to the performance timeline as "frame". */
+  show(at: ModelAt, state: State): number[] {
+    const begun = performance.now();
+    if (!this.#grid || this.#projection !== state.projection) {
+      this.#grid?.free();
+      this.#projection = state.projection;
+      this.#grid = this.mmbrdf.hemisphere(pixels, { projection: state.projection });
+      this.#grid.colors.set(palette);
+    }
+    const grid = this.#grid;
+    grid.evaluate(at, state.thetaI, state.phiI, state);
+    const limits = state.limits.length ? state.limits : automatic(grid.extremes());
+    grid.limits.set(limits);
+    grid.paint();
+    const painted = performance.now();
+    this.#context.putImageData(new ImageData(grid.image as Uint8ClampedArray<ArrayBuffer>, 4 * pixels, 4 * pixels), 0, 0);
+    performance.measure("module", { start: begun, end: painted });
+    performance.measure("frame", { start: begun, end: performance.now() });
+    this.#label(state, limits);
+    return limits;
+  }
+
+  #label(state: State, limits: number[]) {
+    const [source, detector] = [place(state, state.thetaI, state.phiI), place(state, state.thetaR, state.phiR)];
+    this.#tiles.forEach((tile, e) => {
+      const letter = state.normalized && e ? "m" : "f";
+      const [name, limit, sun, eye] = tile.children as unknown as HTMLElement[];
+      name.textContent = `${letter}${1 + (e >> 2)}${1 + (e & 3)}`;
+      limit.textContent = e ? `± ${short(limits[2 * e + 1])}` : `${short(limits[0])} … ${short(limits[1])}`;
+      for (const [mark, [x, y]] of [[sun, source], [eye, detector]] as const) {
+        mark.style.left = `${50 + 50 * x}%`;
+        mark.style.top = `${50 - 50 * y}%`;
+      }
+    });
+    const ramp = (gradient: string) => `<i class="ramp" style="background:${gradient}"></i>`;
+    const unit = state.normalized ? "" : " sr<sup>-1</sup>";
+    const lock = state.limits.length ? ", locked" : "";
+    document.querySelector("#legend-f11")!.innerHTML =
+      `f11: ${short(limits[0])}${ramp(f11Gradient)}${short(limits[1])} sr<sup>-1</sup>${lock}`;
+    document.querySelector("#legend-others")!.innerHTML =
+      `others: −${ramp(signedGradient)}+ of the limit in each picture${unit}${lock}`;
+  }
+
+  #listen(moved: Moved) {
+    let held: "source" | "detector" | undefined;
+    let state: State | undefined;
+    const at = (event: PointerEvent): { x: number; y: number; size: number } => {
+      const box = this.#box.getBoundingClientRect();
+      const size = box.width / 4;
+      const [px, py] = [event.clientX - box.left, event.clientY - box.top];
+      return { x: (2 * (px % size)) / size - 1, y: 1 - (2 * (py % size)) / size, size };
+    };
+    this.current = (now: State) => (state = now);
+    this.#box.addEventListener("pointerdown", (event) => {
+      if (!state || event.button !== 0) return;
+      const { x, y, size } = at(event);
+      const near = (theta: number, phi: number) => {
+        const [mx, my] = place(state!, theta, phi);
+        return (Math.hypot(mx - x, my - y) * size) / 2 <= grasp;
+      };
+      held = near(state.thetaI, state.phiI) ? "source" : "detector";
+      this.#box.setPointerCapture(event.pointerId);
+      moved(held, direction(state, x, y));
+    });
+    this.#box.addEventListener("pointermove", (event) => {
+      if (!held || !state) return;
+      const { x, y } = at(event);
+      moved(held, direction(state, x, y));
+    });
+    for (const end of ["pointerup", "pointercancel"]) this.#box.addEventListener(end, () => (held = undefined));
+    this.#box.addEventListener("keydown", (event) => {
+      const steps: Record<string, Angles> = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
+      const step = steps[event.key];
+      if (!step || !state || event.altKey || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      const [theta, phi] = event.shiftKey ? [state.thetaR, state.phiR] : [state.thetaI, state.phiI];
+      moved(event.shiftKey ? "detector" : "source", folded(theta + step[0], phi + step[1]));
+    });
+  }
+
+  /** Tells what is shown to who drags. */
+  current: (state: State) => void = () => {};
+
+  async png(): Promise<Blob> {
+    return new Promise((done, failed) =>
+      this.#canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("no picture"))), "image/png"),
+    );
+  }
+}
+
+/** f11 from its smallest to its largest; the others as far to both sides. */
+function automatic(extremes: Float32Array): number[] {
+  const limits = Array.from(extremes);
+  for (let e = 0; e < 16; ++e) {
+    const size = Math.max(Math.abs(limits[2 * e]), Math.abs(limits[2 * e + 1]));
+    if (!Number.isFinite(size)) limits.splice(2 * e, 2, 0, 1);
+    else if (e) limits.splice(2 * e, 2, -(size || 1), size || 1);
+    else if (limits[0] === limits[1]) limits[1] = limits[0] + 1;
+  }
+  return limits;
+}
+
+const radians = Math.PI / 180;
+
+/** In the disc of a tile: -1 ... 1 to the right and upwards. */
+function place(state: State, theta: number, phi: number): Angles {
+  const r = state.projection === "lambert" ? Math.SQRT2 * Math.sin((theta * radians) / 2) : Math.sin(theta * radians);
+  return [r * Math.cos(phi * radians), r * Math.sin(phi * radians)];
+}
+
+/** The direction there; beyond the disc the one at its edge. To tenths of a degree. */
+function direction(state: State, x: number, y: number): Angles {
+  const r = Math.min(1, Math.hypot(x, y));
+  const theta = state.projection === "lambert" ? 2 * Math.asin(r / Math.SQRT2) : Math.asin(r);
+  const tenths = (angle: number) => Math.round((angle / radians) * 10) / 10;
+  return [tenths(theta), tenths(Math.atan2(y, x))];
+}

@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page: one state, which controls, pictures, words and the link show.
+import wasmText from "virtual:wasm";
+
+import load, { type Mmbrdf, type Model, type ModelAt } from "mmbrdf";
+
+import { type Chart, drawn, standalone } from "./chart";
+import { Hemispheres } from "./hemispheres";
+import { toPlaceOf, uncertaintyText } from "./numbers";
+import { dhrAngles, inPlane, scanned } from "./scan";
+import { angles, folded, fromLink, start, type State, toLink } from "./state";
+import "./style.css";
+import { pythonLines, programLines, save } from "./take";
+import type { Question, Reply } from "./worker";
+import Beside from "./worker?worker&inline";
+
+const element = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
+const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
+const coverage = 1.96; // of a normal distribution, 95 %
+
+async function bytesOf(text: string): Promise<Uint8Array> {
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+class Page {
+  state: State;
+  model!: Model;
+  at!: ModelAt;
+  reply?: Reply;
+  limits: number[] = [];
+  readonly files = new Map<string, Uint8Array>();
+  readonly hemispheres: Hemispheres;
+  readonly beside = new Beside();
+  #asked = 0; // number of the last question to the worker
+  #busy = true; // the worker answers one question at a time
+  #drawing = false;
+  #failed = false; // to show the state
+  #chart = "";
+
+  constructor(
+    readonly mmbrdf: Mmbrdf,
+    wasm: Uint8Array,
+  ) {
+    this.state = fromLink(location.hash);
+    this.hemispheres = new Hemispheres(mmbrdf, (what, [theta, phi]) =>
+      this.change(what === "source" ? { thetaI: theta, phiI: phi } : { thetaR: theta, phiR: phi }),
+    );
+    this.#fillChoices();
+    this.#listen();
+    this.#open(this.state.model, true);
+    this.beside.onmessage = ({ data }: MessageEvent<Reply>) => this.#answered(data);
+    this.beside.onerror = () => this.#trouble("Uncertainties cannot be computed: this browser starts no worker");
+    this.beside.postMessage({ wasm });
+  }
+
+  // ---- controls ------------------------------------------------------------------------------------------------------
+
+  #fillChoices() {
+    for (const name of this.mmbrdf.materials) element("model").append(new Option(name, name));
+    const curves: [string, string][] = [["polarized", "co- and cross-polarized BRDF, plane of incidence"], ["f11", "f11, plane of incidence"]];
+    for (const { name, meaning } of this.mmbrdf.quantities)
+      if (!polarized.includes(name)) curves.push([name, `${name.replaceAll("_", " ")}: ${meaning}`]);
+    curves.push(["dhr", "directional-hemispherical reflectance against θi"]);
+    for (const [value, words] of curves) element("curve").append(new Option(words, value));
+    this.#understand();
+  }
+
+  /** What a link asks for and nobody knows is as at the start. */
+  #understand() {
+    const curves = Array.from(element<HTMLSelectElement>("curve").options, ({ value }) => value);
+    const known = { frame: this.mmbrdf.frames, convention: this.mmbrdf.conventions, projection: ["projected", "lambert"], curve: curves };
+    for (const [name, values] of Object.entries(known))
+      if (!(values as string[]).includes(this.state[name as keyof typeof known]))
+        Object.assign(this.state, { [name]: start[name as keyof typeof known] });
+    if (!(this.state.wavelength >= 1)) this.state.wavelength = start.wavelength;
+    for (const name of angles) this.state[name] = Math.max(-360, Math.min(360, this.state[name]));
+    [this.state.thetaI, this.state.phiI] = folded(this.state.thetaI, this.state.phiI);
+    [this.state.thetaR, this.state.phiR] = folded(this.state.thetaR, this.state.phiR);
+  }
+
+  #listen() {
+    const number = (id: "wavelength" | (typeof angles)[number]) =>
+      element<HTMLInputElement>(id).addEventListener("input", (event) => {
+        const input = event.target as HTMLInputElement;
+        const good = input.value !== "" && input.checkValidity();
+        input.setAttribute("aria-invalid", String(!good));
+        if (good) this.change({ [id]: Number(input.value) }, input);
+      });
+    (["wavelength", ...angles] as const).forEach(number);
+    for (const id of ["frame", "convention", "projection", "curve"] as const)
+      element<HTMLSelectElement>(id).addEventListener("change", (event) =>
+        this.change({ [id]: (event.target as HTMLSelectElement).value }),
+      );
+    for (const id of ["normalized", "digits"] as const)
+      element<HTMLInputElement>(id).addEventListener("change", (event) =>
+        this.change({ [id]: (event.target as HTMLInputElement).checked, ...(id === "normalized" ? { limits: [] } : {}) }),
+      );
+    element<HTMLInputElement>("locked").addEventListener("change", (event) =>
+      this.change({ limits: (event.target as HTMLInputElement).checked ? this.limits : [] }),
+    );
+    element<HTMLSelectElement>("model").addEventListener("change", (event) => this.#open((event.target as HTMLSelectElement).value));
+    element<HTMLInputElement>("file").addEventListener("change", (event) => {
+      const input = event.target as HTMLInputElement;
+      const [file] = input.files ?? [];
+      if (file) void this.#read(file).then(() => (input.value = "")); // so that the same file can be opened again
+    });
+    element("controls").addEventListener("submit", (event) => event.preventDefault());
+    addEventListener("dragover", (event) => {
+      event.preventDefault();
+      document.body.classList.add("dropping");
+    });
+    addEventListener("dragleave", () => document.body.classList.remove("dropping"));
+    addEventListener("drop", (event) => {
+      event.preventDefault();
+      document.body.classList.remove("dropping");
+      const file = event.dataTransfer?.files[0];
+      if (file) void this.#read(file);
+    });
+    element("csv").addEventListener("click", () => save(`${this.#fileName()}.csv`, this.#csv(), "text/csv"));
+    element("svg").addEventListener("click", () => save(`${this.#fileName()}.svg`, standalone(this.#chart), "image/svg+xml"));
+    element("png").addEventListener("click", async () => save("hemispheres.png", await this.hemispheres.png()));
+    element("link").addEventListener("click", async () => {
+      await navigator.clipboard?.writeText(location.href).catch(() => undefined);
+      element("link").textContent = "The link is in the address bar, and copied";
+    });
+    addEventListener("hashchange", () => {
+      if (location.hash === toLink(this.state)) return;
+      const asked = fromLink(location.hash);
+      Object.assign(this.state, asked);
+      this.#understand();
+      this.#open(asked.model);
+    });
+  }
+
+  // ---- models --------------------------------------------------------------------------------------------------------
+
+  async #read(file: File) {
+    const contents = new Uint8Array(await file.arrayBuffer());
+    try {
+      this.mmbrdf.model(contents, file.name).free();
+    } catch (error) {
+      this.#trouble((error as Error).message);
+      return;
+    }
+    if (!this.files.has(file.name)) element("model").append(new Option(file.name, file.name));
+    this.files.set(file.name, contents);
+    this.#open(file.name);
+  }
+
+  /** Another model; the one that was shown stays where that fails. */
+  #open(name: string, first = false) {
+    const contents = this.files.get(name);
+    try {
+      const model = contents ? this.mmbrdf.model(contents, name) : this.mmbrdf.material(name);
+      if (this.model) this.model.free();
+      this.model = model;
+      this.#trouble("");
+    } catch (error) {
+      this.#trouble(`${(error as Error).message}. A link does not hold files: open it again.`);
+      if (!first) return this.#show();
+      this.model = this.mmbrdf.material((name = start.model));
+    }
+    this.at = undefined as unknown as ModelAt;
+    const known = this.model.wavelengths;
+    const inside = known.length && this.state.wavelength >= known[0] && this.state.wavelength <= known[known.length - 1];
+    const wavelength = first || inside || !known.length ? this.state.wavelength : known[0];
+    this.reply = undefined;
+    this.change({ model: name, wavelength });
+  }
+
+  #trouble(words: string) {
+    element("trouble").textContent = words;
+  }
+
+  // ---- showing -------------------------------------------------------------------------------------------------------
+
+  change(some: Partial<State>, typed?: HTMLInputElement) {
+    Object.assign(this.state, some);
+    if (this.#drawing) return;
+    this.#drawing = true;
+    requestAnimationFrame(() => {
+      this.#drawing = false;
+      this.#show(typed);
+    });
+  }
+
+  #show(typed?: HTMLInputElement) {
+    const { state } = this;
+    try {
+      if (!this.at || this.at.wavelength !== state.wavelength) {
+        const at = this.model.at(state.wavelength);
+        if (this.at) this.at.free();
+        this.at = at;
+      }
+      this.limits = this.hemispheres.show(this.at, state);
+      this.hemispheres.current(state);
+    } catch (error) {
+      this.#failed = true;
+      return this.#trouble((error as Error).message);
+    }
+    if (this.#failed) this.#trouble("");
+    this.#failed = false;
+    for (const id of ["wavelength", ...angles] as const) {
+      const input = element<HTMLInputElement>(id);
+      if (input !== typed) input.value = String(state[id]);
+      if (input !== typed) input.setAttribute("aria-invalid", "false");
+    }
+    for (const id of ["model", "frame", "convention", "projection", "curve"] as const) element<HTMLSelectElement>(id).value = state[id];
+    for (const id of ["normalized", "digits"] as const) element<HTMLInputElement>(id).checked = state[id];
+    element<HTMLInputElement>("locked").checked = state.limits.length > 0;
+    element("facts").textContent = `${this.model.basis}. Fitted: ${this.model.fittedRange}.`;
+    history.replaceState(null, "", toLink(state));
+    element("program").textContent = programLines(state, state.curve);
+    element("python").textContent = pythonLines(state, this.files.has(state.model));
+    this.#ask();
+    this.#showMatrix();
+  }
+
+  #geometry() {
+    const { thetaI, phiI, thetaR, phiR } = this.state;
+    return { thetaI, phiI, thetaR, phiR };
+  }
+
+  #number(value: number, u: number | null): string {
+    return this.state.digits ? String(value) : toPlaceOf(value, u);
+  }
+
+  /** The matrix at once; what the worker said of it stays until it answers again. */
+  #showMatrix() {
+    const { state, reply } = this;
+    const matrix = this.at.evaluate(this.#geometry(), state);
+    const u = reply?.u;
+    const uText = (one: number | undefined) => (one === undefined ? "…" : this.state.digits ? String(one) : uncertaintyText(one));
+    const body = element("matrix").querySelector("tbody")!;
+    body.innerHTML = "";
+    for (let row = 0; row < 4; ++row) {
+      const line = body.insertRow();
+      for (let column = 0; column < 4; ++column) {
+        const e = 4 * row + column;
+        const cell = line.insertCell();
+        const name = `${state.normalized && e ? "m" : "f"}${row + 1}${column + 1}`;
+        cell.dataset.element = name;
+        cell.innerHTML = `<small>${name}</small><span class="value"></span> <small>± <span class="u"></span></small>`;
+        cell.querySelector(".value")!.textContent = this.#number(matrix[e], u ? u[e] : null);
+        cell.querySelector(".u")!.textContent = uText(u?.[e]);
+      }
+    }
+    element("matrix").querySelector("caption")!.textContent = state.normalized
+      ? "f11 in sr⁻¹, all others divided by it; with standard uncertainties"
+      : "In sr⁻¹, with standard uncertainties";
+    this.#showWords(matrix[0], u ? u[0] : null);
+  }
+
+  #showWords(f11: number, u: number | null) {
+    const { reply } = this;
+    const [where] = this.at.outside(this.#geometry());
+    const beyond = where.extrapolated ? `Extrapolated: ${where.line}` : "";
+    const inside: Record<string, string> = {
+      ok: "Inside the fitted range.",
+      interpolated: "Inside the fitted range, interpolated between wavelengths.",
+      unknown: "The fitted range is not known.",
+    };
+    const yes = (is: boolean | null | undefined, words: string, not: string) => (is === undefined || is === null ? "" : is ? words : not);
+    const words = element("words");
+    words.innerHTML = '<span id="f11"></span> <span class="beyond"></span> <span id="validity"></span> <span id="physical"></span>';
+    element("f11").textContent =
+      `f11 = ${this.#number(f11, u)} sr⁻¹, ` +
+      (u === null && this.model.hasUncertainty && !reply
+        ? "its uncertainty is being computed."
+        : u === null || Number.isNaN(u)
+          ? "its uncertainty is not known."
+          : `standard uncertainty ${this.state.digits ? u : uncertaintyText(u)} sr⁻¹.`);
+    words.querySelector(".beyond")!.textContent = beyond && `${beyond}.`;
+    element("validity").textContent = where.extrapolated ? "" : (inside[where.validity] ?? where.validity);
+    element("physical").textContent =
+      yes(reply?.answer?.realizable, "Realizable: a scatterer can have this matrix.", "Not realizable: no scatterer has this matrix.") +
+      yes(reply?.answer?.estimable, "", " The data of the fit do not determine every element here.");
+  }
+
+  // ---- the worker ----------------------------------------------------------------------------------------------------
+
+  #ask() {
+    this.#asked += 1;
+    this.reply = undefined; // it was of another question
+    document.body.dataset.busy = "true";
+    if (!this.#busy) this.#send();
+  }
+
+  #send() {
+    this.#busy = true;
+    const question: Question = { id: this.#asked, state: { ...this.state }, contents: this.files.get(this.state.model) };
+    this.beside.postMessage(question);
+  }
+
+  #answered(reply: Reply) {
+    this.#busy = false;
+    if (reply.id !== this.#asked) return this.#send();
+    delete document.body.dataset.busy;
+    if (reply.error) return this.#trouble(reply.error);
+    this.reply = reply;
+    this.#showMatrix();
+    this.#showTables();
+    this.#showChart();
+  }
+
+  #showTables() {
+    const answer = this.reply!.answer!;
+    const rows = element("quantities").querySelector("tbody")!;
+    rows.innerHTML = "";
+    for (const { name, value, uncertainty } of answer.quantities) {
+      const known = this.mmbrdf.quantities.find((one) => one.name === name)!;
+      const row = rows.insertRow();
+      row.dataset.quantity = name;
+      const head = document.createElement("th");
+      head.scope = "row";
+      head.textContent = name.replaceAll("_", " ");
+      head.title = known.meaning;
+      row.append(head);
+      row.insertCell().textContent = value === null ? "no meaning here" : this.#number(value, uncertainty);
+      row.insertCell().textContent = this.state.digits && uncertainty !== null ? String(uncertainty) : uncertaintyText(uncertainty);
+      row.insertCell().textContent = known.unit.replace("^-1", "⁻¹") || "1";
+    }
+    const parts = element("parts").querySelector("tbody")!;
+    parts.innerHTML = "";
+    for (const { name, u_f11 } of answer.budget) {
+      const row = parts.insertRow();
+      row.insertCell().textContent = name;
+      row.insertCell().textContent = uncertaintyText(u_f11);
+    }
+    if (!answer.budget.length) parts.insertRow().insertCell().textContent = "not known of this model";
+  }
+
+  // ---- curves --------------------------------------------------------------------------------------------------------
+
+  /** Names of what is drawn, and their x. */
+  #curve(): { names: string[]; x: number[]; label: string } {
+    const { curve } = this.state;
+    if (curve === "dhr") return { names: ["dhr"], x: dhrAngles, label: "polar angle θi of the light, degrees" };
+    return { names: curve === "polarized" ? polarized : [curve], x: scanned, label: "θr in the plane of incidence, degrees; negative on the side of the light" };
+  }
+
+  #showChart() {
+    const { names, x, label } = this.#curve();
+    const { model, state } = this;
+    const curves = names.map((name) => {
+      const { values, uncertainties } = this.reply!.curves![name];
+      return { name: name.replace("_", " "), x, y: values, half: uncertainties.map((u) => coverage * u) };
+    });
+    const beyond: [number, number][] = [];
+    const limit = state.curve === "dhr" ? model.thetaIMax : model.thetaRMax;
+    if (limit !== null && state.curve !== "dhr" && -limit > x[0]) beyond.push([x[0], -limit]);
+    if (limit !== null && limit < x[x.length - 1]) beyond.push([limit, x[x.length - 1]]);
+    if (this.at.outside({ thetaI: state.thetaI, thetaR: 0 })[0].extrapolated && state.curve !== "dhr") beyond.splice(0, 2, [x[0], x[x.length - 1]]);
+    const unit = state.curve === "dhr" ? "" : (this.mmbrdf.quantities.find(({ name }) => name === names[0])?.unit ?? "sr^-1");
+    const yLabel = names.length > 1 ? "BRDF, sr⁻¹" : `${names[0].replaceAll("_", " ")}${unit ? ", sr⁻¹" : ""}`;
+    const chart: Chart = { curves, xLabel: label, yLabel, beyond, at: this.#cursor() };
+    const words = `${yLabel} against ${label}: ${curves.map((one) => `${one.name} from ${toPlaceOf(Math.min(...one.y), null)} to ${toPlaceOf(Math.max(...one.y), null)}`).join("; ")}.`;
+    this.#chart = drawn(chart, words);
+    element("chart").innerHTML = this.#chart;
+    element("chart-words").textContent = `${model.name} at ${state.wavelength} nm. Bands hold 95 % (1.96 u). Hatched: extrapolated.`;
+  }
+
+  /** Where the chosen direction is in the curve, if it is. */
+  #cursor(): number | undefined {
+    const { state } = this;
+    if (state.curve === "dhr") return state.thetaI <= 85 ? state.thetaI : undefined;
+    const turn = (((state.phiR - state.phiI) % 360) + 360) % 360;
+    const theta = state.thetaR === 0 ? 0 : turn === 180 ? state.thetaR : turn === 0 ? -state.thetaR : NaN;
+    return Math.abs(theta) <= 85 ? theta : undefined;
+  }
+
+  #fileName() {
+    return `${this.state.model.replace(/\.\w+$/, "")}-${this.state.wavelength}nm-${this.state.curve}`;
+  }
+
+  #csv(): string {
+    const { state } = this;
+    const curves = this.reply?.curves;
+    if (!curves) return "";
+    if (state.curve === "dhr") {
+      const rows = dhrAngles.map((theta, i) => [theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
+      return ["theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll("NaN", "");
+    }
+    const names = ["f11", ...this.mmbrdf.quantities.map(({ name }) => name)];
+    const where = inPlane(state);
+    const validity = this.at.outside(where);
+    const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", ...names.flatMap((name) => [name, `u_${name}`]), "validity"];
+    const rows = where.map((one, i) =>
+      [state.wavelength, one.thetaI, one.phiI, one.thetaR, one.phiR, ...names.flatMap((name) => [curves[name].values[i], curves[name].uncertainties[i]]), validity[i].validity].join(","),
+    );
+    return [head.join(","), ...rows, ""].join("\n").replaceAll("NaN", "");
+  }
+}
+
+const wasm = await bytesOf(wasmText);
+new Page(await load({ wasm }), wasm);
+document.body.dataset.ready = "true";

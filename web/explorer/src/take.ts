@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is taken along: files, and the lines that give the same numbers elsewhere.
+import type { State } from "./state";
+
+export function save(name: string, contents: Blob | string, type = "text/plain") {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(contents instanceof Blob ? contents : new Blob([contents], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+/** A name for a shell, in quotes if it needs them. */
+const shell = (text: string) => (/^[\w./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`);
+
+export function programLines(state: State, curve: string): string {
+  const light = `-w ${state.wavelength} -i ${state.thetaI},${state.phiI}`;
+  const where = `${shell(state.model)} ${light}`;
+  const frame = state.frame === "xy" ? "" : ` --frame ${state.frame}`;
+  const lines = [
+    `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}`,
+    `mmbrdf analyze ${where} -r ${state.thetaR},${state.phiR}${frame}`,
+    curve === "dhr"
+      ? `mmbrdf integrate ${shell(state.model)} -q dhr -w ${state.wavelength} --theta 0,15,30,45,60,75 --format csv`
+      : `mmbrdf analyze ${where} --scan theta_r=-85:85:1${frame} -o curve.csv`,
+  ];
+  if (state.convention !== "germer2017")
+    lines.push(`# The program's signs are those of germer2017; Python converts to ${state.convention}.`);
+  return lines.join("\n");
+}
+
+export function pythonLines(state: State, ownFile: boolean): string {
+  const angles = `theta_i_deg=${state.thetaI}, phi_i_deg=${state.phiI}, theta_r_deg=${state.thetaR}, phi_r_deg=${state.phiR}`;
+  const lines = [
+    "import mmbrdf",
+    "",
+    `model = mmbrdf.${ownFile ? "load_model" : "material"}(${JSON.stringify(state.model)})`,
+    `f = model.evaluate(${state.wavelength}, ${angles}, frame="${state.frame}")`,
+    `u = model.evaluate_uncertainty(${state.wavelength}, ${angles}, frame="${state.frame}")`,
+    `all = model.analyze(${state.wavelength}, ${angles})`,
+  ];
+  if (state.convention !== "germer2017") lines.push(`f = mmbrdf.convert(f, "germer2017", "${state.convention}")`);
+  return lines.join("\n");
+}

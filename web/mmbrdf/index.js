@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Types and contracts are in index.d.ts.
+import instantiate from "./dist/mmbrdf_module.mjs";
+
+const utf8 = new TextEncoder();
+const text = new TextDecoder();
+
+/** Calls of the WebAssembly module: memory for arguments is had and given back here, and errors become exceptions. */
+class Calls {
+  constructor(module) {
+    this.module = module;
+    this.known = JSON.parse(this.text(module._about()));
+  }
+
+  /** The text at this address; throws the module's message for 0. */
+  text(address) {
+    if (!address) throw new Error(this.read(this.module._error_text()));
+    return this.read(address);
+  }
+
+  read(address) {
+    const bytes = this.module.HEAPU8;
+    return text.decode(bytes.subarray(address, bytes.indexOf(0, address)));
+  }
+
+  /** What a call returned, but for 0. */
+  checked(result) {
+    if (!result) throw new Error(this.read(this.module._error_text()));
+    return result;
+  }
+
+  /** Calls work(addresses) with memory for these numbers of bytes, and gives it back. */
+  with(sizes, work) {
+    const addresses = [];
+    try {
+      for (const size of sizes) {
+        const address = this.module._malloc(Math.max(size, 8));
+        if (!address) throw new Error("no memory for " + size + " bytes");
+        addresses.push(address);
+      }
+      return work(...addresses);
+    } finally {
+      for (const address of addresses) this.module._free(address);
+    }
+  }
+
+  /** The same for texts, which end in a zero byte. */
+  withTexts(texts, work) {
+    const bytes = texts.map((one) => (typeof one === "string" ? utf8.encode(one) : one));
+    return this.with(
+      bytes.map((one) => one.length + 1),
+      (...addresses) => {
+        bytes.forEach((one, i) => {
+          this.module.HEAPU8.set(one, addresses[i]);
+          this.module.HEAPU8[addresses[i] + one.length] = 0;
+        });
+        return work(...addresses.flatMap((address, i) => [address, bytes[i].length]));
+      },
+    );
+  }
+
+  /** A copy of numbers in the module's memory. */
+  numbers(address, count) {
+    return this.module.HEAPF64.slice(address / 8, address / 8 + count);
+  }
+
+  number(list, name, what) {
+    const position = list.indexOf(name);
+    if (position < 0) throw new Error(`${what} '${name}' is not one of ${list.join(", ")}`);
+    return position;
+  }
+
+  frame(name = "xy") {
+    return this.number(this.known.frames, name, "frame");
+  }
+
+  convention(name = "germer2017") {
+    return this.number(this.known.conventions, name, "convention");
+  }
+}
+
+/** Four angles for each geometry, as one list of numbers. */
+function angles(geometries) {
+  const list = ArrayBuffer.isView(geometries)
+    ? geometries
+    : Array.isArray(geometries)
+      ? geometries.flatMap((one) => (typeof one === "number" ? [one] : anglesOf(one)))
+      : anglesOf(geometries);
+  if (list.length % 4) throw new Error(`${list.length} angles: there must be four for each geometry`);
+  return list;
+}
+
+function anglesOf({ thetaI, phiI = 0, thetaR, phiR = 0 }) {
+  for (const [name, value] of Object.entries({ thetaI, phiI, thetaR, phiR }))
+    if (typeof value !== "number") throw new Error(`${name} = ${value}, must be a number of degrees`);
+  return [thetaI, phiI, thetaR, phiR];
+}
+
+class At {
+  #calls;
+  #at;
+
+  constructor(calls, at, model, wavelength) {
+    this.#calls = calls;
+    this.#at = at;
+    this.model = model;
+    this.wavelength = wavelength;
+  }
+
+  #address() {
+    if (!this.#at || !this.model.isOpen) throw new Error(`model '${this.model.name}' was freed`);
+    return this.#at;
+  }
+
+  get address() {
+    return this.#address();
+  }
+
+  #each(geometries, bytes, work) {
+    const list = angles(geometries);
+    const count = list.length / 4;
+    return this.#calls.with([8 * list.length, ...bytes.map((one) => one * count)], (degrees, ...out) => {
+      this.#calls.module.HEAPF64.set(list, degrees / 8);
+      return work(degrees, count, ...out);
+    });
+  }
+
+  evaluate(geometries, { frame, convention, normalized = false } = {}) {
+    const calls = this.#calls;
+    return this.#each(geometries, [128], (degrees, count, out) => {
+      calls.checked(
+        calls.module._evaluate_at(
+          this.#address(), degrees, count, calls.frame(frame), calls.convention(convention), normalized, out),
+      );
+      return calls.numbers(out, 16 * count);
+    });
+  }
+
+  standardUncertainty(geometries, { frame, normalized = false } = {}) {
+    const calls = this.#calls;
+    return this.#each(geometries, [128], (degrees, count, out) => {
+      calls.checked(
+        calls.module._uncertainty_at(this.#address(), degrees, count, calls.frame(frame), normalized, out));
+      return calls.numbers(out, 16 * count);
+    });
+  }
+
+  outside(geometries) {
+    const calls = this.#calls;
+    return this.#each(geometries, [4], (degrees, count, out) => {
+      calls.checked(calls.module._outside_at(this.#address(), degrees, count, out));
+      const reasons = calls.module.HEAPU32.slice(out / 4, out / 4 + count);
+      return Array.from(reasons, (one) => JSON.parse(calls.text(calls.module._outside_words(this.#address(), one))));
+    });
+  }
+
+  quantities(geometries) {
+    const calls = this.#calls;
+    const size = 8 * calls.known.quantities.length;
+    return this.#each(geometries, [size, size], (degrees, count, values, uncertainties) => {
+      calls.checked(calls.module._quantities_at(this.#address(), degrees, count, values, uncertainties));
+      const rows = calls.known.quantities.map(({ name }, q) => [
+        name,
+        {
+          values: calls.numbers(values + 8 * q * count, count),
+          uncertainties: calls.numbers(uncertainties + 8 * q * count, count),
+        },
+      ]);
+      return Object.fromEntries(rows);
+    });
+  }
+
+  answer(geometry, { frame, convention } = {}) {
+    const calls = this.#calls;
+    return this.#each(geometry, [], (degrees, count) => {
+      if (count !== 1) throw new Error(`${count} geometries: answer() takes one`);
+      return JSON.parse(
+        calls.text(
+          calls.module._answer_at(this.#address(), degrees, calls.frame(frame), calls.convention(convention)),
+        ),
+      );
+    });
+  }
+
+  directionalHemisphericalReflectance(theta) {
+    const calls = this.#calls;
+    const list = typeof theta === "number" ? [theta] : theta;
+    return calls.with([8 * list.length, 8 * list.length, 8 * list.length], (degrees, values, uncertainties) => {
+      calls.module.HEAPF64.set(list, degrees / 8);
+      calls.checked(calls.module._dhr_at(this.#address(), degrees, list.length, values, uncertainties));
+      return { values: calls.numbers(values, list.length), uncertainties: calls.numbers(uncertainties, list.length) };
+    });
+  }
+
+  free() {
+    if (this.#at) this.#calls.module._free_at(this.#at);
+    this.#at = 0;
+  }
+}
+
+class Model {
+  #calls;
+  #model;
+
+  constructor(calls, model) {
+    this.#calls = calls;
+    this.#model = model;
+    Object.assign(this, JSON.parse(calls.text(calls.module._describe(model))));
+  }
+
+  get isOpen() {
+    return this.#model !== 0;
+  }
+
+  at(wavelength) {
+    if (!this.#model) throw new Error(`model '${this.name}' was freed`);
+    const address = this.#calls.checked(this.#calls.module._at_wavelength(this.#model, wavelength));
+    return new At(this.#calls, address, this, wavelength);
+  }
+
+  free() {
+    if (this.#model) this.#calls.module._free_model(this.#model);
+    this.#model = 0;
+  }
+}
+
+class Hemisphere {
+  #calls;
+  #address;
+
+  constructor(calls, pixels, lambert) {
+    this.#calls = calls;
+    this.#address = calls.checked(calls.module._new_hemisphere(pixels, lambert));
+    this.pixels = pixels;
+    this.count = calls.module._hemisphere_count(this.#address);
+  }
+
+  #view(Kind, address, length) {
+    return new Kind(this.#calls.module.HEAPU8.buffer, address, length);
+  }
+
+  get positions() {
+    return this.#view(Uint32Array, this.#calls.module._hemisphere_positions(this.#address), this.count);
+  }
+
+  get values() {
+    return this.#view(Float32Array, this.#calls.module._hemisphere_values(this.#address), 16 * this.count);
+  }
+
+  get limits() {
+    return this.#view(Float32Array, this.#calls.module._hemisphere_limits(this.#address), 32);
+  }
+
+  get colors() {
+    return this.#view(Uint32Array, this.#calls.module._hemisphere_colors(this.#address), 1025);
+  }
+
+  get image() {
+    const length = 64 * this.pixels * this.pixels;
+    return this.#view(Uint8ClampedArray, this.#calls.module._hemisphere_image(this.#address), length);
+  }
+
+  evaluate(at, theta, phi = 0, { frame, convention, normalized = false } = {}) {
+    const calls = this.#calls;
+    calls.checked(
+      calls.module._hemisphere_evaluate(
+        this.#address, at.address, theta, phi, calls.frame(frame), calls.convention(convention), normalized),
+    );
+  }
+
+  extremes() {
+    return this.#calls.with([128], (out) => {
+      this.#calls.module._hemisphere_extremes(this.#address, out);
+      return this.#calls.module.HEAPF32.slice(out / 4, out / 4 + 32);
+    });
+  }
+
+  paint() {
+    this.#calls.module._hemisphere_paint(this.#address);
+  }
+
+  free() {
+    if (this.#address) this.#calls.module._free_hemisphere(this.#address);
+    this.#address = 0;
+  }
+}
+
+class Mmbrdf {
+  #calls;
+
+  constructor(calls) {
+    this.#calls = calls;
+    Object.assign(this, calls.known);
+  }
+
+  material(name) {
+    const { module } = this.#calls;
+    return this.#calls.withTexts([name], (address) => this.#open(module._material_named(address)));
+  }
+
+  model(contents, path) {
+    const { module } = this.#calls;
+    return this.#calls.withTexts([contents, path], (address, length, name) =>
+      this.#open(module._model_read(address, length, name)),
+    );
+  }
+
+  #open(model) {
+    return new Model(this.#calls, this.#calls.checked(model));
+  }
+
+  hemisphere(pixels, { projection = "projected" } = {}) {
+    const number = this.#calls.number(["projected", "lambert"], projection, "projection");
+    return new Hemisphere(this.#calls, pixels, number);
+  }
+}
+
+async function wasmBytes() {
+  const url = new URL("./dist/mmbrdf_module.wasm", import.meta.url);
+  if (url.protocol === "file:" && typeof process !== "undefined") {
+    const { readFile } = await import(/* @vite-ignore */ "node:fs/promises");
+    return readFile(url);
+  }
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
+  return response.arrayBuffer();
+}
+
+export async function load({ wasm } = {}) {
+  const module = await instantiate({ wasmBinary: wasm ?? (await wasmBytes()), printErr: () => {} });
+  return new Mmbrdf(new Calls(module));
+}
+
+export default load;
