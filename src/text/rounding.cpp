@@ -16,7 +16,7 @@ std::string shortest(double value) {
 }
 
 std::string to_place_of(double value, const std::optional<double>& uncertainty) {
-  constexpr int most_decimals = 12, all_digits = 15;
+  constexpr int most_decimals = 8, all_digits = 15;  // beyond, powers of ten are read more easily
   const double u = uncertainty.value_or(0);
   if (!(u > 0) || !std::isfinite(u)) return rounded(value, 6);
   std::array<char, 32> text;  // "1.0e-01" of 0.0996: the place is that of the rounded one

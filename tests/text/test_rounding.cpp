@@ -16,6 +16,8 @@ TEST(Rounding, KeepsTwoDigitsOfAnUncertaintyAndTheValueToTheirPlace) {
   EXPECT_EQ(to_place_of(98765, 123), "98770");
   EXPECT_EQ(to_place_of(2.34567e-14, 3.2146e-16), "2.346e-14");
   EXPECT_EQ(to_place_of(3.2146e-16, 3.2146e-16), "3.2e-16");
+  EXPECT_EQ(to_place_of(2.754e-8, 3.1e-10), "2.754e-08");
+  EXPECT_EQ(to_place_of(0.00001234, 0.0000031), "0.0000123");
 }
 
 TEST(Rounding, TakesThePlaceOfTheRoundedUncertainty) {
