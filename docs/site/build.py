@@ -38,7 +38,7 @@ CONTENTS = {
         "for/paper",
         "for/scatmech",
     ],
-    "Guides": ["gallery", "python", "cpp", "interfaces", "uncertainty", "polarimeter", "formats"],
+    "Guides": ["gallery", "python", "cpp", "interfaces", "uncertainty", "polarimeter", "scale", "formats"],
     "Reference": [
         "conventions",
         "theory",
