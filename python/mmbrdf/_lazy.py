@@ -451,8 +451,10 @@ def install(package: dict[str, Any]) -> None:
             _FUNCTIONS[function] = functools.partial(_method_call, original)
             setattr(kind, name, _wrapper(function, signature, original))
         else:
-            _FUNCTIONS[function] = package[name]
-            package[name] = _wrapper(function, signature, package[name])
+            original = _FUNCTIONS[function] = package[name]
+            package[name] = _wrapper(function, signature, original)
+            if getattr(_mmbrdf, name, None) is original:
+                setattr(_mmbrdf, name, package[name])  # where pickles look for it
 
 
 def _method_call(method: Callable[..., Any], *, self: Any, **arguments: Any) -> Any:
