@@ -431,7 +431,7 @@ TEST(NotMeasured, AMissingElementCostsOnlyItself) {
     const PreparedModel found = prepare(fitted.model, 0.532), expected = prepare(truth, 0.532);
     double squares = 0, count = 0;
     for (const Geometry& g : random_geometries(200, 11, radians(65)))
-      for (const std::size_t e : {1, 2, 5, 6, 10, 15}) {
+      for (const std::size_t e : {1U, 2U, 5U, 6U, 10U, 15U}) {
         const double off = found.evaluate(g).elements[e] - expected.evaluate(g).elements[e];
         squares += off * off / u.evaluate(g)(e, e);
         ++count;
