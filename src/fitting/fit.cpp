@@ -136,6 +136,7 @@ void FitAccumulator::merge(const FitAccumulator& other) {
   }
   LeastSquares::merge(folded, others);
   sides_ = static_cast<Sides>(sides_ | other.sides_);
+  has_turned_rows_ = has_turned_rows_ || other.has_turned_rows_;
   samples_ += other.samples_;
 }
 
@@ -232,6 +233,29 @@ FitResult fit_to_predict(const FitAccumulator& samples, const FitOptions& option
   return samples.solved(options, known, false);
 }
 
+/// Elements that the rows of a block leave open, and that have none, become unknown. Rows in another frame than xy determine
+/// no element of xy by themselves; a block that they leave open is left out.
+bool FitAccumulator::leave_out_undetermined(const Block& block, const Solution& solution, FitResult& result) const {
+  Elements open, without_rows, all;
+  for (const Element& element : block.elements) {
+    const std::size_t e = element.index();
+    all.set(e);
+    without_rows[e] = result.elements[e].rows == 0;
+    if ((without_rows[e] || has_turned_rows_) && !determines(solution, block, basis_, e)) open.set(e);
+  }
+  if (without_rows.none()) return false;
+  if (!has_turned_rows_ || open.none()) {
+    result.model.not_measured |= open;
+    return false;
+  }
+  result.model.not_measured |= all;
+  for (std::size_t e = 0; e < 16; ++e)
+    if (all[e]) result.elements[e] = {};
+  result.warnings.push_back("the elements " + block.name + " are unknown: " + element_names(all & ~without_rows) +
+                            " alone, in the frame in which they were measured, leave combinations of their modes open");
+  return true;
+}
+
 FitResult FitAccumulator::solved(const FitOptions& options, SvdCache& known, bool covariances) const {
   if (samples_ == 0) throw std::invalid_argument("no samples");
   const int powers = chosen_powers(options);
@@ -254,12 +278,10 @@ FitResult FitAccumulator::solved(const FitOptions& options, SvdCache& known, boo
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (model.not_measured[blocks_[b].elements.front().index()]) continue;
     Solution solution = block_solution(b, powers, model.reflectance, options.rank_tolerance, known);
-    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution, sides_);
     for (const Element& element : blocks_[b].elements)
       result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
-    for (const Element& element : blocks_[b].elements)
-      if (result.elements[element.index()].rows == 0 && !determines(solution, blocks_[b], basis_, element.index()))
-        model.not_measured.set(element.index());
+    if (leave_out_undetermined(blocks_[b], solution, result)) continue;
+    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution, sides_);
     FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
                        solution.condition(), solution.null_space, solution.rows};
     if (const std::optional<double> variance = row_variance(solution, options.covariance); covariances && variance) {

@@ -39,6 +39,7 @@ FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {
   basis.orders = orders;
   FitAccumulator result(basis);
   result.sides_ = sides_;
+  result.has_turned_rows_ = has_turned_rows_;
   result.samples_ = samples_;
   for (const auto& [wavelength, at] : wavelengths_) {
     AtWavelength& to = result.slot(wavelength);

@@ -42,7 +42,8 @@ constexpr double largest_value = 1e150;
 void require_moderate(std::span<const Sample> samples, std::span<const Mueller> weights) {
   for (std::size_t s = 0; s < samples.size(); ++s)
     for (std::size_t e = 0; e < 16; ++e) {
-      const double value = std::abs(e == 0 ? samples[s].f11 : samples[s].normalized.elements[e]);
+      const Mueller& m = samples[s].as_measured ? samples[s].as_measured->normalized : samples[s].normalized;
+      const double value = std::abs(e == 0 ? samples[s].f11 : m.elements[e]);
       const double weight = weights.empty() ? 1 : weights[s].elements[e];
       if (std::sqrt(weight) * std::max(value, 1.0) > largest_value)
         throw std::invalid_argument("sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
@@ -239,6 +240,7 @@ void FitAccumulator::add_as_measured(std::span<const Sample> samples, std::span<
   std::map<AtWavelength*, std::vector<std::size_t>> members;
   for (std::size_t s = 0; s < samples.size(); ++s)
     if (samples[s].as_measured) members[&slot(samples[s].wavelength)].push_back(s);
+  has_turned_rows_ = has_turned_rows_ || !members.empty();
   for (auto& [at, list] : members)
     for (std::size_t first = 0; first < list.size(); first += rows_at_once)
       Turned{*this, samples, weights, std::span(list).subspan(first, std::min(rows_at_once, list.size() - first))}.fold(

@@ -12,7 +12,7 @@
 #include "text/numbers.hpp"
 
 //   the basis: family, both orders, mapping, rotation
-//   samples, sides,   then for each wavelength, rising: λ, in how many ways it was measured,
+//   samples, sides (8 more with rows that are turned),   then for each wavelength, rising: λ, in how many ways it was measured,
 //   for each: the bits of the elements, rising, largest θi, largest θr, the bits of the directions, six bytes in a number,
 //   then for each element, row-major: the sum of its weights, and the state of its triangle
 
@@ -49,6 +49,8 @@ std::vector<double> numbers_of(const Basis& basis) {
           static_cast<double>(basis.rotation)};
 }
 
+constexpr double turned_rows = 8;  // added to the sides, which are up to 7
+
 constexpr std::size_t bytes_in_number = 6;  // whole numbers below 2⁴⁸ are exact
 
 std::vector<double> numbers_of(const DirectionPairs& pairs) {
@@ -73,7 +75,8 @@ DirectionPairs pairs_from(Reader& reader, const DirectionPairs& like) {
 
 std::vector<double> FitAccumulator::state() const {
   std::vector<double> result = numbers_of(basis_);
-  result.insert(result.end(), {static_cast<double>(samples_), static_cast<double>(sides_)});
+  result.insert(result.end(),
+                {static_cast<double>(samples_), static_cast<double>(sides_) + (has_turned_rows_ ? turned_rows : 0)});
   for (const auto& [wavelength, at] : wavelengths_) {
     result.push_back(wavelength);
     result.push_back(static_cast<double>(at.measured.size()));
@@ -101,7 +104,9 @@ FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const do
   if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 2))
     throw std::invalid_argument("a state of a fit with a number of samples " + shortest(samples));
   result.samples_ = static_cast<long>(samples);
-  result.sides_ = static_cast<Sides>(reader.next("sides of the plane of incidence", 7));
+  const double sides = reader.next("sides of the plane of incidence", 2 * turned_rows - 1);
+  result.has_turned_rows_ = sides >= turned_rows;
+  result.sides_ = static_cast<Sides>(sides - (result.has_turned_rows_ ? turned_rows : 0));
   while (!reader.at_end()) {
     const double wavelength = reader.next(1).front();
     require_wavelength(wavelength);

@@ -249,6 +249,8 @@ std::string no_mixed_model(std::span<const Sample> samples, const Basis& basis, 
                            Weights weights) {
   if (basis.family != Family::isotropic) return "the " + to_string(basis.family) + " basis has no mixed model";
   const Elements unknown = not_measured(samples);
+  if (std::ranges::any_of(samples, [](const Sample& sample) { return sample.as_measured != nullptr; }))
+    return "some elements are missing in the frame in which they were measured";
   for (const Sample& sample : samples)
     if (const Elements here = not_measured(sample); here != unknown)
       return "missing in some samples: " + element_names(here & ~unknown);

@@ -65,7 +65,7 @@ Mueller data_weights_of(const Sample& sample, const Basis& basis, double reflect
 }
 
 /// Refuses a weight beside which the others of its element are nothing, so that one sample would be the fit.
-void require_comparable(std::span<const Sample> samples, std::span<const Mueller> weights) {
+void require_comparable(std::span<const Mueller> weights) {
   constexpr double all_others = 1e9;
   for (std::size_t e = 0; e < 16; ++e) {
     std::size_t heaviest = 0;
@@ -76,7 +76,7 @@ void require_comparable(std::span<const Sample> samples, std::span<const Mueller
       if (s != heaviest) others += weights[s].elements[e];
     if (others > 0 && weights[heaviest].elements[e] > all_others * others)
       throw std::invalid_argument("sample " + std::to_string(heaviest + 1) + ": u_" + sample_element(e) + " = " +
-                                  shortest(samples[heaviest].uncertainty.elements[e]) +
+                                  shortest(1 / std::sqrt(weights[heaviest].elements[e])) +
                                   " outweighs all other samples together; is it a fill value?");
   }
 }
@@ -104,7 +104,7 @@ std::vector<Mueller> data_weights(std::span<const Sample> samples, const Basis& 
       throw std::invalid_argument("sample " + std::to_string(weights.size() + 1) + ": " + error.what());
     }
   }
-  require_comparable(samples, weights);
+  require_comparable(weights);
   return weights;
 }
 

@@ -61,7 +61,8 @@ std::vector<ConventionFit> convention_fits(std::span<const Sample> samples, cons
                                            std::size_t most) {
   const std::vector<Sample> some = some_of(samples, most);
   for (const Sample& sample : some)  // frames would lose elements, and be compared by others
-    if (const Elements unknown = not_measured(sample); turned_into(unknown) != unknown || unknown.count() >= 15)
+    if (const Elements unknown = not_measured(sample);
+        sample.as_measured || turned_into(unknown) != unknown || unknown.count() >= 15)
       return {};
   FitOptions options;
   options.minimum_norm = true;

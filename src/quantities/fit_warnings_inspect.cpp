@@ -122,6 +122,7 @@ double left_with_cosine(std::span<const Sample> samples, int power) {
     sample.f11 *= std::pow(factor, power);
     for (std::size_t e = 1; e < 16; ++e) sample.normalized.elements[e] = not_known;
     sample.uncertainty = {};
+    sample.as_measured.reset();
     scaled.push_back(sample);
   }
   return relative_rms(scaled, fit_of_low_order(scaled));

@@ -33,6 +33,7 @@ Sample exchanged_image(const Sample& sample) {
   result.geometry = exchanged(sample.geometry);
   result.normalized = exchanged(sample.normalized);
   result.uncertainty = transposed(sample.uncertainty);
+  result.as_measured.reset();
   return result;
 }
 
@@ -42,6 +43,7 @@ Sample mirror_image(const Sample& sample) {
   Sample result = turned(sample, -source);
   result.geometry.reflected.phi = -result.geometry.reflected.phi;
   result.normalized = mirrored(result.normalized);
+  result.as_measured.reset();
   return turned(result, source);
 }
 

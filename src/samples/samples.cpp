@@ -147,6 +147,10 @@ void require_valid(std::span<const Sample> samples) {
     require_wavelength(sample, i);
     require_valid(sample.geometry, name.c_str());
     require_valid_elements(sample, name);
+    if (sample.as_measured)
+      require_valid_elements({sample.wavelength, sample.geometry, sample.f11, sample.as_measured->normalized,
+                              sample.as_measured->uncertainty},
+                             name);
     if (not_measured(sample).all()) throw std::invalid_argument(name + ": nothing is measured");
   }
 }

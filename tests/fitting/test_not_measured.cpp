@@ -376,6 +376,49 @@ TEST(NotMeasured, StatesSAndPOutOfPlaneCountBesideAFewSamplesOfAllLinearStates) 
   EXPECT_THROW(fit(std::span(samples).subspan(5), basis), std::invalid_argument);
 }
 
+// Alone they determine no element of xy but f11: the other blocks are unknown, and the fit says so, whatever it is asked for.
+TEST(NotMeasured, StatesSAndPAloneOutOfPlaneLeaveF11AndSayWhy) {
+  const std::vector<Sample> whole =
+      simulate(material("ptfe-532"), std::array{0.532}, random_geometries(300, 7), 0.006, 1);
+  const Elements s_and_p = 0x0033;
+  for (const double turn : {0.0, radians(37)}) {
+    std::vector<Sample> samples = whole;
+    for (Sample& sample : samples) sample = turned(sample, turn - sample.geometry.incident.phi);
+    samples = in_frame(samples, Frame::sp, [&](Mueller& m) {
+      for (std::size_t e = 0; e < 16; ++e)
+        if (!s_and_p[e]) m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+    });
+    FitOptions options;
+    options.minimum_norm = true;
+    for (const FitResult& fitted : {fit(samples), fit(samples, {}, options), fit_sample(samples)}) {
+      EXPECT_EQ(fitted.model.not_measured, all_but_f11);
+      ASSERT_EQ(fitted.model.blocks.size(), 1u);
+      EXPECT_EQ(fitted.solutions.size(), 1u);
+      EXPECT_NE(
+          std::ranges::find(fitted.warnings,
+                            "the elements 12,13,21,31 are unknown: 12 and 21 alone, in the frame in which they were "
+                            "measured, leave combinations of their modes open"),
+          fitted.warnings.end());
+    }
+    FitAccumulator parts({}), sent({});
+    parts.add(samples);
+    sent.merge(FitAccumulator::from_state({}, parts.state()));
+    EXPECT_EQ(sent.solve().model.not_measured, all_but_f11);
+  }
+}
+
+// The mixed model takes samples in xy, and has no rows in other frames.
+TEST(NotMeasured, AnElementOfAnotherFrameMakesTheUncertaintyThatOfTheNoise) {
+  const std::vector<Sample> samples =
+      in_frame(of_ptfe(), Frame::sp, [](Mueller& m) { m(2, 2) = std::numeric_limits<double>::quiet_NaN(); });
+  const FitResult fitted = fit_sample(samples);
+  EXPECT_FALSE(fitted.model.posterior);
+  ASSERT_FALSE(fitted.warnings.empty());
+  EXPECT_NE(fitted.warnings.back().find("some elements are missing in the frame in which they were measured"),
+            std::string::npos);
+  EXPECT_TRUE(fitted.model.not_measured.none());
+}
+
 // A whole sample that says where it was measured has the same rows, turned: an orthogonal matrix within each block.
 TEST(NotMeasured, RowsInAnotherFrameFitAsThoseInXy) {
   const std::vector<Sample> in_xy = of_ptfe();

@@ -3,7 +3,7 @@
 ///
 /// f11 is fitted directly (divided by the reflectance where there is one), the other elements as m_ij = f_ij / f11.
 /// What was not measured (samples.hpp) has weight 0, in the frame in which it was not measured where rows_turn(); a block without a row is not in the model, which then does not know
-/// its elements. Elements that reciprocity or the basis ties together are fitted together, block by block. With y the samples of a
+/// its elements; nor is one that rows in another frame than xy leave open, and of which some elements have none. Elements that reciprocity or the basis ties together are fitted together, block by block. With y the samples of a
 /// block, X its modes at their geometries and W the weights, the coefficients minimise ‖W^½ (X a − y)‖, and
 ///
 ///     covariance(a) = s² (Xᵀ W X)⁺,     s² = ‖W^½ (X a − y)‖² / (rows − rank).
@@ -201,6 +201,7 @@ class FitAccumulator {
   bool accepts_minimum_norm(const FitOptions& options) const;
   std::string determined_orders(const FitOptions& options) const;
   void require_determined(const std::string& refusal, const std::string& free, const FitOptions& options) const;
+  bool leave_out_undetermined(const Block& block, const Solution& solution, FitResult& result) const;
   int chosen_powers(const FitOptions& options) const;
   ReflectanceTable own_reflectance(const FitOptions& options, SvdCache& known) const;
   Elements not_measured() const;
@@ -213,6 +214,7 @@ class FitAccumulator {
   std::shared_ptr<const std::vector<Design>> designs_;
   std::map<double, AtWavelength> wavelengths_;
   Sides sides_ = no_side;
+  bool has_turned_rows_ = false;
   long samples_ = 0;
 };
 
