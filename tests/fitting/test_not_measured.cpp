@@ -373,7 +373,7 @@ TEST(NotMeasured, StatesSAndPOutOfPlaneCountBesideAFewSamplesOfAllLinearStates) 
     for (const std::size_t e : {0U, 1U, 2U, 4U, 5U, 6U, 8U, 9U, 10U})
       EXPECT_NEAR(a.elements[e], b.elements[e], 1e-9) << e;
   }
-  EXPECT_THROW(fit(std::span(samples).subspan(5), basis), std::invalid_argument);
+  EXPECT_EQ(fit(std::span(samples).subspan(5), basis).model.not_measured, all_but_f11);
 }
 
 // Alone they determine no element of xy but f11: the other blocks are unknown, and the fit says so, whatever it is asked for.
@@ -416,7 +416,7 @@ TEST(NotMeasured, AnElementOfAnotherFrameMakesTheUncertaintyThatOfTheNoise) {
   ASSERT_FALSE(fitted.warnings.empty());
   EXPECT_NE(fitted.warnings.back().find("some elements are missing in the frame in which they were measured"),
             std::string::npos);
-  EXPECT_TRUE(fitted.model.not_measured.none());
+  EXPECT_EQ(fitted.model.not_measured, Elements(0x0660));  // 22, 23, 32, 33: without 33 some modes are open
 }
 
 // A whole sample that says where it was measured has the same rows, turned: an orthogonal matrix within each block.
