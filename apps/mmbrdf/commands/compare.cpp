@@ -81,10 +81,12 @@ std::vector<Sample> samples_of(const Model& first, const Model& second, const Op
 /// Of samples, a fit as `mmbrdf fit` makes it by default.
 Model model_of(const std::string& name, const Options& options) {
   if (!is_samples(name)) return open_model(name);
+  note(data_name(name) + " is fitted, and the fit compared: --match sets two files sample beside sample");
   try {
     return fit_sample(samples_at(name, options.wavelengths_nm, options.table)).model;
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(data_name(name) + ": " + error.what());
+    throw std::runtime_error(data_name(name) + ": " + error.what() +
+                             "; to set two files sample beside sample: --match");
   }
 }
 
