@@ -30,9 +30,10 @@ class Page {
   at!: ModelAt;
   reply?: Reply;
   limits: number[] = [];
-  readonly files = new Map<string, Uint8Array>();
+  readonly files = new Map<string, { contents: Uint8Array; opened: string }>();
   readonly hemispheres: Hemispheres;
   readonly beside = new Beside();
+  #opened = 0; // number of the last file
   #asked = 0; // number of the last question to the worker
   #busy = true; // the worker answers one question at a time
   #drawing = false;
@@ -145,15 +146,15 @@ class Page {
       return;
     }
     if (!this.files.has(file.name)) element("model").append(new Option(file.name, file.name));
-    this.files.set(file.name, contents);
+    this.files.set(file.name, { contents, opened: `file ${(this.#opened += 1)}` });
     this.#open(file.name);
   }
 
   /** Another model; the one that was shown stays where that fails. */
   #open(name: string, first = false) {
-    const contents = this.files.get(name);
+    const file = this.files.get(name);
     try {
-      const model = contents ? this.mmbrdf.model(contents, name) : this.mmbrdf.material(name);
+      const model = file ? this.mmbrdf.model(file.contents, name) : this.mmbrdf.material(name);
       if (this.model) this.model.free();
       this.model = model;
       this.#trouble("");
@@ -290,7 +291,8 @@ class Page {
 
   #send() {
     this.#busy = true;
-    const question: Question = { id: this.#asked, state: { ...this.state }, contents: this.files.get(this.state.model) };
+    const { contents, opened = `built-in ${this.state.model}` } = this.files.get(this.state.model) ?? {};
+    const question: Question = { id: this.#asked, state: { ...this.state }, opened, contents };
     this.beside.postMessage(question);
   }
 
