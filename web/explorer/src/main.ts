@@ -8,7 +8,7 @@ import { type Chart, drawn, standalone } from "./chart";
 import { Hemispheres } from "./hemispheres";
 import { toPlaceOf, uncertaintyText } from "./numbers";
 import { dhrAngles, inPlane, scanned } from "./scan";
-import { angles, folded, fromLink, start, type State, toLink } from "./state";
+import { angles, areLimits, folded, fromLink, start, type State, toLink } from "./state";
 import "./style.css";
 import { pythonLines, programLines, save } from "./take";
 import type { Question, Reply } from "./worker";
@@ -17,6 +17,7 @@ import Beside from "./worker?worker&inline";
 const element = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
 const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
 const coverage = 1.96; // of a normal distribution, 95 %
+const longest = 1e9; // nm: models know none above a metre
 
 async function bytesOf(text: string): Promise<Uint8Array> {
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -50,7 +51,7 @@ class Page {
     );
     this.#fillChoices();
     this.#listen();
-    this.#open(this.state.model, true);
+    this.#open(this.state.model, this.state, true);
     this.beside.onmessage = ({ data }: MessageEvent<Reply>) => this.#answered(data);
     this.beside.onerror = () => this.#trouble("Uncertainties cannot be computed: this browser starts no worker");
     this.beside.postMessage({ wasm });
@@ -65,20 +66,31 @@ class Page {
       if (!polarized.includes(name)) curves.push([name, `${name.replaceAll("_", " ")}: ${meaning}`]);
     curves.push(["dhr", "directional-hemispherical reflectance against θi"]);
     for (const [value, words] of curves) element("curve").append(new Option(words, value));
-    this.#understand();
   }
 
-  /** What a link asks for and nobody knows is as at the start. */
-  #understand() {
+  /** What of a link nobody knows is as at the start; a line says which numbers those are. */
+  #understood(asked: State): { state: State; line: string } {
+    const state = { ...asked };
+    const lines: string[] = [];
     const curves = Array.from(element<HTMLSelectElement>("curve").options, ({ value }) => value);
     const known = { frame: this.mmbrdf.frames, convention: this.mmbrdf.conventions, projection: ["projected", "lambert"], curve: curves };
     for (const [name, values] of Object.entries(known))
-      if (!(values as string[]).includes(this.state[name as keyof typeof known]))
-        Object.assign(this.state, { [name]: start[name as keyof typeof known] });
-    if (!(this.state.wavelength >= 1)) this.state.wavelength = start.wavelength;
-    for (const name of angles) this.state[name] = Math.max(-360, Math.min(360, this.state[name]));
-    [this.state.thetaI, this.state.phiI] = folded(this.state.thetaI, this.state.phiI);
-    [this.state.thetaR, this.state.phiR] = folded(this.state.thetaR, this.state.phiR);
+      if (!(values as string[]).includes(state[name as keyof typeof known]))
+        Object.assign(state, { [name]: start[name as keyof typeof known] });
+    const refuse = (name: (typeof angles)[number] | "wavelength", allowed: string) => {
+      lines.push(`${name} = ${state[name]} of the link must be ${allowed}: ${start[name]} is shown`);
+      state[name] = start[name];
+    };
+    if (!(state.wavelength >= 1 && state.wavelength <= longest)) refuse("wavelength", `1 to ${longest} nm`);
+    for (const name of ["thetaI", "thetaR"] as const) if (!(Math.abs(state[name]) <= 90)) refuse(name, "0 to 90 degrees");
+    for (const name of ["phiI", "phiR"] as const) if (!(Math.abs(state[name]) <= 1e6)) refuse(name, "an azimuth in degrees");
+    [state.thetaI, state.phiI] = folded(state.thetaI, state.phiI);
+    [state.thetaR, state.phiR] = folded(state.thetaR, state.phiR);
+    if (state.limits.length && !areLimits(state.limits)) {
+      lines.push("limits of the link must be 16 pairs, each of a smaller and a larger number: the colour scales are not locked");
+      state.limits = [];
+    }
+    return { state, line: lines.map((one) => `${one}.`).join(" ") };
   }
 
   #listen() {
@@ -129,9 +141,7 @@ class Page {
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;
       const asked = fromLink(location.hash);
-      Object.assign(this.state, asked);
-      this.#understand();
-      this.#open(asked.model);
+      this.#open(asked.model, asked);
     });
   }
 
@@ -150,19 +160,28 @@ class Page {
     this.#open(file.name);
   }
 
-  /** Another model; the one that was shown stays where that fails. */
-  #open(name: string, first = false) {
+  /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
+  #open(name: string, asked?: State, first = false) {
+    let line = "";
     const file = this.files.get(name);
     try {
       const model = file ? this.mmbrdf.model(file.contents, name) : this.mmbrdf.material(name);
       if (this.model) this.model.free();
       this.model = model;
-      this.#trouble("");
     } catch (error) {
-      this.#trouble(`${(error as Error).message}. A link does not hold files: open it again.`);
-      if (!first) return this.#show();
+      line = `${(error as Error).message}. A link does not hold files: open it again.`;
+      if (!first) {
+        this.#trouble(line);
+        return this.#show();
+      }
       this.model = this.mmbrdf.material((name = start.model));
     }
+    if (asked) {
+      const { state, line: more } = this.#understood(asked);
+      this.state = state;
+      line = [line, more].filter((one) => one).join(" ");
+    }
+    this.#trouble(line);
     this.at = undefined as unknown as ModelAt;
     const known = this.model.wavelengths;
     const inside = known.length && this.state.wavelength >= known[0] && this.state.wavelength <= known[known.length - 1];

@@ -47,3 +47,46 @@ test("two files of one name are two models, with uncertainties of their own", { 
   assert.equal(await matrix(page), expected);
   assert.deepEqual(complaints, []);
 });
+
+test("a link to a model that is not here leaves what is shown, and says so in a line", { skip }, async () => {
+  const { page, complaints } = await opened(chromium);
+  await settled(page);
+  const [expected, link] = [await matrix(page), page.url()];
+  await follow(page, "#model=nosuch.json&thetaI=10");
+  assert.match(await trouble(page), /^material 'nosuch.json' is not one of .*A link does not hold files: open it again\.$/);
+  assert.equal(await matrix(page), expected);
+  assert.equal(page.url(), link);
+  assert.match(await page.textContent("#words"), /standard uncertainty 0\.00\d+ sr/);
+  await page.fill("#thetaI", "50");
+  await settled(page);
+  assert.match(await page.textContent("#words"), /standard uncertainty 0\.00\d+ sr/);
+  await follow(page, "#model=ptfe&wavelength=600");
+  assert.equal(await trouble(page), "");
+  assert.deepEqual(complaints, []);
+});
+
+const no_limits = Array(32).fill(1).join(",");
+for (const [asked, line, shown] of [
+  ["wavelength=1e300", /^wavelength = 1e\+300 of the link must be 1 to 1000000000 nm: 532 is shown\.$/, { wavelength: "532" }],
+  ["wavelength=-3", /^wavelength = -3 of the link must be/, { wavelength: "532" }],
+  ["thetaI=95&thetaR=-100", /^thetaI = 95 .*: 45 is shown\. thetaR = -100 .*: 30 is shown\.$/, { thetaI: "45", thetaR: "30" }],
+  ["thetaI=-20&phiI=1000", /^$/, { thetaI: "20", phiI: "100" }],
+  ["phiR=1e300", /^phiR = 1e\+300 .*: 180 is shown\.$/, { phiR: "180" }],
+  [`limits=${no_limits}`, /^limits of the link must be 16 pairs/, {}],
+  ["limits=1,2", /^limits of the link must be 16 pairs/, {}],
+])
+  test(`a link with ${asked.slice(0, 40)} shows a page that lives`, { skip }, async () => {
+    const { page, complaints } = await opened(chromium, { hash: `#${asked}` });
+    const look = async () => {
+      await settled(page);
+      assert.match(await trouble(page), line);
+      for (const [id, value] of Object.entries(shown)) assert.equal(await page.inputValue(`#${id}`), value);
+      assert.equal(await page.isChecked("#locked"), false);
+      assert.match(await page.textContent("#words"), /f11 = .* standard uncertainty /);
+    };
+    await look();
+    await follow(page, "#thetaI=20");
+    await follow(page, `#${asked}`);
+    await look();
+    assert.deepEqual(complaints, []);
+  });
