@@ -131,8 +131,14 @@ class Page {
       const file = event.dataTransfer?.files[0];
       if (file) void this.#read(file);
     });
-    element("csv").addEventListener("click", () => save(`${this.#fileName()}.csv`, this.#csv(), "text/csv"));
-    element("svg").addEventListener("click", () => save(`${this.#fileName()}.svg`, standalone(this.#chart), "image/svg+xml"));
+    const ofCurve = (id: "csv" | "svg", contents: () => string, type: string) =>
+      element(id).addEventListener("click", () => {
+        if (this.reply && !this.#drawing) return save(`${this.#fileName()}.${id}`, contents(), type);
+        const why = this.#busy || this.#drawing ? "not there yet: its uncertainties are being computed" : "not known";
+        element("take-state").textContent = `The curve is ${why}.`;
+      });
+    ofCurve("csv", () => this.#csv(), "text/csv");
+    ofCurve("svg", () => standalone(this.#chart), "image/svg+xml");
     element("png").addEventListener("click", async () => save("hemispheres.png", await this.hemispheres.png()));
     element("link").addEventListener("click", async () => {
       await navigator.clipboard?.writeText(location.href).catch(() => undefined);
@@ -305,7 +311,15 @@ class Page {
     this.#asked += 1;
     this.reply = undefined; // it was of another question
     document.body.dataset.busy = "true";
+    this.#waiting(true);
     if (!this.#busy) this.#send();
+  }
+
+  /** Whether what is computed beside is of an earlier question. */
+  #waiting(is: boolean) {
+    for (const id of ["quantities", "parts", "chart"]) element(id).setAttribute("aria-busy", String(is));
+    for (const id of ["csv", "svg"]) element(id).setAttribute("aria-disabled", String(is));
+    if (!is) element("take-state").textContent = "";
   }
 
   #send() {
@@ -321,6 +335,7 @@ class Page {
     delete document.body.dataset.busy;
     if (reply.error) return this.#trouble(reply.error);
     this.reply = reply;
+    this.#waiting(false);
     this.#showMatrix();
     this.#showTables();
     this.#showChart();
@@ -398,8 +413,7 @@ class Page {
 
   #csv(): string {
     const { state } = this;
-    const curves = this.reply?.curves;
-    if (!curves) return "";
+    const curves = this.reply!.curves!;
     if (state.curve === "dhr") {
       const rows = dhrAngles.map((theta, i) => [theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
       return ["theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll("NaN", "");

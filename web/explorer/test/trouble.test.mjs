@@ -90,3 +90,36 @@ for (const [asked, line, shown] of [
     await look();
     assert.deepEqual(complaints, []);
   });
+
+test("while uncertainties are computed, older numbers are marked, and no file is made of them", { skip }, async () => {
+  const { page } = await opened(chromium);
+  await settled(page);
+  const saved = [];
+  page.on("download", (one) => saved.push(one.suggestedFilename()));
+  const marks = () =>
+    page.evaluate(() => [
+      ...["quantities", "parts", "chart"].map((id) => document.getElementById(id).getAttribute("aria-busy")),
+      ...["csv", "svg"].map((id) => document.getElementById(id).getAttribute("aria-disabled")),
+    ]);
+  assert.deepEqual(await marks(), Array(5).fill("false"));
+  const during = await page.evaluate(async () => {
+    const model = document.getElementById("model");
+    model.value = "ptfe-633"; // another model: its first uncertainty takes longest
+    model.dispatchEvent(new Event("change"));
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    for (const id of ["csv", "svg"]) document.getElementById(id).click();
+    return [
+      ...["quantities", "parts", "chart"].map((id) => document.getElementById(id).getAttribute("aria-busy")),
+      ...["csv", "svg"].map((id) => document.getElementById(id).getAttribute("aria-disabled")),
+      document.getElementById("take-state").textContent,
+    ];
+  });
+  assert.deepEqual(during, [...Array(5).fill("true"), "The curve is not there yet: its uncertainties are being computed."]);
+  await settled(page);
+  assert.deepEqual(await marks(), Array(5).fill("false"));
+  assert.equal(await page.textContent("#take-state"), "");
+  const waiting = page.waitForEvent("download");
+  await page.click("#svg");
+  assert.match(readFileSync(await (await waiting).path(), "utf8"), /^<svg /);
+  assert.deepEqual(saved, ["ptfe-633-633nm-polarized.svg"]);
+});
