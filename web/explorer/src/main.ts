@@ -18,6 +18,14 @@ const element = <T extends HTMLElement = HTMLElement>(id: string) => document.ge
 const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
 const coverage = 1.96; // of a normal distribution, 95 %
 const longest = 1e9; // nm: models know none above a metre
+/** What the fields take. */
+const allowed = {
+  wavelength: `1 to ${longest} nm`,
+  thetaI: "0 to 90 degrees",
+  phiI: "A number of degrees",
+  thetaR: "0 to 90 degrees",
+  phiR: "A number of degrees",
+};
 
 async function bytesOf(text: string): Promise<Uint8Array> {
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -93,15 +101,28 @@ class Page {
     return { state, line: lines.map((one) => `${one}.`).join(" ") };
   }
 
+  /** Says at a field what it takes, and at the answer that it is of what was there before. */
+  #valid(input: HTMLInputElement, is: boolean) {
+    const id = input.id as keyof typeof allowed;
+    input.setAttribute("aria-invalid", String(!is));
+    element(`${id}-wrong`).textContent = is ? "" : `${allowed[id]}. Shown is ${this.state[id]}.`;
+    const wrong = document.querySelectorAll("#controls [aria-invalid=true]").length;
+    element("former").textContent = wrong ? "A field is not filled in rightly: this is the answer of its former value." : "";
+  }
+
   #listen() {
-    const number = (id: "wavelength" | (typeof angles)[number]) =>
-      element<HTMLInputElement>(id).addEventListener("input", (event) => {
-        const input = event.target as HTMLInputElement;
-        const good = input.value !== "" && input.checkValidity();
-        input.setAttribute("aria-invalid", String(!good));
+    for (const id of Object.keys(allowed) as (keyof typeof allowed)[]) {
+      const input = element<HTMLInputElement>(id);
+      const words = document.createElement("p");
+      Object.assign(words, { id: `${id}-wrong`, className: "wrong", role: "alert" });
+      input.closest("label")!.after(words);
+      input.setAttribute("aria-describedby", words.id);
+      input.addEventListener("input", () => {
+        const good = input.value !== "" && input.checkValidity() && (id !== "wavelength" || Number(input.value) <= longest);
+        this.#valid(input, good);
         if (good) this.change({ [id]: Number(input.value) }, input);
       });
-    (["wavelength", ...angles] as const).forEach(number);
+    }
     for (const id of ["frame", "convention", "projection", "curve"] as const)
       element<HTMLSelectElement>(id).addEventListener("change", (event) =>
         this.change({ [id]: (event.target as HTMLSelectElement).value }),
@@ -230,8 +251,9 @@ class Page {
     this.#failed = false;
     for (const id of ["wavelength", ...angles] as const) {
       const input = element<HTMLInputElement>(id);
-      if (input !== typed) input.value = String(state[id]);
-      if (input !== typed) input.setAttribute("aria-invalid", "false");
+      if (input === typed) continue;
+      input.value = String(state[id]);
+      this.#valid(input, true);
     }
     for (const id of ["model", "frame", "convention", "projection", "curve"] as const) element<HTMLSelectElement>(id).value = state[id];
     for (const id of ["normalized", "digits"] as const) element<HTMLInputElement>(id).checked = state[id];
