@@ -6,7 +6,7 @@ import load, { type Mmbrdf, type Model, type ModelAt } from "mmbrdf";
 
 import { type Chart, drawn, standalone } from "./chart";
 import { Hemispheres } from "./hemispheres";
-import { toPlaceOf, uncertaintyText } from "./numbers";
+import { toPlaceOf, uncertaintyText, withoutRounding } from "./numbers";
 import { dhrAngles, inPlane, scanned } from "./scan";
 import { angles, areLimits, folded, fromLink, start, type State, toLink } from "./state";
 import "./style.css";
@@ -271,8 +271,9 @@ class Page {
     return { thetaI, phiI, thetaR, phiR };
   }
 
-  #number(value: number, u: number | null): string {
-    return this.state.digits ? String(value) : toPlaceOf(value, u);
+  /** Of a sum whose terms are as large as `size`. */
+  #number(value: number, u: number | null, size = 0): string {
+    return this.state.digits ? String(value) : toPlaceOf(withoutRounding(value, size), u);
   }
 
   /** The matrix at once; what the worker said of it stays until it answers again. */
@@ -291,7 +292,7 @@ class Page {
         const name = `${state.normalized && e ? "m" : "f"}${row + 1}${column + 1}`;
         cell.dataset.element = name;
         cell.innerHTML = `<small>${name}</small><span class="value"></span> <small>± <span class="u"></span></small>`;
-        cell.querySelector(".value")!.textContent = this.#number(matrix[e], u ? u[e] : null);
+        cell.querySelector(".value")!.textContent = this.#number(matrix[e], u ? u[e] : null, state.normalized && e ? 1 : matrix[0]);
         cell.querySelector(".u")!.textContent = uText(u?.[e]);
       }
     }
@@ -376,7 +377,7 @@ class Page {
       head.textContent = name.replaceAll("_", " ");
       head.title = known.meaning;
       row.append(head);
-      row.insertCell().textContent = value === null ? "no meaning here" : this.#number(value, uncertainty);
+      row.insertCell().textContent = value === null ? "no meaning here" : this.#number(value, uncertainty, known.unit === "sr^-1" ? answer.elements[0]! : 1);
       row.insertCell().textContent = this.state.digits && uncertainty !== null ? String(uncertainty) : uncertaintyText(uncertainty);
       row.insertCell().textContent = known.unit.replace("^-1", "⁻¹") || "1";
     }
