@@ -152,3 +152,33 @@ test("a field that is not filled in rightly says what it takes, and the answer t
   assert.equal(await matrix(page), expected);
   assert.deepEqual(complaints, []);
 });
+
+test("elements that are 0 but for rounding are shown as 0 before their uncertainties are there", { skip }, async () => {
+  for (const normalized of [false, true]) {
+    const { page } = await opened(chromium, { hash: `#normalized=${normalized}` });
+    const shown = await page.evaluate(async () => {
+      document.getElementById("frame").dispatchEvent(new Event("change"));
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      return Array.from(document.querySelectorAll("#matrix td"), (cell) => cell.textContent);
+    });
+    assert.match(shown[0], /^f110\.\d+ ± …$/); // its uncertainty is not there
+    for (const e of [2, 3, 6, 7, 8, 9, 12, 13]) assert.match(shown[e], /^[fm]\d\d0 ± …$/); // in the plane of incidence
+  }
+});
+
+test("a drag beyond the disc where it began ends at 90 degrees, on the side of the pointer", { skip }, async () => {
+  const { page } = await opened(chromium);
+  await settled(page);
+  const box = await page.locator("#hemispheres").boundingBox();
+  const size = box.width / 4;
+  const inSecond = (x, y) => [box.x + size + (size / 2) * (1 + x), box.y + (size / 2) * (1 - y)];
+  await page.mouse.move(...inSecond(Math.SQRT1_2, 0));
+  await page.mouse.down();
+  for (const [x, phi] of [[1.5, "0"], [3, "0"], [-1.5, "180"], [-4, "180"]]) {
+    await page.mouse.move(...inSecond(x, 0), { steps: 4 });
+    await settled(page);
+    assert.equal(await page.inputValue("#thetaI"), "90", `x = ${x}`);
+    assert.equal(await page.inputValue("#phiI"), phi, `x = ${x}`);
+  }
+  await page.mouse.up();
+});
