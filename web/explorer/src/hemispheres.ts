@@ -82,11 +82,13 @@ export class Hemispheres {
   #listen(moved: Moved) {
     let held: "source" | "detector" | undefined;
     let state: State | undefined;
+    let tile: [number, number] = [0, 0]; // where the drag began: it ends at the edge of the disc there
     const at = (event: PointerEvent): { x: number; y: number; size: number } => {
       const box = this.#box.getBoundingClientRect();
       const size = box.width / 4;
-      const [px, py] = [event.clientX - box.left, event.clientY - box.top];
-      return { x: (2 * (px % size)) / size - 1, y: 1 - (2 * (py % size)) / size, size };
+      const [px, py] = [(event.clientX - box.left) / size, (event.clientY - box.top) / size];
+      if (!held) tile = [Math.floor(px), Math.floor(py)];
+      return { x: 2 * (px - tile[0]) - 1, y: 1 - 2 * (py - tile[1]), size };
     };
     this.current = (now: State) => (state = now);
     this.#box.addEventListener("pointerdown", (event) => {

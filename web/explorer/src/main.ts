@@ -6,9 +6,9 @@ import load, { type Mmbrdf, type Model, type ModelAt } from "mmbrdf";
 
 import { type Chart, drawn, standalone } from "./chart";
 import { Hemispheres } from "./hemispheres";
-import { toPlaceOf, uncertaintyText } from "./numbers";
+import { toPlaceOf, uncertaintyText, withoutRounding } from "./numbers";
 import { dhrAngles, inPlane, scanned } from "./scan";
-import { angles, folded, fromLink, start, type State, toLink } from "./state";
+import { angles, areLimits, folded, fromLink, start, type State, toLink } from "./state";
 import "./style.css";
 import { pythonLines, programLines, save } from "./take";
 import type { Question, Reply } from "./worker";
@@ -17,6 +17,15 @@ import Beside from "./worker?worker&inline";
 const element = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
 const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
 const coverage = 1.96; // of a normal distribution, 95 %
+const longest = 1e9; // nm: models know none above a metre
+/** What the fields take. */
+const allowed = {
+  wavelength: `1 to ${longest} nm`,
+  thetaI: "0 to 90 degrees",
+  phiI: "A number of degrees",
+  thetaR: "0 to 90 degrees",
+  phiR: "A number of degrees",
+};
 
 async function bytesOf(text: string): Promise<Uint8Array> {
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -30,9 +39,10 @@ class Page {
   at!: ModelAt;
   reply?: Reply;
   limits: number[] = [];
-  readonly files = new Map<string, Uint8Array>();
+  readonly files = new Map<string, { contents: Uint8Array; opened: string }>();
   readonly hemispheres: Hemispheres;
   readonly beside = new Beside();
+  #opened = 0; // number of the last file
   #asked = 0; // number of the last question to the worker
   #busy = true; // the worker answers one question at a time
   #drawing = false;
@@ -49,7 +59,7 @@ class Page {
     );
     this.#fillChoices();
     this.#listen();
-    this.#open(this.state.model, true);
+    this.#open(this.state.model, this.state, true);
     this.beside.onmessage = ({ data }: MessageEvent<Reply>) => this.#answered(data);
     this.beside.onerror = () => this.#trouble("Uncertainties cannot be computed: this browser starts no worker");
     this.beside.postMessage({ wasm });
@@ -64,31 +74,55 @@ class Page {
       if (!polarized.includes(name)) curves.push([name, `${name.replaceAll("_", " ")}: ${meaning}`]);
     curves.push(["dhr", "directional-hemispherical reflectance against θi"]);
     for (const [value, words] of curves) element("curve").append(new Option(words, value));
-    this.#understand();
   }
 
-  /** What a link asks for and nobody knows is as at the start. */
-  #understand() {
+  /** What of a link nobody knows is as at the start; a line says which numbers those are. */
+  #understood(asked: State): { state: State; line: string } {
+    const state = { ...asked };
+    const lines: string[] = [];
     const curves = Array.from(element<HTMLSelectElement>("curve").options, ({ value }) => value);
     const known = { frame: this.mmbrdf.frames, convention: this.mmbrdf.conventions, projection: ["projected", "lambert"], curve: curves };
     for (const [name, values] of Object.entries(known))
-      if (!(values as string[]).includes(this.state[name as keyof typeof known]))
-        Object.assign(this.state, { [name]: start[name as keyof typeof known] });
-    if (!(this.state.wavelength >= 1)) this.state.wavelength = start.wavelength;
-    for (const name of angles) this.state[name] = Math.max(-360, Math.min(360, this.state[name]));
-    [this.state.thetaI, this.state.phiI] = folded(this.state.thetaI, this.state.phiI);
-    [this.state.thetaR, this.state.phiR] = folded(this.state.thetaR, this.state.phiR);
+      if (!(values as string[]).includes(state[name as keyof typeof known]))
+        Object.assign(state, { [name]: start[name as keyof typeof known] });
+    const refuse = (name: (typeof angles)[number] | "wavelength", allowed: string) => {
+      lines.push(`${name} = ${state[name]} of the link must be ${allowed}: ${start[name]} is shown`);
+      state[name] = start[name];
+    };
+    if (!(state.wavelength >= 1 && state.wavelength <= longest)) refuse("wavelength", `1 to ${longest} nm`);
+    for (const name of ["thetaI", "thetaR"] as const) if (!(Math.abs(state[name]) <= 90)) refuse(name, "0 to 90 degrees");
+    for (const name of ["phiI", "phiR"] as const) if (!(Math.abs(state[name]) <= 1e6)) refuse(name, "an azimuth in degrees");
+    [state.thetaI, state.phiI] = folded(state.thetaI, state.phiI);
+    [state.thetaR, state.phiR] = folded(state.thetaR, state.phiR);
+    if (state.limits.length && !areLimits(state.limits)) {
+      lines.push("limits of the link must be 16 pairs, each of a smaller and a larger number: the colour scales are not locked");
+      state.limits = [];
+    }
+    return { state, line: lines.map((one) => `${one}.`).join(" ") };
+  }
+
+  /** Says at a field what it takes, and at the answer that it is of what was there before. */
+  #valid(input: HTMLInputElement, is: boolean) {
+    const id = input.id as keyof typeof allowed;
+    input.setAttribute("aria-invalid", String(!is));
+    element(`${id}-wrong`).textContent = is ? "" : `${allowed[id]}. Shown is ${this.state[id]}.`;
+    const wrong = document.querySelectorAll("#controls [aria-invalid=true]").length;
+    element("former").textContent = wrong ? "A field is not filled in rightly: this is the answer of its former value." : "";
   }
 
   #listen() {
-    const number = (id: "wavelength" | (typeof angles)[number]) =>
-      element<HTMLInputElement>(id).addEventListener("input", (event) => {
-        const input = event.target as HTMLInputElement;
-        const good = input.value !== "" && input.checkValidity();
-        input.setAttribute("aria-invalid", String(!good));
+    for (const id of Object.keys(allowed) as (keyof typeof allowed)[]) {
+      const input = element<HTMLInputElement>(id);
+      const words = document.createElement("p");
+      Object.assign(words, { id: `${id}-wrong`, className: "wrong", role: "alert" });
+      input.closest("label")!.after(words);
+      input.setAttribute("aria-describedby", words.id);
+      input.addEventListener("input", () => {
+        const good = input.value !== "" && input.checkValidity() && (id !== "wavelength" || Number(input.value) <= longest);
+        this.#valid(input, good);
         if (good) this.change({ [id]: Number(input.value) }, input);
       });
-    (["wavelength", ...angles] as const).forEach(number);
+    }
     for (const id of ["frame", "convention", "projection", "curve"] as const)
       element<HTMLSelectElement>(id).addEventListener("change", (event) =>
         this.change({ [id]: (event.target as HTMLSelectElement).value }),
@@ -118,8 +152,14 @@ class Page {
       const file = event.dataTransfer?.files[0];
       if (file) void this.#read(file);
     });
-    element("csv").addEventListener("click", () => save(`${this.#fileName()}.csv`, this.#csv(), "text/csv"));
-    element("svg").addEventListener("click", () => save(`${this.#fileName()}.svg`, standalone(this.#chart), "image/svg+xml"));
+    const ofCurve = (id: "csv" | "svg", contents: () => string, type: string) =>
+      element(id).addEventListener("click", () => {
+        if (this.reply && !this.#drawing) return save(`${this.#fileName()}.${id}`, contents(), type);
+        const why = this.#busy || this.#drawing ? "not there yet: its uncertainties are being computed" : "not known";
+        element("take-state").textContent = `The curve is ${why}.`;
+      });
+    ofCurve("csv", () => this.#csv(), "text/csv");
+    ofCurve("svg", () => standalone(this.#chart), "image/svg+xml");
     element("png").addEventListener("click", async () => save("hemispheres.png", await this.hemispheres.png()));
     element("link").addEventListener("click", async () => {
       await navigator.clipboard?.writeText(location.href).catch(() => undefined);
@@ -128,9 +168,7 @@ class Page {
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;
       const asked = fromLink(location.hash);
-      Object.assign(this.state, asked);
-      this.#understand();
-      this.#open(asked.model);
+      this.#open(asked.model, asked);
     });
   }
 
@@ -145,23 +183,32 @@ class Page {
       return;
     }
     if (!this.files.has(file.name)) element("model").append(new Option(file.name, file.name));
-    this.files.set(file.name, contents);
+    this.files.set(file.name, { contents, opened: `file ${(this.#opened += 1)}` });
     this.#open(file.name);
   }
 
-  /** Another model; the one that was shown stays where that fails. */
-  #open(name: string, first = false) {
-    const contents = this.files.get(name);
+  /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
+  #open(name: string, asked?: State, first = false) {
+    let line = "";
+    const file = this.files.get(name);
     try {
-      const model = contents ? this.mmbrdf.model(contents, name) : this.mmbrdf.material(name);
+      const model = file ? this.mmbrdf.model(file.contents, name) : this.mmbrdf.material(name);
       if (this.model) this.model.free();
       this.model = model;
-      this.#trouble("");
     } catch (error) {
-      this.#trouble(`${(error as Error).message}. A link does not hold files: open it again.`);
-      if (!first) return this.#show();
+      line = `${(error as Error).message}. A link does not hold files: open it again.`;
+      if (!first) {
+        this.#trouble(line);
+        return this.#show();
+      }
       this.model = this.mmbrdf.material((name = start.model));
     }
+    if (asked) {
+      const { state, line: more } = this.#understood(asked);
+      this.state = state;
+      line = [line, more].filter((one) => one).join(" ");
+    }
+    this.#trouble(line);
     this.at = undefined as unknown as ModelAt;
     const known = this.model.wavelengths;
     const inside = known.length && this.state.wavelength >= known[0] && this.state.wavelength <= known[known.length - 1];
@@ -204,8 +251,9 @@ class Page {
     this.#failed = false;
     for (const id of ["wavelength", ...angles] as const) {
       const input = element<HTMLInputElement>(id);
-      if (input !== typed) input.value = String(state[id]);
-      if (input !== typed) input.setAttribute("aria-invalid", "false");
+      if (input === typed) continue;
+      input.value = String(state[id]);
+      this.#valid(input, true);
     }
     for (const id of ["model", "frame", "convention", "projection", "curve"] as const) element<HTMLSelectElement>(id).value = state[id];
     for (const id of ["normalized", "digits"] as const) element<HTMLInputElement>(id).checked = state[id];
@@ -223,8 +271,9 @@ class Page {
     return { thetaI, phiI, thetaR, phiR };
   }
 
-  #number(value: number, u: number | null): string {
-    return this.state.digits ? String(value) : toPlaceOf(value, u);
+  /** Of a sum whose terms are as large as `size`. */
+  #number(value: number, u: number | null, size = 0): string {
+    return this.state.digits ? String(value) : toPlaceOf(withoutRounding(value, size), u);
   }
 
   /** The matrix at once; what the worker said of it stays until it answers again. */
@@ -243,7 +292,7 @@ class Page {
         const name = `${state.normalized && e ? "m" : "f"}${row + 1}${column + 1}`;
         cell.dataset.element = name;
         cell.innerHTML = `<small>${name}</small><span class="value"></span> <small>± <span class="u"></span></small>`;
-        cell.querySelector(".value")!.textContent = this.#number(matrix[e], u ? u[e] : null);
+        cell.querySelector(".value")!.textContent = this.#number(matrix[e], u ? u[e] : null, state.normalized && e ? 1 : matrix[0]);
         cell.querySelector(".u")!.textContent = uText(u?.[e]);
       }
     }
@@ -285,12 +334,21 @@ class Page {
     this.#asked += 1;
     this.reply = undefined; // it was of another question
     document.body.dataset.busy = "true";
+    this.#waiting(true);
     if (!this.#busy) this.#send();
+  }
+
+  /** Whether what is computed beside is of an earlier question. */
+  #waiting(is: boolean) {
+    for (const id of ["quantities", "parts", "chart"]) element(id).setAttribute("aria-busy", String(is));
+    for (const id of ["csv", "svg"]) element(id).setAttribute("aria-disabled", String(is));
+    if (!is) element("take-state").textContent = "";
   }
 
   #send() {
     this.#busy = true;
-    const question: Question = { id: this.#asked, state: { ...this.state }, contents: this.files.get(this.state.model) };
+    const { contents, opened = `built-in ${this.state.model}` } = this.files.get(this.state.model) ?? {};
+    const question: Question = { id: this.#asked, state: { ...this.state }, opened, contents };
     this.beside.postMessage(question);
   }
 
@@ -300,6 +358,7 @@ class Page {
     delete document.body.dataset.busy;
     if (reply.error) return this.#trouble(reply.error);
     this.reply = reply;
+    this.#waiting(false);
     this.#showMatrix();
     this.#showTables();
     this.#showChart();
@@ -318,7 +377,7 @@ class Page {
       head.textContent = name.replaceAll("_", " ");
       head.title = known.meaning;
       row.append(head);
-      row.insertCell().textContent = value === null ? "no meaning here" : this.#number(value, uncertainty);
+      row.insertCell().textContent = value === null ? "no meaning here" : this.#number(value, uncertainty, known.unit === "sr^-1" ? answer.elements[0]! : 1);
       row.insertCell().textContent = this.state.digits && uncertainty !== null ? String(uncertainty) : uncertaintyText(uncertainty);
       row.insertCell().textContent = known.unit.replace("^-1", "⁻¹") || "1";
     }
@@ -377,8 +436,7 @@ class Page {
 
   #csv(): string {
     const { state } = this;
-    const curves = this.reply?.curves;
-    if (!curves) return "";
+    const curves = this.reply!.curves!;
     if (state.curve === "dhr") {
       const rows = dhrAngles.map((theta, i) => [theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
       return ["theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll("NaN", "");

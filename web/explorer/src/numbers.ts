@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Numbers as people read them.
 
+/** 0 for what is rounding alone, of a sum whose terms are as large as `size`. */
+export function withoutRounding(value: number, size: number): number {
+  return Math.abs(value) < 1e-12 * Math.abs(size) ? 0 : value;
+}
+
 /** To the place where two significant digits of the uncertainty end; six digits where it is not known. */
 export function toPlaceOf(value: number, u: number | null): string {
   if (!Number.isFinite(value)) return "not known";

@@ -52,8 +52,7 @@ export function fromLink(hash: string): State {
   for (const [name, value] of parameters) {
     const usual = (start as unknown as Record<string, unknown>)[name];
     if (Array.isArray(usual)) {
-      const numbers = value.split(",").map(Number);
-      if (numbers.length === 32 && numbers.every(Number.isFinite)) state[name] = numbers;
+      if (value) state[name] = value.split(",").map(Number);
     } else if (typeof usual === "number") {
       if (value !== "" && Number.isFinite(Number(value))) state[name] = Number(value);
     } else if (typeof usual === "boolean") {
@@ -63,6 +62,12 @@ export function fromLink(hash: string): State {
     }
   }
   return state as unknown as State;
+}
+
+/** Of sixteen colour scales, the lower end and the upper one, as the numbers of the pictures hold them. */
+export function areLimits(limits: number[]): boolean {
+  const held = limits.map(Math.fround);
+  return held.length === 32 && held.every((one, i) => Number.isFinite(one) && (i % 2 === 0 || held[i - 1] < one));
 }
 
 /** A polar angle in 0 ... 90 and an azimuth in -180 ... 180, of angles that keys or a pointer led beyond. */

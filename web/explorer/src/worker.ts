@@ -8,6 +8,8 @@ import type { State } from "./state";
 export interface Question {
   id: number;
   state: State;
+  /** Which model it is: other for each file that was opened, whatever its name. */
+  opened: string;
   /** The file of the model; none of a built-in one. */
   contents?: Uint8Array;
 }
@@ -30,18 +32,22 @@ export interface Reply {
 let mmbrdf: Mmbrdf;
 let model: Model | undefined;
 let at: ModelAt | undefined;
-let of = "";
+let of = ""; // Question.opened of the model
 
-function prepared({ state, contents }: Question): ModelAt {
-  if (!model || of !== state.model) {
-    model?.free();
-    model = contents ? mmbrdf.model(contents, state.model) : mmbrdf.material(state.model);
-    of = state.model;
+/** What was there stays where the new one cannot be made. */
+function prepared({ state, opened, contents }: Question): ModelAt {
+  if (!model || of !== opened) {
+    const next = contents ? mmbrdf.model(contents, state.model) : mmbrdf.material(state.model);
+    at?.free();
     at = undefined;
+    model?.free();
+    model = next;
+    of = opened;
   }
   if (!at || at.wavelength !== state.wavelength) {
+    const next = model.at(state.wavelength);
     at?.free();
-    at = model.at(state.wavelength);
+    at = next;
   }
   return at;
 }
