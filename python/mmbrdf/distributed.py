@@ -61,10 +61,26 @@ class _Part(NamedTuple):
     skipped: dict[str, str]
 
 
-def _saved_as(path: str, kind: _Kind, checkpoint: str) -> Path:
-    """Another file for what was changed, or is fitted otherwise."""
+_READ = ("columns", "convention", "frame", "skip_incomplete")  # options of read_samples()
+
+
+def _require_known(read: dict[str, Any]) -> None:
+    for name in read:
+        if name not in _READ:
+            raise TypeError(f"fit() got {name!r}: not an option of it, nor of read_samples(): {', '.join(_READ)}")
+
+
+def _canonical(value: Any) -> str:
+    """The same text of equal options, in whatever order they were given."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name!r}: {_canonical(value[name])}" for name in sorted(value)) + "}"
+    return repr(value)
+
+
+def _saved_as(path: str, kind: _Kind, checkpoint: str, read: dict[str, Any]) -> Path:
+    """Another file for what was changed, or is read or fitted otherwise."""
     at = os.stat(path)
-    key = repr((os.path.abspath(path), at.st_size, at.st_mtime_ns, tuple(kind), __version__))
+    key = repr((os.path.abspath(path), at.st_size, at.st_mtime_ns, tuple(kind), _canonical(read), __version__))
     return Path(checkpoint) / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.npy"
 
 
@@ -84,7 +100,7 @@ def _save(state: Any, path: Path) -> None:
 
 def _leaf(path: str, kind: _Kind, skip_broken: bool, checkpoint: str | None, options: dict[str, Any]) -> _Part:
     try:
-        saved = None if checkpoint is None else _saved_as(path, kind, checkpoint)
+        saved = None if checkpoint is None else _saved_as(path, kind, checkpoint, options)
         if saved is not None and saved.is_file():
             return _Part(kind.of(np.load(saved)), {})
         accumulator = kind.empty()
@@ -163,17 +179,19 @@ def fit(
     client       a distributed.Client; None: in this process, one file after the other
     skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError
     checkpoint   a folder in which the state of each file is kept, whole or not at all: another call continues with what
-                 is there, unless the file was changed. Workers must find it, too
+                 is there, unless the file was changed, or is read or fitted with other options. Workers must find it, too
     progress     such as tqdm.tqdm, which is given what is gone through
     Other options are those of FitAccumulator and its solve().
 
     In memory are the samples of one file for each worker, and some states. Weights are 1, and uncertainties those of the
-    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, and as solve() does.
+    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, and as solve() does;
+    TypeError for an option that there is not.
     """
     paths = [os.fspath(file) for file in files]
     if not paths:
         raise ValueError("files: none")
     kind = _Kind(basis, (int(orders[0]), int(orders[1])), mapping, as_printed)
+    _require_known(read)
     kind.empty()  # refuses what makes no sense before anything is read
     folder = None if checkpoint is None else os.path.abspath(os.fspath(checkpoint))
     if folder is not None:

@@ -97,6 +97,31 @@ def test_another_call_continues_with_what_was_finished(files, plain, tmp_path, m
     np.testing.assert_array_equal(coefficients(fitted), plain)
 
 
+@pytest.mark.parametrize(
+    "option",
+    [{"frame": "scattering_plane"}, {"convention": "p_first_right"}, {"columns": {"m22": "m33", "m33": "m22"}}],
+    ids=lambda o: next(iter(o)),
+)
+def test_files_that_are_read_otherwise_are_not_those_of_the_checkpoints(files, tmp_path, option):
+    some = files[:2]
+    before = coefficients(archive.fit(some, checkpoint=tmp_path, **OPTIONS))
+    expected = coefficients(archive.fit(some, **option, **OPTIONS))
+    assert not np.array_equal(expected, before)
+    found = coefficients(archive.fit(some, checkpoint=tmp_path, **option, **OPTIONS))
+    np.testing.assert_array_equal(found, expected)
+    again = {"columns": dict(reversed(option["columns"].items()))} if "columns" in option else option
+    archive.fit(some, checkpoint=tmp_path, **again, **OPTIONS)
+    assert len(list(tmp_path.iterdir())) == 4  # two states of two files
+
+
+def test_unknown_options_are_refused_whatever_the_checkpoints(files, tmp_path):
+    archive.fit(files[:2], checkpoint=tmp_path, **OPTIONS)
+    with pytest.raises(
+        TypeError, match=r"fit\(\) got 'colums': not an option of it, nor of read_samples\(\): columns, "
+    ):
+        archive.fit(files[:2], checkpoint=tmp_path, colums={"f11": "f22"}, skip_broken=True, **OPTIONS)
+
+
 def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
