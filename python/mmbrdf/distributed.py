@@ -13,6 +13,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import os
+import uuid
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -77,6 +78,15 @@ def _canonical(value: Any) -> str:
     return repr(value)
 
 
+def _require_once(paths: Sequence[str]) -> None:
+    """Twice the same samples would be a fit that is surer than it should be."""
+    seen: dict[str, int] = {}
+    for k, path in enumerate(paths):
+        first = seen.setdefault(os.path.realpath(path), k)
+        if first != k:
+            raise ValueError(f"files: number {k} ({path}) is number {first} ({paths[first]}) again: leave one out")
+
+
 def _saved_as(path: str, kind: _Kind, checkpoint: str, read: dict[str, Any]) -> Path:
     """Another file for what was changed, or is read or fitted otherwise."""
     at = os.stat(path)
@@ -85,10 +95,10 @@ def _saved_as(path: str, kind: _Kind, checkpoint: str, read: dict[str, Any]) -> 
 
 
 def _save(state: Any, path: Path) -> None:
-    """Wholly, or not at all."""
-    beside = path.with_name(f"{path.name}.{os.getpid()}.part")
+    """Wholly, or not at all, whoever else writes the same: threads, and nodes on which processes have the same number."""
+    beside = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
     try:
-        with open(beside, "wb") as out:
+        with open(beside, "xb") as out:
             np.save(out, state)
             out.flush()
             os.fsync(out.fileno())
@@ -174,7 +184,7 @@ def fit(
 ) -> ArchiveFit:
     """Least squares of the samples of all files, as one FitAccumulator would fit them.
 
-    files        of samples, as read_samples() takes them; its options (columns, frame, ...) may be given, too. Workers
+    files        of samples, as read_samples() takes them, each once; its options (columns, frame, ...) may be given, too. Workers
                  must find them by the same names
     client       a distributed.Client; None: in this process, one file after the other
     skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError
@@ -184,12 +194,14 @@ def fit(
     Other options are those of FitAccumulator and its solve().
 
     In memory are the samples of one file for each worker, and some states. Weights are 1, and uncertainties those of the
-    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, and as solve() does;
+    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, one that is there twice, and as
+    solve() does;
     TypeError for an option that there is not.
     """
     paths = [os.fspath(file) for file in files]
     if not paths:
         raise ValueError("files: none")
+    _require_once(paths)
     kind = _Kind(basis, (int(orders[0]), int(orders[1])), mapping, as_printed)
     _require_known(read)
     kind.empty()  # refuses what makes no sense before anything is read

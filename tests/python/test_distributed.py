@@ -122,6 +122,34 @@ def test_unknown_options_are_refused_whatever_the_checkpoints(files, tmp_path):
         archive.fit(files[:2], checkpoint=tmp_path, colums={"f11": "f22"}, skip_broken=True, **OPTIONS)
 
 
+def test_those_who_write_the_same_state_at_once_do_not_disturb_each_other(tmp_path):
+    state, saved = np.arange(100_000.0), tmp_path / "state.npy"
+    together, failed = threading.Barrier(8), []
+
+    def write():
+        together.wait()
+        try:
+            for _ in range(5):
+                archive._save(state, saved)
+        except OSError as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=write) for _ in range(8)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert failed == [] and list(tmp_path.iterdir()) == [saved]
+
+
+def test_a_file_that_is_there_twice_is_refused(files, tmp_path):
+    with pytest.raises(ValueError, match=r"^files: number 2 \(.*run0.csv\) is number 0 \(.*run0.csv\) again"):
+        archive.fit([*files[:2], files[0]], **OPTIONS)
+    (tmp_path / "other.csv").symlink_to(files[0])
+    with pytest.raises(ValueError, match=r"^files: number 1 \(.*other.csv\) is number 0"):
+        archive.fit([files[0], tmp_path / "other.csv"], **OPTIONS)
+
+
 def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
@@ -131,6 +159,9 @@ def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, m
 
 def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):
     cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    many = [tmp_path / f"{k}_{path.name}" for k in range(40) for path in files]
+    for k, path in enumerate(many):
+        os.link(files[k % len(files)], path)
     with (
         cluster_of.LocalCluster(
             n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
@@ -141,12 +172,12 @@ def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, p
         before = client.run(os.getpid)
         found = []
         # Many pieces, so that some run and some are done when a worker dies.
-        work = threading.Thread(target=lambda: found.append(archive.fit(files * 40, client, **OPTIONS)))
+        work = threading.Thread(target=lambda: found.append(archive.fit(many, client, **OPTIONS)))
         work.start()
         time.sleep(0.3)
         os.kill(next(iter(before.values())), signal.SIGKILL)
         work.join(200)
         assert len(found) == 1
-        expected = archive.fit(files * 40, **OPTIONS)
+        expected = archive.fit(many, **OPTIONS)
         np.testing.assert_array_equal(coefficients(found[0]), coefficients(expected))
         assert found[0].samples == expected.samples
