@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
+import io
 import os
 import uuid
 from collections.abc import Callable, Iterable, Sequence
@@ -99,7 +100,9 @@ def _save(state: Any, path: Path) -> None:
     beside = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
     try:
         with open(beside, "xb") as out:
-            np.save(out, state)
+            content = io.BytesIO()
+            np.save(content, state)
+            out.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
             out.flush()
             os.fsync(out.fileno())
         os.replace(beside, path)
@@ -108,11 +111,25 @@ def _save(state: Any, path: Path) -> None:
         raise
 
 
+def _kept(path: Path | None, kind: _Kind) -> FitAccumulator | None:
+    """What _save() has written; None if there is nothing, or something else."""
+    if path is None:
+        return None
+    try:
+        content = path.read_bytes()
+        if hashlib.sha256(content[:-32]).digest() != content[-32:]:
+            return None
+        return kind.of(np.load(io.BytesIO(content[:-32])))
+    except (OSError, ValueError, EOFError):
+        return None
+
+
 def _leaf(path: str, kind: _Kind, skip_broken: bool, checkpoint: str | None, options: dict[str, Any]) -> _Part:
     try:
         saved = None if checkpoint is None else _saved_as(path, kind, checkpoint, options)
-        if saved is not None and saved.is_file():
-            return _Part(kind.of(np.load(saved)), {})
+        kept = _kept(saved, kind)
+        if kept is not None:
+            return _Part(kept, {})
         accumulator = kind.empty()
         accumulator.add(read_samples(path, **options))
     except (OSError, ValueError) as error:
@@ -189,7 +206,8 @@ def fit(
     client       a distributed.Client; None: in this process, one file after the other
     skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError
     checkpoint   a folder in which the state of each file is kept, whole or not at all: another call continues with what
-                 is there, unless the file was changed, or is read or fitted with other options. Workers must find it, too
+                 is there, unless the file was changed, or is read or fitted with other options; a state that is
+                 damaged is made again. Workers must find it, too
     progress     such as tqdm.tqdm, which is given what is gone through
     Other options are those of FitAccumulator and its solve().
 

@@ -150,6 +150,21 @@ def test_a_file_that_is_there_twice_is_refused(files, tmp_path):
         archive.fit([files[0], tmp_path / "other.csv"], **OPTIONS)
 
 
+@pytest.mark.parametrize("damage", ["empty", "cut", "other", "flipped"])
+def test_a_damaged_state_is_made_again_and_its_file_is_not_left_out(files, plain, tmp_path, damage):
+    archive.fit(files, checkpoint=tmp_path, **OPTIONS)
+    whole = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    assert len(whole) == len(files)
+    for path, content in whole.items():
+        middle = len(content) // 2
+        flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
+        path.write_bytes({"empty": b"", "cut": content[:middle], "other": b"wavelength_nm", "flipped": flipped}[damage])
+    fitted = archive.fit(files, checkpoint=tmp_path, skip_broken=True, **OPTIONS)
+    assert fitted.skipped == {}
+    np.testing.assert_array_equal(coefficients(fitted), plain)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == whole
+
+
 def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
