@@ -101,7 +101,7 @@ class PixelInstrument:
         """(y, x, 10): the numbers of two turning retarders, as Calibration.retarders names them, angles in degrees."""
         self.u_retarders = values.get("u_retarders")
         self.start = start
-        """The instrument that the mean of the image gave, from which all pixels started."""
+        """The instrument that the median of the image gave, from which all pixels started."""
         self._inverses: _mmbrdf._PixelInverses | None = None
 
     @property
@@ -618,6 +618,7 @@ def calibrate(
     polarizer_near_deg: float | None = None,
     dial_sense: int = 1,
     noise: Mapping[str, float] | None = None,
+    saturation: float | None = None,
     mask: ArrayLike | None = None,
     start: Calibration | None = None,
     most_misfit: float = 100.0,
@@ -630,13 +631,14 @@ def calibrate(
     stacks      (reference, y, x, frame), dark-subtracted; or a DataArray with these names, in any order
     dials_deg   (frame, 2): of two turning retarders, whose few numbers are fitted; None: a grid of states, the eigenvalue
                 method refined. fit_..., retardance_deg, dial_sense, polarizer_near_deg and noise are as for mmbrdf.calibrate()
+    saturation  a pixel with a reading at or above it, of whatever reference, is not finite, and fails
     mask        truth values (y, x): False is left out
-    start       the instrument to start from, of the same references; None: that of the mean of all good pixels
+    start       the instrument to start from, of the same references; None: that of the median of all good pixels
     most_misfit chi squared per degree of freedom above which a pixel has failed
 
     Each pixel has its own states, brightness, and properties of the references. Pixels that fail are NaN, and
-    PixelInstrument.failure says why. Raises ValueError where the mean of the image cannot be calibrated, and for shapes that
-    do not fit.
+    PixelInstrument.failure says why. Raises ValueError where the median of the image cannot be calibrated, and for shapes
+    that do not fit.
     """
     given = _given_references(references)
     array = _stacks(stacks)
@@ -648,6 +650,8 @@ def calibrate(
         raise ValueError(f"stacks: the last axis has {array.shape[-1]} frames, expected {frames}")
     shape = array.shape[1:3]
     mask = _plain("mask", mask, ("y", "x", "frame"), ("y", "x"))
+    if saturation is not None:
+        array = np.where((array >= saturation).any(axis=(0, 3), keepdims=True), np.float32(np.nan), array)
     use = np.ones(shape, bool) if mask is None else np.asarray(_mask_for(mask, array[0]))
     law = {"relative": 1e-3} if noise is None else dict(noise)
     _variance(law, np.zeros(1))
@@ -660,7 +664,7 @@ def calibrate(
         good = use & np.isfinite(array).all(axis=(0, 3))
         if not good.any():
             raise ValueError("stacks: no pixel that is not masked has finite readings in all frames")
-        start = cameras.start(np.stack([one[good].mean(axis=0, dtype=float) for one in array]))
+        start = cameras.start(np.stack([np.median(one[good], axis=0).astype(float) for one in array]))
     found = _each_pixel(cameras, start, array, use, most_misfit, threads, progress)
     if "retarders" in found:
         for name in ("retarders", "u_retarders"):

@@ -141,6 +141,30 @@ def test_failures_are_flagged_and_not_fatal(camera):
         found.at(5, 7)
 
 
+@pytest.mark.parametrize("hot", [60_000.0, 1e30, -1e30])
+def test_a_hot_pixel_does_not_stop_the_others(camera, calibrated, hot):
+    stacks = camera.stacks.copy()
+    stacks[:, 1, 2] = hot
+    stacks[:, 4, 4, 7] = hot
+    found = images.calibrate(camera.references, stacks, wavelength_nm=532)
+    assert np.argwhere(found.failure).tolist() == [[1, 2], [4, 4]]
+    good = found.failure == 0
+    # Steps end below a thousandth of the standard uncertainties, wherever they start.
+    off = (found.generator - calibrated.generator)[good] / calibrated.u_generator[good]
+    assert np.abs(off).max() < 2e-3
+    assert np.isnan(images.reduce(camera.stack, found)[~good]).all()
+
+
+def test_saturated_pixels_are_not_calibrated(camera, calibrated):
+    stacks = camera.stacks.copy()
+    stacks[3, 1, 2, 5] = 4095
+    found = images.calibrate(camera.references, stacks, wavelength_nm=532, saturation=4000, start=calibrated.start)
+    assert np.argwhere(found.failure).tolist() == [[1, 2]]
+    assert images.FAILURES[found.failure[1, 2]] == "not finite" and np.isfinite(stacks).all()
+    others = found.failure == 0
+    np.testing.assert_array_equal(found.generator[others], calibrated.generator[others])
+
+
 def test_uncertainties_are_the_scatter_of_repeated_frames():
     camera = images.simulate((40, 50), noise=0, seed=4)
     matrix = np.broadcast_to(camera.mueller[20, 30], (40, 50, 4, 4))
