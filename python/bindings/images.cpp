@@ -82,7 +82,7 @@ InstrumentPointer shared_start(const Cameras& cameras, const Numbers& mean) {
     with.references[i].readings.assign(row, row + mean.shape(1));
   }
   return without_gil(
-      [&] { return std::make_shared<Instrument>(calibrate(with.references, with.options), "mean of the image"); });
+      [&] { return std::make_shared<Instrument>(calibrate(with.references, with.options), "median of the image"); });
 }
 
 py::dict calibrated(const Cameras& cameras, const InstrumentPointer& start, const Floats& readings, int threads,

@@ -12,7 +12,9 @@ from __future__ import annotations
 
 import copy
 import hashlib
+import io
 import os
+import uuid
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -61,19 +63,46 @@ class _Part(NamedTuple):
     skipped: dict[str, str]
 
 
-def _saved_as(path: str, kind: _Kind, checkpoint: str) -> Path:
-    """Another file for what was changed, or is fitted otherwise."""
+_READ = ("columns", "convention", "frame", "skip_incomplete")  # options of read_samples()
+
+
+def _require_known(read: dict[str, Any]) -> None:
+    for name in read:
+        if name not in _READ:
+            raise TypeError(f"fit() got {name!r}: not an option of it, nor of read_samples(): {', '.join(_READ)}")
+
+
+def _canonical(value: Any) -> str:
+    """The same text of equal options, in whatever order they were given."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name!r}: {_canonical(value[name])}" for name in sorted(value)) + "}"
+    return repr(value)
+
+
+def _require_once(paths: Sequence[str]) -> None:
+    """Twice the same samples would be a fit that is surer than it should be."""
+    seen: dict[str, int] = {}
+    for k, path in enumerate(paths):
+        first = seen.setdefault(os.path.realpath(path), k)
+        if first != k:
+            raise ValueError(f"files: number {k} ({path}) is number {first} ({paths[first]}) again: leave one out")
+
+
+def _saved_as(path: str, kind: _Kind, checkpoint: str, read: dict[str, Any]) -> Path:
+    """Another file for what was changed, or is read or fitted otherwise."""
     at = os.stat(path)
-    key = repr((os.path.abspath(path), at.st_size, at.st_mtime_ns, tuple(kind), __version__))
+    key = repr((os.path.abspath(path), at.st_size, at.st_mtime_ns, tuple(kind), _canonical(read), __version__))
     return Path(checkpoint) / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.npy"
 
 
 def _save(state: Any, path: Path) -> None:
-    """Wholly, or not at all."""
-    beside = path.with_name(f"{path.name}.{os.getpid()}.part")
+    """Wholly, or not at all, whoever else writes the same: threads, and nodes on which processes have the same number."""
+    beside = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
     try:
-        with open(beside, "wb") as out:
-            np.save(out, state)
+        with open(beside, "xb") as out:
+            content = io.BytesIO()
+            np.save(content, state)
+            out.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
             out.flush()
             os.fsync(out.fileno())
         os.replace(beside, path)
@@ -82,11 +111,25 @@ def _save(state: Any, path: Path) -> None:
         raise
 
 
+def _kept(path: Path | None, kind: _Kind) -> FitAccumulator | None:
+    """What _save() has written; None if there is nothing, or something else."""
+    if path is None:
+        return None
+    try:
+        content = path.read_bytes()
+        if hashlib.sha256(content[:-32]).digest() != content[-32:]:
+            return None
+        return kind.of(np.load(io.BytesIO(content[:-32])))
+    except (OSError, ValueError, EOFError):
+        return None
+
+
 def _leaf(path: str, kind: _Kind, skip_broken: bool, checkpoint: str | None, options: dict[str, Any]) -> _Part:
     try:
-        saved = None if checkpoint is None else _saved_as(path, kind, checkpoint)
-        if saved is not None and saved.is_file():
-            return _Part(kind.of(np.load(saved)), {})
+        saved = None if checkpoint is None else _saved_as(path, kind, checkpoint, options)
+        kept = _kept(saved, kind)
+        if kept is not None:
+            return _Part(kept, {})
         accumulator = kind.empty()
         accumulator.add(read_samples(path, **options))
     except (OSError, ValueError) as error:
@@ -158,22 +201,27 @@ def fit(
 ) -> ArchiveFit:
     """Least squares of the samples of all files, as one FitAccumulator would fit them.
 
-    files        of samples, as read_samples() takes them; its options (columns, frame, ...) may be given, too. Workers
+    files        of samples, as read_samples() takes them, each once; its options (columns, frame, ...) may be given, too. Workers
                  must find them by the same names
     client       a distributed.Client; None: in this process, one file after the other
     skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError
     checkpoint   a folder in which the state of each file is kept, whole or not at all: another call continues with what
-                 is there, unless the file was changed. Workers must find it, too
+                 is there, unless the file was changed, or is read or fitted with other options; a state that is
+                 damaged is made again. Workers must find it, too
     progress     such as tqdm.tqdm, which is given what is gone through
     Other options are those of FitAccumulator and its solve().
 
     In memory are the samples of one file for each worker, and some states. Weights are 1, and uncertainties those of the
-    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, and as solve() does.
+    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, one that is there twice, and as
+    solve() does;
+    TypeError for an option that there is not.
     """
     paths = [os.fspath(file) for file in files]
     if not paths:
         raise ValueError("files: none")
+    _require_once(paths)
     kind = _Kind(basis, (int(orders[0]), int(orders[1])), mapping, as_printed)
+    _require_known(read)
     kind.empty()  # refuses what makes no sense before anything is read
     folder = None if checkpoint is None else os.path.abspath(os.fspath(checkpoint))
     if folder is not None:

@@ -101,7 +101,7 @@ class PixelInstrument:
         """(y, x, 10): the numbers of two turning retarders, as Calibration.retarders names them, angles in degrees."""
         self.u_retarders = values.get("u_retarders")
         self.start = start
-        """The instrument that the mean of the image gave, from which all pixels started."""
+        """The instrument that the median of the image gave, from which all pixels started."""
         self._inverses: _mmbrdf._PixelInverses | None = None
 
     @property
@@ -272,7 +272,7 @@ def _dark_for(dark: Any, stack: Any) -> Any:
     """As it broadcasts against the stack: one number, a frame (y, x), (frame,) or all."""
     if dark is None:
         return None
-    array = dark if _lazy._is_lazy(dark) else np.asarray(dark)
+    array = dark if _lazy._is_lazy(dark) and _lazy._is_lazy(stack) else np.asarray(dark)
     if array.shape == tuple(stack.shape[:-1]):
         return array[..., None]
     if array.ndim == 0 or array.shape == tuple(stack.shape[-1:]) or array.shape == tuple(stack.shape):
@@ -286,7 +286,7 @@ def _dark_for(dark: Any, stack: Any) -> Any:
 def _mask_for(mask: Any, stack: Any) -> Any:
     if mask is None:
         return None
-    array = mask if _lazy._is_lazy(mask) else np.asarray(mask)
+    array = mask if _lazy._is_lazy(mask) and _lazy._is_lazy(stack) else np.asarray(mask)
     if array.dtype.kind != "b" or tuple(array.shape) != tuple(stack.shape[:-1]):
         raise ValueError(
             f"mask: {array.dtype} of shape {tuple(array.shape)}, expected truth values (y, x) = {tuple(stack.shape[:-1])}"
@@ -312,13 +312,17 @@ def reduce(
     progress    of a numpy array: such as tqdm.tqdm, which is given what is gone through. Dask has its own
 
     Result: float32, or float64 of a stack of float64 by one instrument. A pixel with a reading that is not finite, or
-    without calibration, is NaN. A DataArray gives one with its coordinates, a Dask array one that is lazy.
+    without calibration, is NaN. A DataArray gives one with its coordinates, in its order of axes, a Dask array one that is
+    lazy. Names count and not the order: dark and mask may have names, too, and without them have the order of the stack;
+    with an instrument for each pixel the axes must be called y and x, and frames "frame" or come last.
     Raises ValueError, naming axis and sizes, for another number of frames or pixels than the instrument has, and for
     chunks that cut the frames.
     """
     own = _polarimeter(instrument)
     if hasattr(stack, "dims"):
         return _reduced_named(stack, own, dark, saturation, mask)
+    image = ("y", "x", "frame")
+    dark, mask = _plain("dark", dark, image, image[:-1]), _plain("mask", mask, image, image[:-1])
     if _lazy._is_lazy(stack):
         return _reduced_lazily(stack, own, dark, saturation, mask)
     array = np.asarray(stack)
@@ -389,28 +393,59 @@ class _Block:
             _mmbrdf._limit_threads(before)
 
 
+def _named_axes(stack: xarray.DataArray, own: Any) -> tuple[tuple[Any, ...], Any]:
+    """The outer axes in the order of the instrument, and that of the frames."""
+    dims = tuple(stack.dims)
+    frame = "frame" if "frame" in dims else dims[-1] if dims else "frame"
+    outer = tuple(name for name in dims if name != frame)
+    if frame in ("y", "x") or frame not in dims:
+        raise ValueError(f"stack: dimensions {dims}: none is called 'frame': rename it")
+    if not isinstance(own, PixelInstrument):
+        return outer, frame
+    if set(outer) != {"y", "x"}:
+        raise ValueError(
+            f"stack: dimensions {dims}, expected 'y', 'x' and 'frame', as those of an instrument for each pixel: rename them"
+        )
+    return ("y", "x"), frame
+
+
+def _plain(name: str, array: Any, dims: tuple[Any, ...], given: tuple[Any, ...]) -> Any:
+    """Dark frames or a mask without names, in the order of the stack's dims: by their own, else as `given` outer ones."""
+    if hasattr(array, "dims"):
+        if set(array.dims) not in (set(dims), set(dims[:-1]), {dims[-1]}, set()):
+            raise ValueError(f"{name}: dimensions {tuple(array.dims)}, those of the stack are {dims}")
+        return array.transpose(*[one for one in dims if one in array.dims]).data
+    if array is None or np.ndim(array) < 2 or given == dims[:-1]:
+        return array
+    own = [given.index(one) for one in dims[:-1]]
+    more = list(range(len(own), np.ndim(array)))
+    if len(more) > 1 or np.ndim(array) < len(own):
+        return array  # whose shape is refused
+    return (array if _lazy._is_lazy(array) else np.asarray(array)).transpose([*own, *more])
+
+
 def _reduced_named(stack: xarray.DataArray, own: Any, dark: Any, saturation: Any, mask: Any) -> xarray.DataArray:
     import xarray
 
-    frame = "frame" if "frame" in stack.dims else stack.dims[-1]
-    ordered = stack.transpose(..., frame)
+    outer, frame = _named_axes(stack, own)
     _lazy.require_whole("stack", stack, (str(frame),))
-    plain = lambda a: a.data if hasattr(a, "dims") else a  # noqa: E731
-    for name, array in (("dark", dark), ("mask", mask)):
-        if hasattr(array, "dims") and array.dims not in (ordered.dims, ordered.dims[:-1], (frame,), ()):
-            raise ValueError(f"{name}: dimensions {array.dims}, those of the stack are {ordered.dims}")
-    values = reduce(ordered.data, own, dark=plain(dark), saturation=saturation, mask=plain(mask))
-    outer = ordered.dims[:-1]
+    ordered = stack.transpose(*outer, frame)
+    given = tuple(name for name in stack.dims if name != frame)
+    plain = [_plain(name, array, (*outer, frame), given) for name, array in (("dark", dark), ("mask", mask))]
+    values = reduce(ordered.data, own, dark=plain[0], saturation=saturation, mask=plain[1])
     kept = {name: c for name, c in ordered.coords.items() if frame not in c.dims}
     labels = {"row": np.arange(1, 5), "column": np.arange(1, 5)}
     attributes = {**stack.attrs, "long_name": "Mueller matrix", "frame": "scattering_plane"}
     attributes.pop("units", None)
-    return xarray.DataArray(values, {**kept, **labels}, [*outer, "row", "column"], "mueller", attributes)
+    result = xarray.DataArray(values, {**kept, **labels}, [*outer, "row", "column"], "mueller", attributes)
+    return result.transpose(*given, "row", "column")
 
 
 def readings(mueller: ArrayLike, instrument: _Instrument) -> NDArray[np.float64]:
     """The stack (y, x, frame) that matrices (y, x, 4, 4) give, without noise."""
     own = _polarimeter(instrument)
+    if isinstance(own, PixelInstrument):
+        mueller = _by_name("mueller", mueller, ("y", "x", "row", "column"))
     m = np.asarray(mueller, float)
     if isinstance(own, Polarimeter):
         return np.asarray(own.readings(m)).reshape(*m.shape[:-2], -1)
@@ -440,7 +475,8 @@ def uncertainty(
 ) -> Any:
     """Standard uncertainties from independent noise of the frames: of the matrices (y, x, 4, 4), or of a quantity (y, x).
 
-    stack     (y, x, frame), dark-subtracted: numpy, Dask or DataArray
+    stack     (y, x, frame), dark-subtracted: numpy, Dask or DataArray, whose names count as in reduce(). With a
+              PixelInstrument not Dask, nor a lazy DataArray: go through rows of the image
     noise     {"dark": d, "shot": s, "relative": r}: variance d^2 + s |B| + (r B)^2 of a reading B, in its units
     quantity  any of mmbrdf.quantities() that takes no light, of the matrices as they are reduced
 
@@ -454,14 +490,13 @@ def uncertainty(
     work = _Noise(own, dict(noise), quantity)
     _variance(noise, np.zeros(1))
     if hasattr(stack, "dims"):
-        frame = "frame" if "frame" in stack.dims else stack.dims[-1]
-        ordered = stack.transpose(..., frame)
+        outer, frame = _named_axes(stack, own)
+        ordered = stack.transpose(*outer, frame)
         values = uncertainty(ordered.data, own, noise, quantity=quantity)
         kept = {n: c for n, c in ordered.coords.items() if frame not in c.dims}
         core = [] if quantity else ["row", "column"]
-        return type(stack)(
-            values, kept, [*ordered.dims[:-1], *core], f"u of {quantity or 'mueller'}", dict(stack.attrs)
-        )
+        result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", dict(stack.attrs))
+        return result.transpose(*[name for name in stack.dims if name != frame], *core)
     if not _lazy._is_lazy(stack):
         array = np.asarray(stack)
         _checked(array, own)
@@ -551,6 +586,22 @@ def _given_references(references: Sequence[Reference | tuple[Any, ...]]) -> list
     return result
 
 
+def _stacks(stacks: Any) -> NDArray[np.float32]:
+    """As (reference, y, x, frame), by names where there are some."""
+    image = ("y", "x", "frame")
+    if isinstance(stacks, list | tuple):
+        return np.asarray([_by_name("stacks", one, image) for one in stacks], np.float32)
+    return np.asarray(_by_name("stacks", stacks, ("reference", *image)), np.float32)
+
+
+def _by_name(name: str, stack: Any, dims: tuple[str, ...]) -> Any:
+    if not hasattr(stack, "dims"):
+        return stack
+    if set(stack.dims) != set(dims):
+        raise ValueError(f"{name}: dimensions {tuple(stack.dims)}, expected {', '.join(dims)}: rename them")
+    return stack.transpose(*dims).values
+
+
 def calibrate(
     references: Sequence[Reference | tuple[Any, ...]],
     stacks: ArrayLike,
@@ -567,6 +618,7 @@ def calibrate(
     polarizer_near_deg: float | None = None,
     dial_sense: int = 1,
     noise: Mapping[str, float] | None = None,
+    saturation: float | None = None,
     mask: ArrayLike | None = None,
     start: Calibration | None = None,
     most_misfit: float = 100.0,
@@ -576,19 +628,20 @@ def calibrate(
     """An instrument for each pixel, from references before the camera: as mmbrdf.calibrate() of each, by maximum likelihood.
 
     references  Reference or its tuple, for each of the stacks; wafers with both signs, since no film is asked here
-    stacks      (reference, y, x, frame), dark-subtracted
+    stacks      (reference, y, x, frame), dark-subtracted; or a DataArray with these names, in any order
     dials_deg   (frame, 2): of two turning retarders, whose few numbers are fitted; None: a grid of states, the eigenvalue
                 method refined. fit_..., retardance_deg, dial_sense, polarizer_near_deg and noise are as for mmbrdf.calibrate()
+    saturation  a pixel with a reading at or above it, of whatever reference, is not finite, and fails
     mask        truth values (y, x): False is left out
-    start       the instrument to start from, of the same references; None: that of the mean of all good pixels
+    start       the instrument to start from, of the same references; None: that of the median of all good pixels
     most_misfit chi squared per degree of freedom above which a pixel has failed
 
     Each pixel has its own states, brightness, and properties of the references. Pixels that fail are NaN, and
-    PixelInstrument.failure says why. Raises ValueError where the mean of the image cannot be calibrated, and for shapes that
-    do not fit.
+    PixelInstrument.failure says why. Raises ValueError where the median of the image cannot be calibrated, and for shapes
+    that do not fit.
     """
     given = _given_references(references)
-    array = np.asarray(stacks, np.float32)
+    array = _stacks(stacks)
     if array.ndim != 4 or array.shape[0] != len(given):
         raise ValueError(f"stacks: shape {array.shape}, expected (reference, y, x, frame) with {len(given)} references")
     dials = None if dials_deg is None else np.asarray(dials_deg, float)
@@ -596,6 +649,9 @@ def calibrate(
     if array.shape[-1] != frames:
         raise ValueError(f"stacks: the last axis has {array.shape[-1]} frames, expected {frames}")
     shape = array.shape[1:3]
+    mask = _plain("mask", mask, ("y", "x", "frame"), ("y", "x"))
+    if saturation is not None:
+        array = np.where((array >= saturation).any(axis=(0, 3), keepdims=True), np.float32(np.nan), array)
     use = np.ones(shape, bool) if mask is None else np.asarray(_mask_for(mask, array[0]))
     law = {"relative": 1e-3} if noise is None else dict(noise)
     _variance(law, np.zeros(1))
@@ -608,7 +664,7 @@ def calibrate(
         good = use & np.isfinite(array).all(axis=(0, 3))
         if not good.any():
             raise ValueError("stacks: no pixel that is not masked has finite readings in all frames")
-        start = cameras.start(np.stack([one[good].mean(axis=0, dtype=float) for one in array]))
+        start = cameras.start(np.stack([np.median(one[good], axis=0).astype(float) for one in array]))
     found = _each_pixel(cameras, start, array, use, most_misfit, threads, progress)
     if "retarders" in found:
         for name in ("retarders", "u_retarders"):

@@ -97,6 +97,74 @@ def test_another_call_continues_with_what_was_finished(files, plain, tmp_path, m
     np.testing.assert_array_equal(coefficients(fitted), plain)
 
 
+@pytest.mark.parametrize(
+    "option",
+    [{"frame": "scattering_plane"}, {"convention": "p_first_right"}, {"columns": {"m22": "m33", "m33": "m22"}}],
+    ids=lambda o: next(iter(o)),
+)
+def test_files_that_are_read_otherwise_are_not_those_of_the_checkpoints(files, tmp_path, option):
+    some = files[:2]
+    before = coefficients(archive.fit(some, checkpoint=tmp_path, **OPTIONS))
+    expected = coefficients(archive.fit(some, **option, **OPTIONS))
+    assert not np.array_equal(expected, before)
+    found = coefficients(archive.fit(some, checkpoint=tmp_path, **option, **OPTIONS))
+    np.testing.assert_array_equal(found, expected)
+    again = {"columns": dict(reversed(option["columns"].items()))} if "columns" in option else option
+    archive.fit(some, checkpoint=tmp_path, **again, **OPTIONS)
+    assert len(list(tmp_path.iterdir())) == 4  # two states of two files
+
+
+def test_unknown_options_are_refused_whatever_the_checkpoints(files, tmp_path):
+    archive.fit(files[:2], checkpoint=tmp_path, **OPTIONS)
+    with pytest.raises(
+        TypeError, match=r"fit\(\) got 'colums': not an option of it, nor of read_samples\(\): columns, "
+    ):
+        archive.fit(files[:2], checkpoint=tmp_path, colums={"f11": "f22"}, skip_broken=True, **OPTIONS)
+
+
+def test_those_who_write_the_same_state_at_once_do_not_disturb_each_other(tmp_path):
+    state, saved = np.arange(100_000.0), tmp_path / "state.npy"
+    together, failed = threading.Barrier(8), []
+
+    def write():
+        together.wait()
+        try:
+            for _ in range(5):
+                archive._save(state, saved)
+        except OSError as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=write) for _ in range(8)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert failed == [] and list(tmp_path.iterdir()) == [saved]
+
+
+def test_a_file_that_is_there_twice_is_refused(files, tmp_path):
+    with pytest.raises(ValueError, match=r"^files: number 2 \(.*run0.csv\) is number 0 \(.*run0.csv\) again"):
+        archive.fit([*files[:2], files[0]], **OPTIONS)
+    (tmp_path / "other.csv").symlink_to(files[0])
+    with pytest.raises(ValueError, match=r"^files: number 1 \(.*other.csv\) is number 0"):
+        archive.fit([files[0], tmp_path / "other.csv"], **OPTIONS)
+
+
+@pytest.mark.parametrize("damage", ["empty", "cut", "other", "flipped"])
+def test_a_damaged_state_is_made_again_and_its_file_is_not_left_out(files, plain, tmp_path, damage):
+    archive.fit(files, checkpoint=tmp_path, **OPTIONS)
+    whole = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    assert len(whole) == len(files)
+    for path, content in whole.items():
+        middle = len(content) // 2
+        flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
+        path.write_bytes({"empty": b"", "cut": content[:middle], "other": b"wavelength_nm", "flipped": flipped}[damage])
+    fitted = archive.fit(files, checkpoint=tmp_path, skip_broken=True, **OPTIONS)
+    assert fitted.skipped == {}
+    np.testing.assert_array_equal(coefficients(fitted), plain)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == whole
+
+
 def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
@@ -106,6 +174,9 @@ def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, m
 
 def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):
     cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    many = [tmp_path / f"{k}_{path.name}" for k in range(40) for path in files]
+    for k, path in enumerate(many):
+        os.link(files[k % len(files)], path)
     with (
         cluster_of.LocalCluster(
             n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
@@ -116,12 +187,12 @@ def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, p
         before = client.run(os.getpid)
         found = []
         # Many pieces, so that some run and some are done when a worker dies.
-        work = threading.Thread(target=lambda: found.append(archive.fit(files * 40, client, **OPTIONS)))
+        work = threading.Thread(target=lambda: found.append(archive.fit(many, client, **OPTIONS)))
         work.start()
         time.sleep(0.3)
         os.kill(next(iter(before.values())), signal.SIGKILL)
         work.join(200)
         assert len(found) == 1
-        expected = archive.fit(files * 40, **OPTIONS)
+        expected = archive.fit(many, **OPTIONS)
         np.testing.assert_array_equal(coefficients(found[0]), coefficients(expected))
         assert found[0].samples == expected.samples

@@ -141,6 +141,30 @@ def test_failures_are_flagged_and_not_fatal(camera):
         found.at(5, 7)
 
 
+@pytest.mark.parametrize("hot", [60_000.0, 1e30, -1e30])
+def test_a_hot_pixel_does_not_stop_the_others(camera, calibrated, hot):
+    stacks = camera.stacks.copy()
+    stacks[:, 1, 2] = hot
+    stacks[:, 4, 4, 7] = hot
+    found = images.calibrate(camera.references, stacks, wavelength_nm=532)
+    assert np.argwhere(found.failure).tolist() == [[1, 2], [4, 4]]
+    good = found.failure == 0
+    # Steps end below a thousandth of the standard uncertainties, wherever they start.
+    off = (found.generator - calibrated.generator)[good] / calibrated.u_generator[good]
+    assert np.abs(off).max() < 2e-3
+    assert np.isnan(images.reduce(camera.stack, found)[~good]).all()
+
+
+def test_saturated_pixels_are_not_calibrated(camera, calibrated):
+    stacks = camera.stacks.copy()
+    stacks[3, 1, 2, 5] = 4095
+    found = images.calibrate(camera.references, stacks, wavelength_nm=532, saturation=4000, start=calibrated.start)
+    assert np.argwhere(found.failure).tolist() == [[1, 2]]
+    assert images.FAILURES[found.failure[1, 2]] == "not finite" and np.isfinite(stacks).all()
+    others = found.failure == 0
+    np.testing.assert_array_equal(found.generator[others], calibrated.generator[others])
+
+
 def test_uncertainties_are_the_scatter_of_repeated_frames():
     camera = images.simulate((40, 50), noise=0, seed=4)
     matrix = np.broadcast_to(camera.mueller[20, 30], (40, 50, 4, 4))
@@ -226,6 +250,84 @@ def test_lazy_stacks_have_the_bits_of_the_eager_call(camera, calibrated):
     np.testing.assert_array_equal(u.values, expected)
     with pytest.raises(ValueError, match=r"stack: chunks \(8, 8\) cut the axis 'frame'"):
         images.reduce(chunked.rechunk((6, 8, 8)), calibrated)
+
+
+@pytest.mark.parametrize("chunked", [False, True], ids=["numpy", "dask"])
+def test_names_count_and_not_the_order_of_axes(chunked):
+    xarray = pytest.importorskip("xarray")
+    if chunked:
+        pytest.importorskip("dask.array", reason="no Dask: ./dev packages clusters")
+    side = (6, 6)  # whose axes can be mistaken
+    camera = images.simulate(side, repeats=4, seed=5)
+    raw = xarray.DataArray(camera.stack, {"x": np.arange(6.0)}, ["y", "x", "frame"])
+    dark = xarray.DataArray(np.linspace(0, 0.01, 36, dtype=np.float32).reshape(side), dims=["y", "x"])
+    mask = xarray.DataArray(np.arange(36).reshape(side) != 11, dims=["y", "x"])
+    given = raw.chunk({"y": 4}) if chunked else raw
+    single = camera.instrument.at(0, 0)
+    for own in (camera.instrument, single):
+        expected = images.reduce(camera.stack, own, dark=dark.values, mask=mask.values)
+        for order in (["y", "x", "frame"], ["x", "y", "frame"], ["frame", "x", "y"], ["x", "frame", "y"]):
+            outer = [name for name in order if name != "frame"]
+            turned = given.transpose(*order)
+            for one, other in (
+                (dark, mask),
+                (dark.T, mask.T),
+                (dark.transpose(*outer).values, mask.transpose(*outer).values),
+            ):
+                found = images.reduce(turned, own, dark=one, mask=other)
+                assert found.dims == (*outer, "row", "column")
+                np.testing.assert_array_equal(found.transpose("y", "x", ...).values, expected)
+                np.testing.assert_array_equal(found.x, np.arange(6.0))
+            if chunked and own is camera.instrument:
+                continue
+            for quantity in (None, "purity"):
+                u = images.uncertainty(turned, own, {"relative": 0.01}, quantity=quantity)
+                assert u.dims == (*outer, *([] if quantity else ["row", "column"]))
+                plain = images.uncertainty(camera.stack, own, {"relative": 0.01}, quantity=quantity)
+                np.testing.assert_array_equal(u.transpose("y", "x", ...).values, plain)
+    matrices = xarray.DataArray(camera.mueller, dims=["y", "x", "row", "column"])
+    np.testing.assert_array_equal(
+        images.readings(matrices.transpose("column", "x", "row", "y"), camera.instrument),
+        images.readings(camera.mueller, camera.instrument),
+    )
+    np.testing.assert_array_equal(
+        images.reduce(camera.stack, single, dark=dark.T, mask=mask.T), images.reduce(raw, single, dark=dark, mask=mask)
+    )
+
+
+def test_names_that_say_too_little_are_refused(camera, calibrated):
+    xarray = pytest.importorskip("xarray")
+    raw = xarray.DataArray(camera.stack, dims=["y", "x", "frame"])
+    unknown = raw.rename(y="down", x="across")
+    for ask in (images.reduce, lambda s, i: images.uncertainty(s, i, {"shot": 1.0})):
+        with pytest.raises(
+            ValueError, match=r"^stack: dimensions \('down', 'across', 'frame'\), expected 'y', 'x' and"
+        ):
+            ask(unknown, calibrated)
+        ask(unknown, calibrated.start)
+        with pytest.raises(
+            ValueError, match=r"^stack: dimensions \('k', 'y', 'x'\): none is called 'frame': rename it"
+        ):
+            ask(raw.rename(frame="k").transpose("k", "y", "x"), calibrated.start)
+    with pytest.raises(ValueError, match=r"^dark: dimensions \('down', 'x'\), those of the stack are"):
+        images.reduce(raw, calibrated, dark=raw[..., 0].rename(y="down"))
+    with pytest.raises(ValueError, match=r"^stacks: dimensions .*, expected reference, y, x, frame: rename them"):
+        images.calibrate(camera.references, xarray.DataArray(camera.stacks), wavelength_nm=532)
+
+
+def test_stacks_with_names_are_calibrated_in_any_order(camera, calibrated):
+    xarray = pytest.importorskip("xarray")
+    named = xarray.DataArray(camera.stacks, dims=["reference", "y", "x", "frame"])
+    mask = xarray.DataArray(np.arange(48).reshape(SHAPE) != 11, dims=["y", "x"])
+    options = {"wavelength_nm": 532, "start": calibrated.start}
+    expected = images.calibrate(camera.references, camera.stacks, mask=mask.values, **options)
+    for stacks in (
+        named.transpose("x", "frame", "y", "reference"),
+        [one.transpose("x", "y", "frame") for one in named],
+    ):
+        found = images.calibrate(camera.references, stacks, mask=mask.T, **options)
+        np.testing.assert_array_equal(found.generator, expected.generator)
+        np.testing.assert_array_equal(found.failure, expected.failure)
 
 
 def test_stacks_go_from_chunked_files_to_chunked_files(camera, calibrated, tmp_path):
