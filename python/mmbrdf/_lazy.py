@@ -241,6 +241,8 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
     if function == "Model.analyze":
         return _analyze(given)
     signature = _SIGNATURES[function]
+    if given.get("uncertainty") and function in _TOGETHER:
+        return _together(function, given)
     for name in ("out", "as_xarray", "by_term", "uncertainty"):
         if given.get(name) is not None and given[name] is not False:
             raise TypeError(f"{function.rsplit('.', 1)[-1]}: {name} is not for Dask arrays and xarray.DataArrays")
@@ -282,6 +284,19 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
     return record(*result)
 
 
+_TOGETHER = ("Model.evaluate", "Model.reflectance_factor")
+
+
+def _together(function: str, given: dict[str, Any]) -> Any:
+    """Value, u and validity, each as lazy as the arguments."""
+    from . import Evaluation
+
+    asked = {name: value for name, value in given.items() if name not in ("uncertainty", "terms")}
+    where = {name: asked[name] for name in ("self", "wavelength_nm", *_DIRECTIONS, "invalid") if name in asked}
+    u = lazily(f"{function}_uncertainty", {**asked, "terms": given.get("terms")})
+    return Evaluation(lazily(function, asked), u, lazily("Model.outside", where))
+
+
 def _fields(answer: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Where each number of an analysis stands: the quantity, and the field or the part of u."""
     places = []
@@ -307,6 +322,8 @@ def _analyze(given: dict[str, Any]) -> Any:
     """All numbers as one array with another axis, of which each is a part."""
     from . import Analyzed
 
+    if given.pop("as_xarray", False):
+        raise TypeError("analyze: as_xarray is not for Dask arrays and xarray.DataArrays")
     one = {**given, **dict.fromkeys(_DIRECTIONS, 0.0)}
     if _is_lazy(one.get("wavelength_nm")) or np.ndim(one.get("wavelength_nm") or 0) > 0:
         one["wavelength_nm"] = given["self"].wavelengths_nm[0]
@@ -420,6 +437,8 @@ def _methods() -> dict[str, Signature]:
     return {
         "Model.evaluate": _question(_MATRIX),
         "Model.evaluate_uncertainty": _question(_MATRIX),
+        "Model.reflectance_factor": _question(())._replace(units="1", meaning="reflectance factor"),
+        "Model.reflectance_factor_uncertainty": _question(())._replace(units="1"),
         "Model.covariance": _question(("element", "element_2")),
         "Model.outside": _question((), dtype=np.uint8),
         "Model.estimable": _question((), dtype=bool),

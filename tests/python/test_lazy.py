@@ -194,3 +194,18 @@ def test_warnings_are_those_of_the_line_that_asked(ptfe):
         ptfe.evaluate(532, 45, 0, 89.5, 180)
     assert [one.filename for one in warned] == [__file__] * 2
     assert warned[1].lineno == warned[0].lineno + 1
+
+
+def test_value_u_and_validity_come_together_and_stay_lazy(ptfe):
+    theta = np.array([0.0, 30.0, np.nan, 85.0])
+    more = {"uncertainty": True, "terms": {"scale": 0.003}, "invalid": "nan"}
+    for ask in (ptfe.evaluate, ptfe.reflectance_factor):
+        eager = ask(532, 45, 0, theta, 180, **more)
+        lazy = ask(532, 45, 0, da.from_array(theta, chunks=2), 180, **more)
+        named = ask(532, 45, 0, xarray.DataArray(theta, dims="view").chunk({"view": 2}), 180, **more)
+        for one, chunked, labelled in zip(eager, lazy, named):
+            assert isinstance(chunked, da.Array) and labelled.chunks is not None and labelled.dims[0] == "view"
+            np.testing.assert_array_equal(chunked.compute(), one)
+            np.testing.assert_array_equal(labelled.values, one)
+    with pytest.raises(TypeError, match="^analyze: as_xarray is not for Dask arrays and xarray.DataArrays$"):
+        ptfe.analyze(532, 45, 0, xarray.DataArray(theta[:2], dims="view"), 180, as_xarray=True)
