@@ -39,7 +39,7 @@ class Page {
   at!: ModelAt;
   reply?: Reply;
   limits: number[] = [];
-  readonly files = new Map<string, { contents: Uint8Array; opened: string }>();
+  readonly files = new Map<string, { contents: Uint8Array; path: string; opened: string }>();
   readonly hemispheres: Hemispheres;
   readonly beside = new Beside();
   #opened = 0; // number of the last file
@@ -182,9 +182,10 @@ class Page {
       this.#trouble((error as Error).message);
       return;
     }
-    if (!this.files.has(file.name)) element("model").append(new Option(file.name, file.name));
-    this.files.set(file.name, { contents, opened: `file ${(this.#opened += 1)}` });
-    this.#open(file.name);
+    const name = this.mmbrdf.materials.includes(file.name) ? `${file.name} (file)` : file.name;
+    if (!this.files.has(name)) element("model").append(new Option(name, name));
+    this.files.set(name, { contents, path: file.name, opened: `file ${(this.#opened += 1)}` });
+    this.#open(name);
   }
 
   /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
@@ -260,8 +261,10 @@ class Page {
     element<HTMLInputElement>("locked").checked = state.limits.length > 0;
     element("facts").textContent = `${this.model.basis}. Fitted: ${this.model.fittedRange}.`;
     history.replaceState(null, "", toLink(state));
-    element("program").textContent = programLines(state, state.curve);
-    element("python").textContent = pythonLines(state, this.files.has(state.model));
+    const file = this.files.get(state.model);
+    const shown = file ? { ...state, model: file.path } : state; // what the program calls it
+    element("program").textContent = programLines(shown, state.curve, Boolean(file));
+    element("python").textContent = pythonLines(shown, Boolean(file));
     this.#ask();
     this.#showMatrix();
   }
@@ -438,8 +441,9 @@ class Page {
     const { state } = this;
     const curves = this.reply!.curves!;
     if (state.curve === "dhr") {
-      const rows = dhrAngles.map((theta, i) => [theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
-      return ["theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll("NaN", "");
+      const model = /[",\n]/.test(state.model) ? `"${state.model.replaceAll('"', '""')}"` : state.model;
+      const rows = dhrAngles.map((theta, i) => [model, state.wavelength, theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
+      return ["model,wavelength_nm,theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll(/(?<=,)NaN(?=,|$)/gm, "");
     }
     const names = ["f11", ...this.mmbrdf.quantities.map(({ name }) => name)];
     const where = inPlane(state);

@@ -70,10 +70,11 @@ export function areLimits(limits: number[]): boolean {
   return held.length === 32 && held.every((one, i) => Number.isFinite(one) && (i % 2 === 0 || held[i - 1] < one));
 }
 
-/** A polar angle in 0 ... 90 and an azimuth in -180 ... 180, of angles that keys or a pointer led beyond. */
+/** A polar angle in 0 ... 90 and an azimuth in -180 ... 180, of others; what is inside keeps its digits. */
 export function folded(theta: number, phi: number): [number, number] {
+  if (theta >= 0 && theta <= 90 && phi > -180 && phi <= 180) return [theta, phi];
   const [t, p] = theta < 0 ? [-theta, phi + 180] : [theta, phi];
-  const round = (x: number) => Math.round(x * 100) / 100;
+  const round = (x: number) => Number(x.toPrecision(12)); // without the rounding of a sum
   const turned = round(p - 360 * Math.floor((p + 180) / 360));
-  return [Math.min(90, round(t)), turned === -180 ? 180 : turned];
+  return [Math.min(90, t), turned === -180 ? 180 : turned];
 }

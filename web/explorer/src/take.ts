@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is taken along: files, and the lines that give the same numbers elsewhere.
+import { dhrAngles } from "./scan";
 import type { State } from "./state";
 
 export function save(name: string, contents: Blob | string, type = "text/plain") {
@@ -13,15 +14,16 @@ export function save(name: string, contents: Blob | string, type = "text/plain")
 /** A name for a shell, in quotes if it needs them. */
 const shell = (text: string) => (/^[\w./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`);
 
-export function programLines(state: State, curve: string): string {
+export function programLines(state: State, curve: string, ownFile: boolean): string {
   const light = `-w ${state.wavelength} -i ${state.thetaI},${state.phiI}`;
-  const where = `${shell(state.model)} ${light}`;
+  const model = shell(ownFile && !/[./]/.test(state.model) ? `./${state.model}` : state.model); // not the built-in one
+  const where = `${model} ${light}`;
   const frame = state.frame === "xy" ? "" : ` --frame ${state.frame}`;
   const lines = [
     `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}`,
     `mmbrdf analyze ${where} -r ${state.thetaR},${state.phiR}${frame}`,
     curve === "dhr"
-      ? `mmbrdf integrate ${shell(state.model)} -q dhr -w ${state.wavelength} --theta 0,15,30,45,60,75 --format csv`
+      ? `mmbrdf integrate ${model} -q dhr -w ${state.wavelength} --theta ${dhrAngles.join(",")} --format csv`
       : `mmbrdf analyze ${where} --scan theta_r=-85:85:1${frame} -o curve.csv`,
   ];
   if (state.convention !== "germer2017")
