@@ -153,7 +153,7 @@ export interface Hemisphere {
   /** RGBA of 4 x 4 tiles, transparent beside the discs: `new ImageData(image, 4 * pixels, 4 * pixels)`. */
   readonly image: Uint8ClampedArray;
 
-  /** All elements, with light from there. */
+  /** All elements, with light from there. Throws, as all here do, after free(), and where `at` or its model was freed. */
   evaluate(at: ModelAt, theta: number, phi?: number, options?: MatrixOptions): void;
   /** Smallest and largest of each element, 32 numbers. */
   extremes(): Float32Array;
@@ -173,8 +173,11 @@ export interface Mmbrdf {
   /** A built-in model. */
   material(name: string): Model;
 
-  /** A model from the contents of a file, JSON or published coefficients; `path` is its name in messages. */
-  model(contents: string | Uint8Array, path: string): Model;
+  /**
+   * A model from the contents of a file, JSON or published coefficients: a text, or its bytes in UTF-8; `path` is its name
+   * in messages. Throws for contents of another type.
+   */
+  model(contents: string | ArrayBuffer | Uint8Array, path: string): Model;
 
   /** Tiles of 8 to 2048 pixels; in direction cosines, or in the projection that keeps solid angles. */
   hemisphere(pixels: number, options?: { projection?: "projected" | "lambert" }): Hemisphere;

@@ -14,7 +14,7 @@ class Calls {
 
   /** The text at this address; throws the module's message for 0. */
   text(address) {
-    if (!address) throw new Error(this.read(this.module._error_text()));
+    if (!address) throw this.#error();
     return this.read(address);
   }
 
@@ -25,8 +25,13 @@ class Calls {
 
   /** What a call returned, but for 0. */
   checked(result) {
-    if (!result) throw new Error(this.read(this.module._error_text()));
+    if (!result) throw this.#error();
     return result;
+  }
+
+  #error() {
+    const words = this.read(this.module._error_text());
+    return new Error(words === "std::bad_alloc" ? "not enough memory: ask for less at once, and free() what is not needed" : words);
   }
 
   /** Calls work(addresses) with memory for these numbers of bytes, and gives it back. */
@@ -35,7 +40,7 @@ class Calls {
     try {
       for (const size of sizes) {
         const address = this.module._malloc(Math.max(size, 8));
-        if (!address) throw new Error("no memory for " + size + " bytes");
+        if (!address) throw new Error(`not enough memory for ${size} bytes: ask for less at once, and free() what is not needed`);
         addresses.push(address);
       }
       return work(...addresses);
@@ -44,9 +49,9 @@ class Calls {
     }
   }
 
-  /** The same for texts, which end in a zero byte. */
+  /** The same for texts, each with its name in messages: they end in a zero byte. */
   withTexts(texts, work) {
-    const bytes = texts.map((one) => (typeof one === "string" ? utf8.encode(one) : one));
+    const bytes = texts.map(([one, what]) => bytesOf(one, what));
     return this.with(
       bytes.map((one) => one.length + 1),
       (...addresses) => {
@@ -79,6 +84,24 @@ class Calls {
   }
 }
 
+/** Of any realm: `instanceof` knows those of its own. */
+const kindOf = (value) => Object.prototype.toString.call(value).slice(8, -1);
+
+function stringOf(value, what) {
+  if (typeof value !== "string") throw new Error(`${what} must be a string, not ${named(value)}`);
+  return value;
+}
+
+/** UTF-8 of a text, or bytes that are that. */
+function bytesOf(value, what) {
+  if (typeof value === "string") return utf8.encode(value);
+  if (kindOf(value) === "Uint8Array") return value;
+  if (kindOf(value) === "ArrayBuffer") return new Uint8Array(value);
+  throw new Error(`${what} must be a string, or an ArrayBuffer or a Uint8Array of UTF-8, not ${named(value)}`);
+}
+
+const named = (value) => (value === null || value === undefined ? String(value) : `of type ${kindOf(value)}`);
+
 /** Four angles for each geometry, as one list of numbers. */
 function angles(geometries) {
   const list = ArrayBuffer.isView(geometries)
@@ -99,21 +122,27 @@ function anglesOf({ thetaI, phiI = 0, thetaR, phiR = 0 }) {
 class At {
   #calls;
   #at;
+  #freed;
 
-  constructor(calls, at, model, wavelength) {
+  constructor(calls, at, model, wavelength, freed) {
     this.#calls = calls;
     this.#at = at;
+    this.#freed = freed;
     this.model = model;
     this.wavelength = wavelength;
   }
 
   #address() {
-    if (!this.#at || !this.model.isOpen) throw new Error(`model '${this.model.name}' was freed`);
+    if (!this.model.isOpen) throw new Error(`model '${this.model.name}' was freed`);
+    if (!this.#at) throw new Error(`model '${this.model.name}' at ${this.wavelength} nm was freed`);
     return this.#at;
   }
 
-  get address() {
-    return this.#address();
+  /** Of what model.at() of this module returned. */
+  static addressIn(calls, at) {
+    if (typeof at !== "object" || at === null || !(#at in at) || at.#calls !== calls)
+      throw new Error("evaluate() of a hemisphere takes what model.at(wavelength) returned, of the same load()");
+    return at.#address();
   }
 
   #each(geometries, bytes, work) {
@@ -195,12 +224,14 @@ class At {
   free() {
     if (this.#at) this.#calls.module._free_at(this.#at);
     this.#at = 0;
+    this.#freed(this);
   }
 }
 
 class Model {
   #calls;
   #model;
+  #prepared = new Set(); // of it, and not freed
 
   constructor(calls, model) {
     this.#calls = calls;
@@ -215,10 +246,13 @@ class Model {
   at(wavelength) {
     if (!this.#model) throw new Error(`model '${this.name}' was freed`);
     const address = this.#calls.checked(this.#calls.module._at_wavelength(this.#model, wavelength));
-    return new At(this.#calls, address, this, wavelength);
+    const at = new At(this.#calls, address, this, wavelength, (one) => this.#prepared.delete(one));
+    this.#prepared.add(at);
+    return at;
   }
 
   free() {
+    for (const at of [...this.#prepared]) at.free();
     if (this.#model) this.#calls.module._free_model(this.#model);
     this.#model = 0;
   }
@@ -226,13 +260,18 @@ class Model {
 
 class Hemisphere {
   #calls;
-  #address;
+  #given;
 
   constructor(calls, pixels, lambert) {
     this.#calls = calls;
-    this.#address = calls.checked(calls.module._new_hemisphere(pixels, lambert));
+    this.#given = calls.checked(calls.module._new_hemisphere(pixels, lambert));
     this.pixels = pixels;
     this.count = calls.module._hemisphere_count(this.#address);
+  }
+
+  get #address() {
+    if (!this.#given) throw new Error("the hemisphere was freed");
+    return this.#given;
   }
 
   #view(Kind, address, length) {
@@ -264,7 +303,7 @@ class Hemisphere {
     const calls = this.#calls;
     calls.checked(
       calls.module._hemisphere_evaluate(
-        this.#address, at.address, theta, phi, calls.frame(frame), calls.convention(convention), normalized),
+        this.#address, At.addressIn(calls, at), theta, phi, calls.frame(frame), calls.convention(convention), normalized),
     );
   }
 
@@ -280,8 +319,8 @@ class Hemisphere {
   }
 
   free() {
-    if (this.#address) this.#calls.module._free_hemisphere(this.#address);
-    this.#address = 0;
+    if (this.#given) this.#calls.module._free_hemisphere(this.#given);
+    this.#given = 0;
   }
 }
 
@@ -295,12 +334,12 @@ class Mmbrdf {
 
   material(name) {
     const { module } = this.#calls;
-    return this.#calls.withTexts([name], (address) => this.#open(module._material_named(address)));
+    return this.#calls.withTexts([[stringOf(name, "name"), "name"]], (address) => this.#open(module._material_named(address)));
   }
 
   model(contents, path) {
     const { module } = this.#calls;
-    return this.#calls.withTexts([contents, path], (address, length, name) =>
+    return this.#calls.withTexts([[contents, "contents"], [stringOf(path, "path"), "path"]], (address, length, name) =>
       this.#open(module._model_read(address, length, name)),
     );
   }

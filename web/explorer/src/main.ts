@@ -7,25 +7,16 @@ import load, { type Mmbrdf, type Model, type ModelAt } from "mmbrdf";
 import { type Chart, drawn, standalone } from "./chart";
 import { Hemispheres } from "./hemispheres";
 import { toPlaceOf, uncertaintyText, withoutRounding } from "./numbers";
-import { dhrAngles, inPlane, scanned } from "./scan";
-import { angles, areLimits, folded, fromLink, start, type State, toLink } from "./state";
+import { cursor, dhrAngles, scanned } from "./scan";
+import { allowed, angles, fromLink, longest, start, type State, toLink, understood } from "./state";
 import "./style.css";
-import { pythonLines, programLines, save } from "./take";
+import { csv, pythonLines, programLines, save } from "./take";
 import type { Question, Reply } from "./worker";
 import Beside from "./worker?worker&inline";
 
 const element = <T extends HTMLElement = HTMLElement>(id: string) => document.getElementById(id) as T;
 const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
 const coverage = 1.96; // of a normal distribution, 95 %
-const longest = 1e9; // nm: models know none above a metre
-/** What the fields take. */
-const allowed = {
-  wavelength: `1 to ${longest} nm`,
-  thetaI: "0 to 90 degrees",
-  phiI: "A number of degrees",
-  thetaR: "0 to 90 degrees",
-  phiR: "A number of degrees",
-};
 
 async function bytesOf(text: string): Promise<Uint8Array> {
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -39,7 +30,7 @@ class Page {
   at!: ModelAt;
   reply?: Reply;
   limits: number[] = [];
-  readonly files = new Map<string, { contents: Uint8Array; opened: string }>();
+  readonly files = new Map<string, { contents: Uint8Array; path: string; opened: string }>();
   readonly hemispheres: Hemispheres;
   readonly beside = new Beside();
   #opened = 0; // number of the last file
@@ -74,31 +65,6 @@ class Page {
       if (!polarized.includes(name)) curves.push([name, `${name.replaceAll("_", " ")}: ${meaning}`]);
     curves.push(["dhr", "directional-hemispherical reflectance against θi"]);
     for (const [value, words] of curves) element("curve").append(new Option(words, value));
-  }
-
-  /** What of a link nobody knows is as at the start; a line says which numbers those are. */
-  #understood(asked: State): { state: State; line: string } {
-    const state = { ...asked };
-    const lines: string[] = [];
-    const curves = Array.from(element<HTMLSelectElement>("curve").options, ({ value }) => value);
-    const known = { frame: this.mmbrdf.frames, convention: this.mmbrdf.conventions, projection: ["projected", "lambert"], curve: curves };
-    for (const [name, values] of Object.entries(known))
-      if (!(values as string[]).includes(state[name as keyof typeof known]))
-        Object.assign(state, { [name]: start[name as keyof typeof known] });
-    const refuse = (name: (typeof angles)[number] | "wavelength", allowed: string) => {
-      lines.push(`${name} = ${state[name]} of the link must be ${allowed}: ${start[name]} is shown`);
-      state[name] = start[name];
-    };
-    if (!(state.wavelength >= 1 && state.wavelength <= longest)) refuse("wavelength", `1 to ${longest} nm`);
-    for (const name of ["thetaI", "thetaR"] as const) if (!(Math.abs(state[name]) <= 90)) refuse(name, "0 to 90 degrees");
-    for (const name of ["phiI", "phiR"] as const) if (!(Math.abs(state[name]) <= 1e6)) refuse(name, "an azimuth in degrees");
-    [state.thetaI, state.phiI] = folded(state.thetaI, state.phiI);
-    [state.thetaR, state.phiR] = folded(state.thetaR, state.phiR);
-    if (state.limits.length && !areLimits(state.limits)) {
-      lines.push("limits of the link must be 16 pairs, each of a smaller and a larger number: the colour scales are not locked");
-      state.limits = [];
-    }
-    return { state, line: lines.map((one) => `${one}.`).join(" ") };
   }
 
   /** Says at a field what it takes, and at the answer that it is of what was there before. */
@@ -158,7 +124,7 @@ class Page {
         const why = this.#busy || this.#drawing ? "not there yet: its uncertainties are being computed" : "not known";
         element("take-state").textContent = `The curve is ${why}.`;
       });
-    ofCurve("csv", () => this.#csv(), "text/csv");
+    ofCurve("csv", () => csv(this.state, this.reply!.curves!, this.mmbrdf, this.at), "text/csv");
     ofCurve("svg", () => standalone(this.#chart), "image/svg+xml");
     element("png").addEventListener("click", async () => save("hemispheres.png", await this.hemispheres.png()));
     element("link").addEventListener("click", async () => {
@@ -182,9 +148,10 @@ class Page {
       this.#trouble((error as Error).message);
       return;
     }
-    if (!this.files.has(file.name)) element("model").append(new Option(file.name, file.name));
-    this.files.set(file.name, { contents, opened: `file ${(this.#opened += 1)}` });
-    this.#open(file.name);
+    const name = this.mmbrdf.materials.includes(file.name) ? `${file.name} (file)` : file.name;
+    if (!this.files.has(name)) element("model").append(new Option(name, name));
+    this.files.set(name, { contents, path: file.name, opened: `file ${(this.#opened += 1)}` });
+    this.#open(name);
   }
 
   /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
@@ -204,7 +171,9 @@ class Page {
       this.model = this.mmbrdf.material((name = start.model));
     }
     if (asked) {
-      const { state, line: more } = this.#understood(asked);
+      const curves = Array.from(element<HTMLSelectElement>("curve").options, ({ value }) => value);
+      const known = { frame: this.mmbrdf.frames, convention: this.mmbrdf.conventions, projection: ["projected", "lambert"], curve: curves };
+      const { state, line: more } = understood(asked, known);
       this.state = state;
       line = [line, more].filter((one) => one).join(" ");
     }
@@ -260,8 +229,10 @@ class Page {
     element<HTMLInputElement>("locked").checked = state.limits.length > 0;
     element("facts").textContent = `${this.model.basis}. Fitted: ${this.model.fittedRange}.`;
     history.replaceState(null, "", toLink(state));
-    element("program").textContent = programLines(state, state.curve);
-    element("python").textContent = pythonLines(state, this.files.has(state.model));
+    const file = this.files.get(state.model);
+    const shown = file ? { ...state, model: file.path } : state; // what the program calls it
+    element("program").textContent = programLines(shown, state.curve, Boolean(file));
+    element("python").textContent = pythonLines(shown, Boolean(file));
     this.#ask();
     this.#showMatrix();
   }
@@ -414,41 +385,15 @@ class Page {
     if (this.at.outside({ thetaI: state.thetaI, thetaR: 0 })[0].extrapolated && state.curve !== "dhr") beyond.splice(0, 2, [x[0], x[x.length - 1]]);
     const unit = state.curve === "dhr" ? "" : (this.mmbrdf.quantities.find(({ name }) => name === names[0])?.unit ?? "sr^-1");
     const yLabel = names.length > 1 ? "BRDF, sr⁻¹" : `${names[0].replaceAll("_", " ")}${unit ? ", sr⁻¹" : ""}`;
-    const chart: Chart = { curves, xLabel: label, yLabel, beyond, at: this.#cursor() };
+    const chart: Chart = { curves, xLabel: label, yLabel, beyond, at: cursor(state) };
     const words = `${yLabel} against ${label}: ${curves.map((one) => `${one.name} from ${toPlaceOf(Math.min(...one.y), null)} to ${toPlaceOf(Math.max(...one.y), null)}`).join("; ")}.`;
     this.#chart = drawn(chart, words);
     element("chart").innerHTML = this.#chart;
     element("chart-words").textContent = `${model.name} at ${state.wavelength} nm. Bands hold 95 % (1.96 u). Hatched: extrapolated.`;
   }
 
-  /** Where the chosen direction is in the curve, if it is. */
-  #cursor(): number | undefined {
-    const { state } = this;
-    if (state.curve === "dhr") return state.thetaI <= 85 ? state.thetaI : undefined;
-    const turn = (((state.phiR - state.phiI) % 360) + 360) % 360;
-    const theta = state.thetaR === 0 ? 0 : turn === 180 ? state.thetaR : turn === 0 ? -state.thetaR : NaN;
-    return Math.abs(theta) <= 85 ? theta : undefined;
-  }
-
   #fileName() {
     return `${this.state.model.replace(/\.\w+$/, "")}-${this.state.wavelength}nm-${this.state.curve}`;
-  }
-
-  #csv(): string {
-    const { state } = this;
-    const curves = this.reply!.curves!;
-    if (state.curve === "dhr") {
-      const rows = dhrAngles.map((theta, i) => [theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
-      return ["theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll("NaN", "");
-    }
-    const names = ["f11", ...this.mmbrdf.quantities.map(({ name }) => name)];
-    const where = inPlane(state);
-    const validity = this.at.outside(where);
-    const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", ...names.flatMap((name) => [name, `u_${name}`]), "validity"];
-    const rows = where.map((one, i) =>
-      [state.wavelength, one.thetaI, one.phiI, one.thetaR, one.phiR, ...names.flatMap((name) => [curves[name].values[i], curves[name].uncertainties[i]]), validity[i].validity].join(","),
-    );
-    return [head.join(","), ...rows, ""].join("\n").replaceAll("NaN", "");
   }
 }
 

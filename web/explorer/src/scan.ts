@@ -16,3 +16,11 @@ export function inPlane(state: State): Geometry[] {
     phiR: theta < 0 ? state.phiI : state.phiI + 180,
   }));
 }
+
+/** Where the chosen direction is in the curve, if it is. */
+export function cursor(state: State): number | undefined {
+  if (state.curve === "dhr") return state.thetaI <= 85 ? state.thetaI : undefined;
+  const turn = (((state.phiR - state.phiI) % 360) + 360) % 360;
+  const theta = state.thetaR === 0 ? 0 : turn === 180 ? state.thetaR : turn === 0 ? -state.thetaR : NaN;
+  return Math.abs(theta) <= 85 ? theta : undefined;
+}

@@ -37,6 +37,16 @@ export const start: State = {
 
 export const angles = ["thetaI", "phiI", "thetaR", "phiR"] as const;
 
+export const longest = 1e9; // nm: models know none above a metre
+/** What the fields take. */
+export const allowed = {
+  wavelength: `1 to ${longest} nm`,
+  thetaI: "0 to 90 degrees",
+  phiI: "A number of degrees",
+  thetaR: "0 to 90 degrees",
+  phiR: "A number of degrees",
+};
+
 export function toLink(state: State): string {
   const parameters = new URLSearchParams();
   for (const [name, value] of Object.entries(state))
@@ -70,10 +80,34 @@ export function areLimits(limits: number[]): boolean {
   return held.length === 32 && held.every((one, i) => Number.isFinite(one) && (i % 2 === 0 || held[i - 1] < one));
 }
 
-/** A polar angle in 0 ... 90 and an azimuth in -180 ... 180, of angles that keys or a pointer led beyond. */
+/** A polar angle in 0 ... 90 and an azimuth in -180 ... 180, of others; what is inside keeps its digits. */
 export function folded(theta: number, phi: number): [number, number] {
+  if (theta >= 0 && theta <= 90 && phi > -180 && phi <= 180) return [theta, phi];
   const [t, p] = theta < 0 ? [-theta, phi + 180] : [theta, phi];
-  const round = (x: number) => Math.round(x * 100) / 100;
+  const round = (x: number) => Number(x.toPrecision(12)); // without the rounding of a sum
   const turned = round(p - 360 * Math.floor((p + 180) / 360));
-  return [Math.min(90, round(t)), turned === -180 ? 180 : turned];
+  return [Math.min(90, t), turned === -180 ? 180 : turned];
+}
+
+/** What of a link is not among these words is as at the start; a line says which numbers are. */
+export function understood(asked: State, known: Record<"frame" | "convention" | "projection" | "curve", string[]>): { state: State; line: string } {
+  const state = { ...asked };
+  const lines: string[] = [];
+  for (const [name, values] of Object.entries(known))
+    if (!values.includes(state[name as keyof typeof known]))
+      Object.assign(state, { [name]: start[name as keyof typeof known] });
+  const refuse = (name: (typeof angles)[number] | "wavelength", allowed: string) => {
+    lines.push(`${name} = ${state[name]} of the link must be ${allowed}: ${start[name]} is shown`);
+    state[name] = start[name];
+  };
+  if (!(state.wavelength >= 1 && state.wavelength <= longest)) refuse("wavelength", `1 to ${longest} nm`);
+  for (const name of ["thetaI", "thetaR"] as const) if (!(Math.abs(state[name]) <= 90)) refuse(name, "0 to 90 degrees");
+  for (const name of ["phiI", "phiR"] as const) if (!(Math.abs(state[name]) <= 1e6)) refuse(name, "an azimuth in degrees");
+  [state.thetaI, state.phiI] = folded(state.thetaI, state.phiI);
+  [state.thetaR, state.phiR] = folded(state.thetaR, state.phiR);
+  if (state.limits.length && !areLimits(state.limits)) {
+    lines.push("limits of the link must be 16 pairs, each of a smaller and a larger number: the colour scales are not locked");
+    state.limits = [];
+  }
+  return { state, line: lines.map((one) => `${one}.`).join(" ") };
 }

@@ -182,3 +182,46 @@ test("a drag beyond the disc where it began ends at 90 degrees, on the side of t
   }
   await page.mouse.up();
 });
+
+test("a link keeps the digits that were typed", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#thetaI=45.12345&phiI=-179.98765" });
+  await settled(page);
+  const fields = () => Promise.all(["thetaI", "phiI"].map((id) => page.inputValue(`#${id}`)));
+  assert.deepEqual(await fields(), ["45.12345", "-179.98765"]);
+  await page.focus("#hemispheres");
+  await page.keyboard.press("ArrowUp");
+  await settled(page);
+  assert.deepEqual(await fields(), ["46.12345", "-179.98765"]);
+});
+
+test("a file that has the name of a built-in model is another entry of the list", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium);
+  await page.setInputFiles("#file", file_of("ptfe-633", "ptfe"));
+  await page.waitForFunction(() => document.querySelector("#model").value === "ptfe (file)");
+  await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "633");
+  assert.match(await page.textContent("#program"), /^mmbrdf evaluate \.\/ptfe -w 633/);
+  await page.selectOption("#model", "ptfe");
+  await settled(page);
+  assert.match(await page.textContent("#program"), /^mmbrdf evaluate ptfe -w 633/);
+  assert.equal(await trouble(page), "");
+  assert.deepEqual(complaints, []);
+});
+
+test("the CSV of reflectances says of what it is, and its command has the same angles", { skip: skip || without_program }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-633&wavelength=633&curve=dhr" });
+  await settled(page);
+  const waiting = page.waitForEvent("download");
+  await page.click("#csv");
+  const [head, ...rows] = readFileSync(await (await waiting).path(), "utf8").trim().split("\n");
+  assert.equal(head, "model,wavelength_nm,theta_i_deg,dhr,u_dhr");
+  const command = (await page.textContent("#program")).split("\n").find((line) => line.startsWith("mmbrdf integrate"));
+  const [names, ...theirs] = run(...command.split(" ").slice(1)).trim().split("\n").map((line) => line.split(","));
+  assert.equal(rows.length, 86);
+  assert.equal(theirs.length, 86);
+  rows.forEach((row, i) => {
+    const [model, wavelength, theta, dhr] = row.split(",");
+    assert.deepEqual([model, wavelength, theta], ["ptfe-633", "633", String(i)]);
+    assert.ok(Math.abs(Number(dhr) - Number(theirs[i][names.indexOf("dhr")])) < 1e-9, row); // as many digits as are printed
+  });
+});

@@ -118,3 +118,60 @@ test("numbers of files are read to the last bit, however they are written", { sk
     assert.ok(Math.abs(f11 - expected) <= 2e-16 * Math.abs(expected), `${value}: ${f11}, not ${expected}`);
   }
 });
+
+test("what is no model at a wavelength, or was freed, is refused by a hemisphere in a line", async () => {
+  const model = mmbrdf.material("ptfe-532");
+  const [at, freed] = [model.at(532), model.at(600)];
+  freed.free();
+  const foreign = (await load()).material("ptfe-532").at(532);
+  const hemisphere = mmbrdf.hemisphere(8);
+  for (const wrong of [undefined, null, 0, {}, { address: 8 }, model, hemisphere, foreign])
+    assert.throws(() => hemisphere.evaluate(wrong, 45), { message: /^evaluate\(\) of a hemisphere takes what model\.at\(wavelength\) returned/ });
+  assert.throws(() => hemisphere.evaluate(freed, 45), { message: "model 'ptfe-532' at 600 nm was freed" });
+  hemisphere.evaluate(at, 45);
+  hemisphere.free();
+  hemisphere.free();
+  const uses = [
+    () => hemisphere.evaluate(at, 45), () => hemisphere.extremes(), () => hemisphere.paint(),
+    ...["positions", "values", "limits", "colors", "image"].map((name) => () => hemisphere[name]),
+  ];
+  for (const use of uses) assert.throws(use, { message: "the hemisphere was freed" });
+  assert.equal(at.evaluate([45, 0, 30, 180]).length, 16);
+  model.free();
+});
+
+test("contents are texts or bytes of UTF-8, and nothing else", { skip: without_program }, () => {
+  const path = join(folder, "bytes.json");
+  run("convert", "ptfe-532", path);
+  const text = readFileSync(path, "utf8");
+  const bytes = new TextEncoder().encode(text);
+  const f11 = (contents) => mmbrdf.model(contents, "bytes.json").at(532).evaluate([45, 0, 30, 180])[0];
+  const buffer = new ArrayBuffer(bytes.length);
+  new Uint8Array(buffer).set(bytes);
+  for (const contents of [bytes, buffer, readFileSync(path)]) assert.equal(f11(contents), f11(text));
+  for (const [contents, type] of [
+    [undefined, "undefined"], [null, "null"], [7, "of type Number"], [{}, "of type Object"], [[1], "of type Array"],
+    [new Float64Array(2), "of type Float64Array"], [new DataView(buffer), "of type DataView"], [Promise.resolve(""), "of type Promise"],
+  ])
+    assert.throws(() => mmbrdf.model(contents, "x.json"), {
+      message: `contents must be a string, or an ArrayBuffer or a Uint8Array of UTF-8, not ${type}`,
+    });
+  assert.throws(() => mmbrdf.model(text), { message: "path must be a string, not undefined" });
+  assert.throws(() => mmbrdf.material(532), { message: "name must be a string, not of type Number" });
+});
+
+test("where memory ends a sentence says so, and the module goes on", async () => {
+  const own = await load();
+  const { grow } = WebAssembly.Memory.prototype;
+  WebAssembly.Memory.prototype.grow = () => {
+    throw new RangeError("no more");
+  };
+  try {
+    assert.throws(() => own.hemisphere(2048), { message: /^not enough memory: ask for less at once/ });
+    const at = own.material("ptfe-532").at(532);
+    assert.throws(() => at.evaluate(new Float64Array(4e6)), { message: /^not enough memory for \d+ bytes: ask for less at once/ });
+    assert.equal(at.evaluate([45, 0, 30, 180]).length, 16);
+  } finally {
+    WebAssembly.Memory.prototype.grow = grow;
+  }
+});

@@ -169,3 +169,21 @@ test("memory is given back", () => {
   for (let i = 0; i < 20; ++i) once();
   assert.equal(once(), first);
 });
+
+test("a model that is freed gives back what was prepared of it", () => {
+  const size = () => {
+    const hemisphere = mmbrdf.hemisphere(8);
+    const bytes = hemisphere.image.buffer.byteLength;
+    hemisphere.free();
+    return bytes;
+  };
+  const once = () => {
+    const model = mmbrdf.material("ptfe-532");
+    for (const wavelength of [532, 600]) model.at(wavelength).standardUncertainty([45, 0, 30, 180]);
+    model.free();
+    return size();
+  };
+  const first = once();
+  for (let i = 0; i < 40; ++i) once();
+  assert.equal(once(), first);
+});
