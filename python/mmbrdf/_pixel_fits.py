@@ -105,7 +105,7 @@ class PixelFit:
         shape = array.shape[: -len(core)]
         sets = np.ascontiguousarray(array.reshape(-1, *core))
         coefficients, variances = self._fit(self._prepared, sets, threads)
-        bad = np.flatnonzero(~np.isfinite(variances).all(axis=1))
+        bad = np.flatnonzero(~np.isfinite(coefficients).all(axis=1))
         if len(bad):
             self._fit_patterns(sets, bad, coefficients, variances, threads, progress)
         return PixelModels(self, coefficients.reshape(*shape, -1), variances.reshape(*shape, -1))
@@ -147,7 +147,8 @@ class PixelModels:
         self.coefficients = coefficients
         """(..., coefficients), in the order of the blocks; NaN of a pixel without a fit."""
         self.variances = variances
-        """(..., blocks): s^2 by which the covariance that all pixels share is multiplied, of pixels without missing readings."""
+        """(..., blocks): s^2 by which the covariance that all pixels share is multiplied, of pixels without missing readings.
+        NaN where no degree of freedom is left: the covariance of that block is not known."""
 
     @property
     def shape(self) -> tuple[int, ...]:

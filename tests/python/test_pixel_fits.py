@@ -109,6 +109,19 @@ def test_missing_readings_are_fitted_by_their_pattern(grid, values, prepared, mo
         found[6]
 
 
+def test_without_degrees_of_freedom_a_covariance_is_not_known(ptfe):
+    where = mmbrdf.random_geometries(8, seed=3)  # as many as f11 has coefficients
+    values = ptfe.evaluate(532, *where)
+    found = images.PixelFit(532, where, orders=(3, 2)).fit(values)
+    own = alone(where, values, orders=(3, 2)).model
+    assert np.isfinite(found.coefficients).all() and found._fit.blocks[0] == ("11", 8)
+    assert np.isnan(found.variances[0]) and (found.variances[1:] > 0).all()
+    for model in (own, found[()]):
+        assert model.blocks[0].covariance is None and model.blocks[1].covariance is not None
+        with pytest.raises(ValueError, match="the covariance of block 11 is not known"):
+            model.evaluate_uncertainty(532, 30, 0, 20, 50)
+
+
 def test_models_of_many_pixels_are_one_file(models, tmp_path):
     pytest.importorskip("xarray")
     pytest.importorskip("netCDF4")
