@@ -29,7 +29,7 @@ class PixelFit:
     weights        (geometries, 4, 4) of f11 and of m_ij; None: 1
     f11_only       f11 alone: the models do not know the others
 
-    Raises ValueError for geometries that do not determine the model.
+    It can be pickled, without its matrix, which is made again from these, with the same bits. Raises ValueError for geometries that do not determine the model.
     """
 
     def __init__(
@@ -54,6 +54,13 @@ class PixelFit:
             raise ValueError(f"weights: shape {self.weights.shape}, expected {(count, 4, 4)}")
         self.wavelength_nm, self.f11_only = float(wavelength_nm), bool(f11_only)
         self._basis, self._orders, self._mapping, self._minimum_norm = basis, tuple(orders), mapping, minimum_norm
+        self._prepared = self._influence(self.weights)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
         self._prepared = self._influence(self.weights)
 
     def _influence(self, weights: NDArray[np.float64] | None) -> _mmbrdf._Influence:
@@ -140,7 +147,7 @@ class PixelFit:
 
 
 class PixelModels:
-    """Models of many pixels: what PixelFit.fit() gives. ``models[y, x]`` is the Model of one."""
+    """Models of many pixels: what PixelFit.fit() gives. ``models[y, x]`` is the Model of one. They can be pickled."""
 
     def __init__(self, fit: PixelFit, coefficients: NDArray[np.float64], variances: NDArray[np.float64]):
         self._fit = fit

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A BRDF in each pixel: as if each had been fitted alone."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -120,6 +123,25 @@ def test_without_degrees_of_freedom_a_covariance_is_not_known(ptfe):
         assert model.blocks[0].covariance is None and model.blocks[1].covariance is not None
         with pytest.raises(ValueError, match="the covariance of block 11 is not known"):
             model.evaluate_uncertainty(532, 30, 0, 20, 50)
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_fits_and_their_models_can_be_sent(ptfe, weighted):
+    where = mmbrdf.random_geometries(60, seed=3)
+    weights = np.random.default_rng(1).uniform(0.5, 1, (60, 4, 4)) if weighted else None
+    fit = images.PixelFit(532, where, orders=(3, 2), mapping="projected", weights=weights)
+    values = ptfe.evaluate(532, *where) * np.linspace(1, 2, 5)[:, None, None, None]
+    models = fit.fit(values)
+    for own, found in [
+        (pickle.loads(pickle.dumps(fit)), pickle.loads(pickle.dumps(models))),
+        (copy.copy(fit), copy.deepcopy(models)),
+    ]:
+        again = own.fit(values)
+        for one in (again, found):
+            np.testing.assert_array_equal(one.coefficients, models.coefficients)
+            np.testing.assert_array_equal(one.variances, models.variances)
+            assert one[3].to_json() == models[3].to_json()
+        assert own.blocks == fit.blocks and own.wavelength_nm == fit.wavelength_nm
 
 
 def test_models_of_many_pixels_are_one_file(models, tmp_path):
