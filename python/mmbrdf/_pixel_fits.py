@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mmbrdf
+from ._arguments import two_orders
 from ._mmbrdf import Model, __version__
 
 if TYPE_CHECKING:
@@ -53,7 +55,7 @@ class PixelFit:
         if self.weights is not None and self.weights.shape != (count, 4, 4):
             raise ValueError(f"weights: shape {self.weights.shape}, expected {(count, 4, 4)}")
         self.wavelength_nm, self.f11_only = float(wavelength_nm), bool(f11_only)
-        self._basis, self._orders, self._mapping, self._minimum_norm = basis, tuple(orders), mapping, minimum_norm
+        self._basis, self._orders, self._mapping, self._minimum_norm = basis, two_orders(orders), mapping, minimum_norm
         self._prepared = self._influence(self.weights)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -110,12 +112,14 @@ class PixelFit:
         if array.shape[-len(core) :] != core:
             raise ValueError(f"values: shape {array.shape}, expected (..., {', '.join(map(str, core))})")
         shape = array.shape[: -len(core)]
-        sets = np.ascontiguousarray(array.reshape(-1, *core))
+        sets = np.ascontiguousarray(array.reshape(math.prod(shape), *core))
         coefficients, variances = self._fit(self._prepared, sets, threads)
         bad = np.flatnonzero(~np.isfinite(coefficients).all(axis=1))
         if len(bad):
             self._fit_patterns(sets, bad, coefficients, variances, threads, progress)
-        return PixelModels(self, coefficients.reshape(*shape, -1), variances.reshape(*shape, -1))
+        return PixelModels(
+            self, coefficients.reshape(*shape, self.coefficients), variances.reshape(*shape, len(self.blocks))
+        )
 
     def _fit(
         self, prepared: _mmbrdf._Influence, sets: NDArray[Any], threads: int

@@ -194,3 +194,16 @@ def test_warnings_are_those_of_the_line_that_asked(ptfe):
         ptfe.evaluate(532, 45, 0, 89.5, 180)
     assert [one.filename for one in warned] == [__file__] * 2
     assert warned[1].lineno == warned[0].lineno + 1
+
+
+def test_frames_and_conventions_that_there_are_not_are_refused_at_once(ptfe):
+    for one in (lazy_question(), (*QUESTION[:3], xarray.DataArray(THETA_R), 30.0)):
+        for method in ("evaluate", "evaluate_uncertainty", "covariance"):
+            with pytest.raises(ValueError, match=r"^frame 'zz' is not one of xy, sp, scattering_plane$"):
+                getattr(ptfe, method)(*one, frame="zz")
+        values = ptfe.evaluate(*one)
+        for frames in (("zz", "sp"), ("xy", "zz")):
+            with pytest.raises(ValueError, match=r"^frame 'zz' is not one of"):
+                mmbrdf.change_frame(values, *one[1:], *frames)
+        with pytest.raises(ValueError, match=r"^convention 'zz' is not one of"):
+            mmbrdf.convert(values, "zz", "germer2017")

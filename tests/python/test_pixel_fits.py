@@ -156,6 +156,19 @@ def test_models_of_many_pixels_are_one_file(models, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["models.nc"]
 
 
+def test_no_pixels_are_no_models(prepared, values):
+    for some, shape in ((values[:0], (0, 20)), (values[:, :0], (3, 0)), (values[0, :0], (0,))):
+        none = prepared.fit(some)
+        assert none.shape == shape and none.coefficients.shape == (*shape, 142)
+        assert none.variances.shape == (*shape, len(prepared.blocks))
+
+
+@pytest.mark.parametrize("orders", [(2,), (2, 1, 0), 3, (2.5, 1), "74"], ids=str)
+def test_orders_are_two_whole_numbers(grid, orders):
+    with pytest.raises(ValueError, match=r"^orders = .*, expected two whole numbers: of f11, and of the others$"):
+        images.PixelFit(532, grid, orders=orders)
+
+
 def test_what_does_not_fit_is_named(grid, values, prepared):
     with pytest.raises(ValueError, match=r"values: shape \(3, 20, 1823, 4, 4\), expected \(\.\.\., 1824, 4, 4\)"):
         prepared.fit(values[:, :, 1:])
