@@ -2,6 +2,7 @@
 // Many fits at the same geometries; mmbrdf.images has what users see.
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -53,7 +54,7 @@ py::tuple fitted_sets(const Influence& influence, const Array& values, std::size
   return py::make_tuple(coefficients, variances);
 }
 
-/// The model of one set: its coefficients, and covariances scaled by its variances.
+/// The model of one set: its coefficients, and covariances scaled by its variances; not known where these are NaN.
 ModelPointer model_of_set(const Influence& influence, const std::vector<double>& coefficients,
                           const std::vector<double>& variances, const std::string& name) {
   Model model = influence.model();
@@ -64,6 +65,7 @@ ModelPointer model_of_set(const Influence& influence, const std::vector<double>&
     FittedBlock& block = model.blocks[b];
     for (double& coefficient : block.coefficients) coefficient = *next++;
     for (double& covariance : block.covariance) covariance *= variances[b];
+    if (std::isnan(variances[b])) block.covariance.clear();
   }
   model.name = name;
   return std::make_shared<ModelObject>(std::move(model));

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable
 from typing import Any
 
@@ -27,6 +28,15 @@ def number(name: str, value: Any) -> float:
     if not np.isfinite(array):
         raise ValueError(f"{name} = {float(array)}, must be finite")
     return float(array)
+
+
+def two_orders(value: Any) -> tuple[int, int]:
+    """The argument called orders. Raises ValueError for anything but two whole numbers."""
+    try:
+        f11, others = (operator.index(one) for one in value)
+    except (TypeError, ValueError):
+        raise ValueError(f"orders = {value!r}, expected two whole numbers: of f11, and of the others"[:200]) from None
+    return f11, others
 
 
 def own_wavelength(source: Model | Dataset, wavelength_nm: Any = None) -> float | None:

@@ -236,6 +236,16 @@ def _shaped(function: str, signature: Signature, given: dict[str, Any]) -> tuple
     return signature._replace(arrays={argument: core}, dtype=dtype), dict(zip(core, counts))
 
 
+def _require_names(given: Mapping[str, Any]) -> None:
+    """Frames and conventions that there are not are refused at once, and not when it is computed."""
+    for name in ("frame", "from_frame", "to_frame"):
+        if name in given:
+            _FUNCTIONS["change_frame"](np.eye(4), 0.0, 0.0, 0.0, 0.0, given[name], given[name])
+    for name in ("from_convention", "to_convention"):
+        if name in given:
+            _FUNCTIONS["convert"](np.eye(4), given[name], given[name])
+
+
 def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None = None) -> Any:
     """The function of arguments of which some are Dask arrays or DataArrays."""
     if function == "Model.analyze":
@@ -252,6 +262,7 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
     misplaced = [name for name, value in given.items() if _is_lazy(value) and name not in signature.arrays]
     if misplaced:
         raise TypeError(f"{misplaced[0]}: not a Dask array or an xarray.DataArray")
+    _require_names(given)
     signature, known = _shaped(function, signature, given)
     sizes = {**known, **(sizes or {})}
     arrays = {

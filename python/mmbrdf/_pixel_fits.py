@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mmbrdf
+from ._arguments import two_orders
 from ._mmbrdf import Model, __version__
 
 if TYPE_CHECKING:
@@ -29,7 +31,7 @@ class PixelFit:
     weights        (geometries, 4, 4) of f11 and of m_ij; None: 1
     f11_only       f11 alone: the models do not know the others
 
-    Raises ValueError for geometries that do not determine the model.
+    It can be pickled, without its matrix, which is made again from these, with the same bits. Raises ValueError for geometries that do not determine the model.
     """
 
     def __init__(
@@ -53,7 +55,14 @@ class PixelFit:
         if self.weights is not None and self.weights.shape != (count, 4, 4):
             raise ValueError(f"weights: shape {self.weights.shape}, expected {(count, 4, 4)}")
         self.wavelength_nm, self.f11_only = float(wavelength_nm), bool(f11_only)
-        self._basis, self._orders, self._mapping, self._minimum_norm = basis, tuple(orders), mapping, minimum_norm
+        self._basis, self._orders, self._mapping, self._minimum_norm = basis, two_orders(orders), mapping, minimum_norm
+        self._prepared = self._influence(self.weights)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
         self._prepared = self._influence(self.weights)
 
     def _influence(self, weights: NDArray[np.float64] | None) -> _mmbrdf._Influence:
@@ -103,12 +112,14 @@ class PixelFit:
         if array.shape[-len(core) :] != core:
             raise ValueError(f"values: shape {array.shape}, expected (..., {', '.join(map(str, core))})")
         shape = array.shape[: -len(core)]
-        sets = np.ascontiguousarray(array.reshape(-1, *core))
+        sets = np.ascontiguousarray(array.reshape(math.prod(shape), *core))
         coefficients, variances = self._fit(self._prepared, sets, threads)
-        bad = np.flatnonzero(~np.isfinite(variances).all(axis=1))
+        bad = np.flatnonzero(~np.isfinite(coefficients).all(axis=1))
         if len(bad):
             self._fit_patterns(sets, bad, coefficients, variances, threads, progress)
-        return PixelModels(self, coefficients.reshape(*shape, -1), variances.reshape(*shape, -1))
+        return PixelModels(
+            self, coefficients.reshape(*shape, self.coefficients), variances.reshape(*shape, len(self.blocks))
+        )
 
     def _fit(
         self, prepared: _mmbrdf._Influence, sets: NDArray[Any], threads: int
@@ -140,14 +151,15 @@ class PixelFit:
 
 
 class PixelModels:
-    """Models of many pixels: what PixelFit.fit() gives. ``models[y, x]`` is the Model of one."""
+    """Models of many pixels: what PixelFit.fit() gives. ``models[y, x]`` is the Model of one. They can be pickled."""
 
     def __init__(self, fit: PixelFit, coefficients: NDArray[np.float64], variances: NDArray[np.float64]):
         self._fit = fit
         self.coefficients = coefficients
         """(..., coefficients), in the order of the blocks; NaN of a pixel without a fit."""
         self.variances = variances
-        """(..., blocks): s^2 by which the covariance that all pixels share is multiplied, of pixels without missing readings."""
+        """(..., blocks): s^2 by which the covariance that all pixels share is multiplied, of pixels without missing readings.
+        NaN where no degree of freedom is left: the covariance of that block is not known."""
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ._arguments import two_orders
 from ._mmbrdf import FitAccumulator, FitResult, __version__, read_samples
 
 if TYPE_CHECKING:
@@ -182,7 +183,7 @@ def _there(client: distributed.Client, leaves: Sequence[Any], progress: Callable
 
 
 def fit(
-    files: Iterable[str | os.PathLike[str]],
+    files: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
     client: distributed.Client | None = None,
     *,
     basis: str = "isotropic",
@@ -201,7 +202,7 @@ def fit(
 ) -> ArchiveFit:
     """Least squares of the samples of all files, as one FitAccumulator would fit them.
 
-    files        of samples, as read_samples() takes them, each once; its options (columns, frame, ...) may be given, too. Workers
+    files        of samples, as read_samples() takes them, each once, or one of them; its options (columns, frame, ...) may be given, too. Workers
                  must find them by the same names
     client       a distributed.Client; None: in this process, one file after the other
     skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError
@@ -216,12 +217,14 @@ def fit(
     solve() does;
     TypeError for an option that there is not.
     """
-    paths = [os.fspath(file) for file in files]
+    paths = [os.fspath(file) for file in ([files] if isinstance(files, str | os.PathLike) else files)]
     if not paths:
         raise ValueError("files: none")
     _require_once(paths)
-    kind = _Kind(basis, (int(orders[0]), int(orders[1])), mapping, as_printed)
+    kind = _Kind(basis, two_orders(orders), mapping, as_printed)
     _require_known(read)
+    if client is not None and not callable(getattr(client, "submit", None)):
+        raise TypeError(f"client: expected a distributed.Client, not {type(client).__name__}")
     kind.empty()  # refuses what makes no sense before anything is read
     folder = None if checkpoint is None else os.path.abspath(os.fspath(checkpoint))
     if folder is not None:

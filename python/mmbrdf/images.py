@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _lazy, _mmbrdf
+from ._arguments import number
 from ._mmbrdf import Calibration, Polarimeter
 from ._pixel_fits import PixelFit, PixelModels, load_models
 
@@ -149,6 +150,12 @@ class PixelInstrument:
         return self._inverses
 
 
+def _kind_of(one: PixelInstrument) -> str:
+    states = f"{one.generator.shape[2]} and {one.analyzer.shape[2]} states"
+    retarders = ", with retarders" if one.retarders is not None else ""
+    return f"{one.shape[1]} columns of {one.frames} frames of {states}{retarders}"
+
+
 def join(instruments: Sequence[PixelInstrument]) -> PixelInstrument:
     """Instruments of rows of an image, one below the other, as one. Raises ValueError for others than of the same columns and kind."""
     if not instruments:
@@ -159,11 +166,13 @@ def join(instruments: Sequence[PixelInstrument]) -> PixelInstrument:
         if (
             one.shape[1] != first.shape[1]
             or one.frames != first.frames
+            or one.generator.shape[2] != first.generator.shape[2]
+            or one.analyzer.shape[2] != first.analyzer.shape[2]
             or (one.retarders is None) != (first.retarders is None)
         ):
-            raise ValueError(
-                f"instruments: number {k} has {one.shape[1]} columns of {one.frames} frames, the first {first.shape[1]} of {first.frames}"
-            )
+            raise ValueError(f"instruments: number {k} has {_kind_of(one)}, the first {_kind_of(first)}")
+        if (one.pairs is None) != (first.pairs is None) or not np.array_equal(one.pairs, first.pairs):
+            raise ValueError(f"instruments: number {k} has other pairs of states than the first")
     values = {
         name: np.concatenate([getattr(one, name) for one in instruments])
         for name in names
@@ -268,6 +277,10 @@ def _reduced(
     return result
 
 
+def _saturation(value: Any) -> float | None:
+    return None if value is None or (isinstance(value, float) and value == np.inf) else number("saturation", value)
+
+
 def _dark_for(dark: Any, stack: Any) -> Any:
     """As it broadcasts against the stack: one number, a frame (y, x), (frame,) or all."""
     if dark is None:
@@ -319,6 +332,7 @@ def reduce(
     chunks that cut the frames.
     """
     own = _polarimeter(instrument)
+    saturation = _saturation(saturation)
     if hasattr(stack, "dims"):
         return _reduced_named(stack, own, dark, saturation, mask)
     image = ("y", "x", "frame")
@@ -462,6 +476,9 @@ def _variance(noise: Mapping[str, float], stack: NDArray[Any]) -> NDArray[Any]:
     unknown = set(noise) - {"dark", "shot", "relative"}
     if unknown:
         raise ValueError(f"noise: {sorted(unknown)[0]}: expected dark, shot or relative")
+    for name, one in noise.items():
+        if number(f"noise: {name}", one) < 0:
+            raise ValueError(f"noise: {name} = {one}, must be 0 or more")
     value = np.abs(stack.astype(float))
     return noise.get("dark", 0.0) ** 2 + noise.get("shot", 0.0) * value + (noise.get("relative", 0.0) * value) ** 2
 
@@ -484,7 +501,8 @@ def uncertainty(
     is not among it: it is the same error in neighbouring pixels.
     """
     own = _polarimeter(instrument)
-    names = {q.name for q in _mmbrdf.quantities() if not q.takes_light}
+    names = {q.name: q.unit for q in _mmbrdf.quantities() if not q.takes_light}
+    units = names.get(quantity or "", "").replace("sr^-1", "")  # what is as the readings has those of their calibration
     if quantity is not None and quantity not in names:
         raise ValueError(f"quantity {quantity!r}: expected one of {', '.join(sorted(names))}")
     work = _Noise(own, dict(noise), quantity)
@@ -495,7 +513,11 @@ def uncertainty(
         values = uncertainty(ordered.data, own, noise, quantity=quantity)
         kept = {n: c for n, c in ordered.coords.items() if frame not in c.dims}
         core = [] if quantity else ["row", "column"]
-        result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", dict(stack.attrs))
+        attributes = {**stack.attrs, "long_name": f"standard uncertainty of {quantity or 'mueller'}"}
+        attributes.pop("units", None)  # those of readings
+        if units:
+            attributes["units"] = units
+        result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", attributes)
         return result.transpose(*[name for name in stack.dims if name != frame], *core)
     if not _lazy._is_lazy(stack):
         array = np.asarray(stack)
@@ -568,6 +590,8 @@ def quantities(mueller: Any, names: Sequence[str]) -> Any:
     """
     known = {q.name for q in _mmbrdf.quantities() if not q.takes_light}
     package = sys.modules[__package__ or "mmbrdf"]
+    if isinstance(names, str):
+        raise TypeError(f"names: expected a list of them, not {names!r}: give [{names!r}]")
     for name in names:
         if name not in known:
             raise ValueError(f"quantity {name!r}: expected one of {', '.join(sorted(known))}")
@@ -650,6 +674,7 @@ def calibrate(
         raise ValueError(f"stacks: the last axis has {array.shape[-1]} frames, expected {frames}")
     shape = array.shape[1:3]
     mask = _plain("mask", mask, ("y", "x", "frame"), ("y", "x"))
+    saturation = _saturation(saturation)
     if saturation is not None:
         array = np.where((array >= saturation).any(axis=(0, 3), keepdims=True), np.float32(np.nan), array)
     use = np.ones(shape, bool) if mask is None else np.asarray(_mask_for(mask, array[0]))
@@ -749,6 +774,8 @@ def simulate(
     repeats    references of each kind: empty, polarizers and wafers of a grid; empty alone of retarders
     noise      relative standard deviation of each reading
     """
+    if len(shape) != 2 or min(shape) < 1:
+        raise ValueError(f"shape = {tuple(shape)}, expected (y, x), each 1 or more")
     random = np.random.default_rng(seed)
     retardance, turn = 1 + _varying(shape, 0.02, random), _varying(shape, 1.0, random)
     leak = 1e-4 * (1 + _varying(shape, 1.0, random)) ** 2

@@ -223,7 +223,7 @@ void Influence::Parts::deliver(const Sets& sets, std::size_t set, double* to, do
     for (std::size_t j = 0; j < block.modes; ++j) out[j] = sets.sums[(block.first_row + j) * influence_sets + set];
     const Eigen::Map<const Eigen::VectorXd> a(out, index(block.modes));
     const double rest = sets.squares[b * influence_sets + set] - a.dot(block.normal * a);
-    variances[b] = block.freedom > 0 ? std::max(rest, 0.) / block.freedom : 0;
+    variances[b] = block.freedom > 0 ? std::max(rest, 0.) / block.freedom : std::numeric_limits<double>::quiet_NaN();
     if (std::isfinite(rest)) continue;
     std::fill_n(out, block.modes, std::numeric_limits<double>::quiet_NaN());
     variances[b] = std::numeric_limits<double>::quiet_NaN();

@@ -131,7 +131,7 @@ TEST(Fit, RefusesNumbersThatAreNoStateOfItsBasis) {
     return message_of([&] { FitAccumulator::from_state(basis, changed); });
   };
   EXPECT_EQ(refusal(5, -1), "a state of a fit with a number of samples -1");
-  EXPECT_EQ(refusal(6, 9), "a state of a fit with sides of the plane of incidence 9");
+  EXPECT_EQ(refusal(6, 16), "a state of a fit with sides of the plane of incidence 16");
   EXPECT_NE(refusal(7, -0.5), "nothing was thrown");  // the wavelength
   EXPECT_EQ(refusal(8, -1), "a state of a fit with ways of measuring -1");
   EXPECT_EQ(refusal(9, 65536), "a state of a fit with elements 65536");

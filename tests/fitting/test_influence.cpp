@@ -73,6 +73,18 @@ TEST(Influence, OfSingleValuesThreadsAndNeighboursIsThatOfOneSet) {
   EXPECT_TRUE(std::equal(c.begin(), c.end(), a.begin() + static_cast<std::ptrdiff_t>(77 * n)));
 }
 
+// 8 geometries are as many rows as f11 has coefficients; the other 15 elements have more rows in each block.
+TEST(Influence, DoesNotKnowAVarianceWithoutDegreesOfFreedom) {
+  const std::vector<Geometry> where = some_geometries(8);
+  const Influence influence(where, 0.532, small);
+  std::vector<double> a(2 * influence.coefficients()), v(2 * influence.model().blocks.size());
+  influence.fit(some_values(2, 8), a, v);
+  for (const double coefficient : a) EXPECT_TRUE(std::isfinite(coefficient));
+  ASSERT_EQ(influence.model().blocks.front().coefficients.size(), 8U);
+  EXPECT_TRUE(std::isnan(v[0]));
+  EXPECT_GT(v[1], 0);
+}
+
 TEST(Influence, HasNoNumbersForSetsWithAValueThatCounts) {
   const std::vector<Geometry> where = some_geometries(200);
   std::vector<double> values = some_values(2, 200);

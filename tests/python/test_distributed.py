@@ -142,6 +142,19 @@ def test_those_who_write_the_same_state_at_once_do_not_disturb_each_other(tmp_pa
     assert failed == [] and list(tmp_path.iterdir()) == [saved]
 
 
+def test_one_file_is_taken_by_its_name(files):
+    expected = coefficients(archive.fit(files[:1], **OPTIONS))
+    for one in (files[0], str(files[0])):
+        np.testing.assert_array_equal(coefficients(archive.fit(one, **OPTIONS)), expected)
+
+
+def test_clients_and_orders_that_are_none_are_refused_in_a_line(files):
+    with pytest.raises(TypeError, match=r"^client: expected a distributed.Client, not int$"):
+        archive.fit(files, 3, **OPTIONS)
+    with pytest.raises(ValueError, match=r"^orders = \(2,\), expected two whole numbers: of f11, and of the others$"):
+        archive.fit(files, orders=(2,))
+
+
 def test_a_file_that_is_there_twice_is_refused(files, tmp_path):
     with pytest.raises(ValueError, match=r"^files: number 2 \(.*run0.csv\) is number 0 \(.*run0.csv\) again"):
         archive.fit([*files[:2], files[0]], **OPTIONS)

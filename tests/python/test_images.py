@@ -207,8 +207,67 @@ def test_rows_that_are_calibrated_apart_are_one_instrument(camera, calibrated):
     whole = images.join(parts)
     for name in ("generator", "analyzer", "u_generator", "misfit", "failure"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(calibrated, name))
-    with pytest.raises(ValueError, match="number 1 has 3 columns of 16 frames, the first 8 of 16"):
+    with pytest.raises(ValueError, match="number 1 has 3 columns of 16 frames of 4 and 4 states, the first 8 columns"):
         images.join([calibrated, calibrated[:, 2:5]])
+
+
+def test_instruments_of_other_states_are_not_joined(camera):
+    whole = camera.instrument
+    pairs = np.array([(p, q) for q in range(4) for p in range(4)])
+    paired = images.PixelInstrument(whole.generator, whole.analyzer, pairs=pairs)
+    turned = images.PixelInstrument(whole.generator, whole.analyzer, pairs=pairs[::-1])
+    wide = images.PixelInstrument(whole.generator[:, :, [0, 1]], np.concatenate([whole.analyzer] * 2, axis=2))
+    assert wide.frames == whole.frames
+    for first, other, reason in [
+        (whole, paired, "has other pairs of states than the first"),
+        (paired, turned, "has other pairs of states than the first"),
+        (
+            whole,
+            wide,
+            "has 8 columns of 16 frames of 2 and 8 states, the first 8 columns of 16 frames of 4 and 4 states",
+        ),
+    ]:
+        with pytest.raises(ValueError, match=f"^instruments: number 1 {reason}$"):
+            images.join([first, other])
+    assert images.join([paired, paired]).shape == (12, 8)
+
+
+@pytest.mark.parametrize("law", [{"shot": -1.0}, {"dark": -0.1}, {"relative": -1e-3}, {"shot": np.nan}])
+def test_noise_that_cannot_be_is_refused(camera, law):
+    with pytest.raises(ValueError, match=rf"^noise: {next(iter(law))} = .*, must be (0 or more|finite)$"):
+        images.uncertainty(camera.stack, camera.instrument, law)
+
+
+@pytest.mark.parametrize("level", [np.nan, np.full(SHAPE, 4000.0), "4000"], ids=["nan", "array", "text"])
+def test_a_saturation_that_is_no_number_is_refused_in_a_line(camera, level):
+    for ask in (
+        lambda: images.reduce(camera.stack, camera.instrument, saturation=level),
+        lambda: images.calibrate(camera.references, camera.stacks, wavelength_nm=532, saturation=level),
+    ):
+        with pytest.raises(
+            (TypeError, ValueError), match=r"^saturation(: expected a number, not| = nan, must be finite)"
+        ):
+            ask()
+    found = images.reduce(camera.stack, camera.instrument, saturation=np.inf)
+    np.testing.assert_array_equal(found, images.reduce(camera.stack, camera.instrument))
+
+
+def test_uncertainties_do_not_have_the_units_of_readings(camera):
+    xarray = pytest.importorskip("xarray")
+    attributes = {"units": "counts", "long_name": "raw", "camera": "A"}
+    raw = xarray.DataArray(camera.stack, dims=["y", "x", "frame"], attrs=attributes)
+    for quantity in (None, "purity", "f_ss"):
+        u = images.uncertainty(raw, camera.instrument, {"shot": 1e-4}, quantity=quantity)
+        assert u.attrs == {"long_name": f"standard uncertainty of {quantity or 'mueller'}", "camera": "A"}
+    assert raw.attrs == attributes
+
+
+def test_small_slips_are_refused_in_a_line(camera):
+    with pytest.raises(TypeError, match=r"^names: expected a list of them, not 'purity': give \['purity'\]$"):
+        images.quantities(camera.mueller, "purity")
+    for shape in ((0, 3), (3,), (2, -1)):
+        with pytest.raises(ValueError, match=r"^shape = \(.*\), expected \(y, x\), each 1 or more$"):
+            images.simulate(shape)
 
 
 def test_shapes_that_do_not_fit_are_named(camera, calibrated):

@@ -209,3 +209,16 @@ def test_value_u_and_validity_come_together_and_stay_lazy(ptfe):
             np.testing.assert_array_equal(labelled.values, one)
     with pytest.raises(TypeError, match="^analyze: as_xarray is not for Dask arrays and xarray.DataArrays$"):
         ptfe.analyze(532, 45, 0, xarray.DataArray(theta[:2], dims="view"), 180, as_xarray=True)
+
+
+def test_frames_and_conventions_that_there_are_not_are_refused_at_once(ptfe):
+    for one in (lazy_question(), (*QUESTION[:3], xarray.DataArray(THETA_R), 30.0)):
+        for method in ("evaluate", "evaluate_uncertainty", "covariance"):
+            with pytest.raises(ValueError, match=r"^frame 'zz' is not one of xy, sp, scattering_plane$"):
+                getattr(ptfe, method)(*one, frame="zz")
+        values = ptfe.evaluate(*one)
+        for frames in (("zz", "sp"), ("xy", "zz")):
+            with pytest.raises(ValueError, match=r"^frame 'zz' is not one of"):
+                mmbrdf.change_frame(values, *one[1:], *frames)
+        with pytest.raises(ValueError, match=r"^convention 'zz' is not one of"):
+            mmbrdf.convert(values, "zz", "germer2017")

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A BRDF in each pixel: as if each had been fitted alone."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -109,6 +112,38 @@ def test_missing_readings_are_fitted_by_their_pattern(grid, values, prepared, mo
         found[6]
 
 
+def test_without_degrees_of_freedom_a_covariance_is_not_known(ptfe):
+    where = mmbrdf.random_geometries(8, seed=3)  # as many as f11 has coefficients
+    values = ptfe.evaluate(532, *where)
+    found = images.PixelFit(532, where, orders=(3, 2)).fit(values)
+    own = alone(where, values, orders=(3, 2)).model
+    assert np.isfinite(found.coefficients).all() and found._fit.blocks[0] == ("11", 8)
+    assert np.isnan(found.variances[0]) and (found.variances[1:] > 0).all()
+    for model in (own, found[()]):
+        assert model.blocks[0].covariance is None and model.blocks[1].covariance is not None
+        with pytest.raises(ValueError, match="the covariance of block 11 is not known"):
+            model.evaluate_uncertainty(532, 30, 0, 20, 50)
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_fits_and_their_models_can_be_sent(ptfe, weighted):
+    where = mmbrdf.random_geometries(60, seed=3)
+    weights = np.random.default_rng(1).uniform(0.5, 1, (60, 4, 4)) if weighted else None
+    fit = images.PixelFit(532, where, orders=(3, 2), mapping="projected", weights=weights)
+    values = ptfe.evaluate(532, *where) * np.linspace(1, 2, 5)[:, None, None, None]
+    models = fit.fit(values)
+    for own, found in [
+        (pickle.loads(pickle.dumps(fit)), pickle.loads(pickle.dumps(models))),
+        (copy.copy(fit), copy.deepcopy(models)),
+    ]:
+        again = own.fit(values)
+        for one in (again, found):
+            np.testing.assert_array_equal(one.coefficients, models.coefficients)
+            np.testing.assert_array_equal(one.variances, models.variances)
+            assert one[3].to_json() == models[3].to_json()
+        assert own.blocks == fit.blocks and own.wavelength_nm == fit.wavelength_nm
+
+
 def test_models_of_many_pixels_are_one_file(models, tmp_path):
     pytest.importorskip("xarray")
     pytest.importorskip("netCDF4")
@@ -119,6 +154,19 @@ def test_models_of_many_pixels_are_one_file(models, tmp_path):
     where = (45, 0, 30, 180)
     np.testing.assert_array_equal(again.evaluate(*where, pixel=(2, 3)), models.evaluate(*where, pixel=(2, 3)))
     assert [path.name for path in tmp_path.iterdir()] == ["models.nc"]
+
+
+def test_no_pixels_are_no_models(prepared, values):
+    for some, shape in ((values[:0], (0, 20)), (values[:, :0], (3, 0)), (values[0, :0], (0,))):
+        none = prepared.fit(some)
+        assert none.shape == shape and none.coefficients.shape == (*shape, 142)
+        assert none.variances.shape == (*shape, len(prepared.blocks))
+
+
+@pytest.mark.parametrize("orders", [(2,), (2, 1, 0), 3, (2.5, 1), "74"], ids=str)
+def test_orders_are_two_whole_numbers(grid, orders):
+    with pytest.raises(ValueError, match=r"^orders = .*, expected two whole numbers: of f11, and of the others$"):
+        images.PixelFit(532, grid, orders=orders)
 
 
 def test_what_does_not_fit_is_named(grid, values, prepared):

@@ -55,10 +55,11 @@ class Influence {
   /// The model whose coefficients are to be replaced; its covariances are (Xᵀ W X)⁺, those of rows of unit variance.
   const Model& model() const;
 
-  /// Coefficients of each set, in the order of sets, and s² of each of its blocks: ‖W^½ (X a − y)‖² / (rows − rank). The
-  /// values of a set are f in sr⁻¹, 16 for each geometry in rows, or f11 alone; m = f / f11. A set with a value that is not
-  /// finite where its weight is not 0 has NaN. What a set gives does not depend on the others, nor on threads (0: one for
-  /// each core). Throws std::invalid_argument for sizes that do not fit.
+  /// Coefficients of each set, in the order of sets, and s² of each of its blocks: ‖W^½ (X a − y)‖² / (rows − rank), NaN
+  /// where no degree of freedom is left and it is not known. The values of a set are f in sr⁻¹, 16 for each geometry in
+  /// rows, or f11 alone; m = f / f11. A set with a value that is not finite where its weight is not 0 has NaN. What a set
+  /// gives does not depend on the others, nor on threads (0: one for each core). Throws std::invalid_argument for sizes
+  /// that do not fit.
   void fit(std::span<const float> values, std::span<double> coefficients, std::span<double> variances,
            int threads = 1) const;
   void fit(std::span<const double> values, std::span<double> coefficients, std::span<double> variances,
