@@ -81,7 +81,6 @@ std::vector<Sample> samples_of(const Model& first, const Model& second, const Op
 /// Of samples, a fit as `mmbrdf fit` makes it by default.
 Model model_of(const std::string& name, const Options& options) {
   if (!is_samples(name)) return open_model(name);
-  note(data_name(name) + " is fitted, and the fit compared: --match sets two files sample beside sample");
   try {
     return fit_sample(samples_at(name, options.wavelengths_nm, options.table)).model;
   } catch (const std::invalid_argument& error) {
@@ -223,6 +222,8 @@ CompareReport compared(const Options& options) {
     if (!first_samples || !second_samples) throw WrongUsage("--match", "goes with two files of samples");
     return matched_samples(options);
   }
+  if (first_samples && second_samples)
+    note("both files are fitted, and the fits compared: --match sets sample beside sample");
   Model first = model_of(options.first, options);
   if (options.as_printed) {
     note_unless_printed(first, base_name(options.first));
