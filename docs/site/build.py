@@ -26,7 +26,12 @@ LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 CODE = re.compile(r"(^```.*?^```$|^~~~.*?^~~~$|`[^`\n]*`)", re.MULTILINE | re.DOTALL)
 HEADER = re.compile(r"^`(\w+/\w+\.hpp)`$")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
-ROOT_PAGES = {"README.md": "readme.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
+ROOT_PAGES = {
+    "README.md": "readme.md",
+    "CHANGELOG.md": "changelog.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "web/mmbrdf/README.md": "javascript.md",
+}
 
 # The order of the pages, and their captions; every page of docs/ is in one of them.
 CONTENTS = {
@@ -38,7 +43,17 @@ CONTENTS = {
         "for/paper",
         "for/scatmech",
     ],
-    "Guides": ["gallery", "python", "cpp", "interfaces", "uncertainty", "polarimeter", "scale", "formats"],
+    "Guides": [
+        "gallery",
+        "python",
+        "cpp",
+        "javascript",
+        "interfaces",
+        "uncertainty",
+        "polarimeter",
+        "scale",
+        "formats",
+    ],
     "Reference": [
         "conventions",
         "theory",
