@@ -56,10 +56,11 @@ std::size_t first_found(std::size_t count, int threads, Find find) {
   return found;
 }
 
-/// Calls work(i) for each i below count on all cores, in any order; throws the first of what they throw when all have
-/// ended.
+/// Calls work(i) for each i below count, in any order; throws the first of what they throw, and then begins no other.
+/// threads as for in_parts().
 template <class Work>
-void in_any_order(std::size_t count, Work work) {
+void in_any_order(std::size_t count, Work work, int threads = 0) {
+  if (threads < 0) throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be 0 or more");
   std::atomic<std::size_t> next = 0;
   std::exception_ptr thrown;
   std::mutex guard;
@@ -69,12 +70,13 @@ void in_any_order(std::size_t count, Work work) {
       } catch (...) {
         const std::scoped_lock lock(guard);
         if (!thrown) thrown = std::current_exception();
+        next = count;
       }
   };
   {
     std::vector<std::jthread> others;
-    const std::size_t threads = std::min<std::size_t>(count, std::thread::hardware_concurrency());
-    for (std::size_t t = 1; t < threads && started(others, some);) ++t;
+    const std::size_t most = threads == 0 ? std::thread::hardware_concurrency() : static_cast<std::size_t>(threads);
+    for (std::size_t t = 1; t < std::min(count, most) && started(others, some);) ++t;
     some();
   }
   if (thrown) std::rethrow_exception(thrown);

@@ -3,14 +3,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "mmbrdf/polarimetry/reduction.hpp"
 #include "numerics/threads.hpp"
@@ -182,31 +178,6 @@ PixelFailure condition_of(const calibration::PixelProblem& problem, const calibr
   return PixelFailure::none;
 }
 
-/// Pixels that take long, on threads that take the next one as they end; throws the first of what they throw.
-template <class Work>
-void one_by_one(std::size_t count, int threads, Work work) {
-  if (threads < 0) throw std::invalid_argument("threads = " + std::to_string(threads) + ", must be 0 or more");
-  const std::size_t most = threads == 0 ? std::thread::hardware_concurrency() : static_cast<std::size_t>(threads);
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr thrown;
-  std::mutex guard;
-  const auto some = [&] {
-    for (std::size_t i = next++; i < count; i = next++) try {
-        work(i);
-      } catch (...) {
-        const std::scoped_lock lock(guard);
-        if (!thrown) thrown = std::current_exception();
-        next = count;
-      }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t t = 1; t < std::min(count, most) && started(others, some);) ++t;
-    some();
-  }
-  if (thrown) std::rethrow_exception(thrown);
-}
-
 }  // namespace
 
 PixelCalibrations calibrate_pixels(const Calibration& start, std::span<const Reference> references,
@@ -230,13 +201,14 @@ PixelCalibrations calibrate_pixels(const Calibration& start, std::span<const Ref
     result.generator_uncertainties = result.generators;
     result.analyzer_uncertainties = result.analyzers;
   }
-  one_by_one(pixels, pixel_options.threads, [&](std::size_t i) {
+  const auto calibrate = [&](std::size_t i) {
     const calibration::FittedPixel fit =
         fit_pixel(problem, readings.subspan(each * i, each), pixel_options.most_misfit);
     result.misfit[i] = fit.misfit;
     result.failures[i] = condition_of(problem, fit);
     if (result.failures[i] == PixelFailure::none) put(problem, fit, i, result);
-  });
+  };
+  in_any_order(pixels, calibrate, pixel_options.threads);
   return result;
 }
 
