@@ -10,10 +10,10 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/quantities/report.hpp"
 #include "mmbrdf/text/date.hpp"
-#include "mmbrdf/text/sha256.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 #include "pages/describe.hpp"
+#include "pages/digest.hpp"
 #include "pages/table.hpp"
 #include "streams/python.hpp"
 
