@@ -269,19 +269,6 @@ void require_text(std::string_view piece, const std::string& path) {
   if (piece.find('\0') != std::string_view::npos) throw std::runtime_error(path + ": binary file, not a model");
 }
 
-/// All that a text file holds.
-std::string contents(const std::string& path) {
-  std::ifstream in = open_input(path);
-  std::string text;
-  std::vector<char> piece(1 << 16);
-  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
-    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-    require_text({piece.data(), static_cast<std::size_t>(in.gcount())}, path);
-  }
-  if (in.bad()) throw std::runtime_error(path + ": read error");
-  return text;
-}
-
 // ---- formats --------------------------------------------------------------------------------------------------------
 
 Model coefficients_from(std::string_view text, const std::string& name) {
@@ -329,7 +316,19 @@ std::string to_json(const Model& model) {
   }
 }
 
-Model load_model(const std::string& path) { return model_from_text(contents(path), path); }
+std::string model_text(const std::string& path) {
+  std::ifstream in = open_input(path);
+  std::string text;
+  std::vector<char> piece(1 << 16);
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
+    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    require_text({piece.data(), static_cast<std::size_t>(in.gcount())}, path);
+  }
+  if (in.bad()) throw std::runtime_error(path + ": read error");
+  return text;
+}
+
+Model load_model(const std::string& path) { return model_from_text(model_text(path), path); }
 
 Model model_from_text(std::string_view text, const std::string& path) {
   require_text(text, path);

@@ -59,35 +59,17 @@ Kind kind_of(const Options& options) {
                    "expected a file that ends with .md, .html, .pdf or .json, or --format");
 }
 
-/// Of a file that can be read twice.
-std::string digest_of(const std::string& path) {
-  std::string digest;
-  if (!path.empty() && path != "-" && !is_built_in(path))
-    read_input(path, [&](std::istream& in, const std::string&) { digest = sha256(in); });
-  return digest;
-}
-
-/// What `read` makes of a file, and the digest of the bytes that it read: a file that is replaced meanwhile is read again.
-template <class Read>
-auto with_digest(const std::string& path, const Read& read) {
-  constexpr int times = 10;
-  for (int time = 0; time < times; ++time) {
-    const std::string before = digest_of(path);
-    auto result = read();
-    if (digest_of(path) == before) return std::pair(std::move(result), before);
-  }
-  throw std::runtime_error(path + ": changes while it is read, " + std::to_string(times) + " times now");
-}
-
-ReportOrigin origin_of(const Options& options, const CommandLine& line, const std::string& digest_of_model,
-                       const std::string& digest_of_data) {
+ReportOrigin origin_of(const Options& options, const CommandLine& line, const std::string& bytes_of_model,
+                       const std::string& bytes_of_data) {
   ReportOrigin origin{utc_timestamp(), software(), line.text({options.model, options.data, options.output})};
   origin.model = shell_quoted(base_name(options.model));
-  const std::string built_in = is_built_in(options.model) ? " (built in)" : "";
-  origin.files.push_back({"model", base_name(options.model) + built_in, digest_of_model});
+  if (is_built_in(options.model))
+    origin.files.push_back({"model", base_name(options.model) + " (built in)", ""});
+  else
+    origin.files.push_back({"model", base_name(options.model), sha256(bytes_of_model)});
   if (options.data.empty()) return origin;
   origin.data = shell_quoted(data_name(options.data));
-  origin.files.push_back({"data", data_name(options.data), digest_of_data});
+  origin.files.push_back({"data", data_name(options.data), sha256(bytes_of_data)});
   return origin;
 }
 
@@ -121,19 +103,20 @@ void report(const Options& options, const CommandLine& line) {
   if (options.data.empty() && !is_built_in(options.model) && is_samples(options.model))
     throw std::invalid_argument(options.model + ": holds samples: mmbrdf inspect says what they are, and a report of " +
                                 "them alone is a page, -o REPORT.html or .pdf");
-  const auto [model, digest_of_model] = with_digest(options.model, [&] { return open_model(options.model); });
+  std::string bytes_of_model, bytes_of_data;
+  const Model model = open_model(options.model, &bytes_of_model);
   const std::string name = base_name(options.model);
   if (!options.wavelengths_nm && known_wavelengths(model).empty())
     throw WrongUsage("--wavelength is required", name + " does not say to which wavelengths it was fitted");
   const std::vector<double> wavelengths = micrometres(options.wavelengths_nm.value_or(std::vector<double>{}));
-  const auto [samples, digest_of_data] = with_digest(options.data, [&] {
-    return options.data.empty() ? std::vector<Sample>{}
-                                : samples_at(options.data, options.wavelengths_nm, options.table);
-  });
+  std::vector<Sample> samples;
   std::optional<ReportedSamples> data;
-  if (!options.data.empty()) data = {data_name(options.data), samples};
+  if (!options.data.empty()) {
+    samples = samples_at(options.data, options.wavelengths_nm, options.table, &bytes_of_data);
+    data = {data_name(options.data), samples};
+  }
   const std::string facts = report_json(model, name, wavelengths, data);
-  const ReportOrigin origin = origin_of(options, line, digest_of_model, digest_of_data);
+  const ReportOrigin origin = origin_of(options, line, bytes_of_model, bytes_of_data);
   if (kind == Kind::json) return write_text(options.output, printed(with_origin(Json::parse(facts), origin)));
   write_text(options.output, report_markdown(report_document(model, facts, origin, options.style)));
 }

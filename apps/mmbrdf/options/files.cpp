@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <streambuf>
 #include <vector>
 
 #include "mmbrdf/files/csv.hpp"
@@ -67,6 +68,25 @@ ColumnNames column_names_from(const std::string& text) {
   return result;
 }
 
+/// Keeps what is read through it.
+class Keeping : public std::streambuf {
+ public:
+  Keeping(std::streambuf& source, std::string& kept) : source_(source), kept_(kept) {}
+
+ private:
+  int_type underflow() override {
+    const std::streamsize count = source_.sgetn(piece_.data(), static_cast<std::streamsize>(piece_.size()));
+    if (count <= 0) return traits_type::eof();
+    kept_.append(piece_.data(), static_cast<std::size_t>(count));
+    setg(piece_.data(), piece_.data(), piece_.data() + count);
+    return traits_type::to_int_type(piece_[0]);
+  }
+
+  std::streambuf& source_;
+  std::string& kept_;
+  std::array<char, 1 << 16> piece_{};
+};
+
 std::string model_name(const std::string& text) {
   if (text.empty()) throw std::invalid_argument("\"\": expected a built-in name or a file");
   return text;
@@ -81,14 +101,16 @@ bool is_built_in(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-Model open_model(const std::string& name) {
+Model open_model(const std::string& name, std::string* bytes) {
   if (!is_built_in(name) && !std::filesystem::exists(name))
     throw std::runtime_error(name + ": no such file, and not a built-in model (" + joined(materials()) + ")");
   if (is_foreign(name))
     throw std::runtime_error(name + ": is " + foreign_format(name) + ", no model; mmbrdf convert " + shown_name(name) +
                              " OUT.csv makes samples of it, and mmbrdf fit a model of them");
-  Model model = is_built_in(name) ? material(name) : load_model(name);
+  const std::string text = is_built_in(name) ? "" : model_text(name);
+  Model model = is_built_in(name) ? material(name) : model_from_text(text, name);
   warn_of_missing_elements(model);
+  if (bytes != nullptr) *bytes = text;
   return model;
 }
 
@@ -98,27 +120,28 @@ bool is_samples(const std::string& name) {
 
 std::string data_name(const std::string& path) { return path == "-" ? "standard input" : base_name(path); }
 
-SaidOfTable read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
-                            const SampleTable& table, const std::function<void(std::span<const Sample>)>& use) {
+namespace {
+
+/// Of a stream, which is `path`.
+SaidOfTable read_samples_of(std::istream& in, const std::string& name, const std::string& path,
+                            const std::optional<std::vector<double>>& wavelengths_nm, const SampleTable& table,
+                            const std::function<void(std::span<const Sample>)>& use) {
   constexpr std::size_t some =
       8192;  // the published data come in one piece, so that their wavelengths are folded together
   const std::vector<double> wanted = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
   std::set<double> there;
   std::vector<Sample> samples;
-  SaidOfTable said;
-  read_input(path, [&](std::istream& in, const std::string& name) {
-    SampleReader reader(in, name, table);
-    for (Sample sample; reader.next(sample);) {
-      there.insert(sample.wavelength);
-      const auto is_it = [&](double wavelength) { return same_wavelength(wavelength, sample.wavelength); };
-      if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) samples.push_back(sample);
-      if (samples.size() == some) {
-        use(samples);
-        samples.clear();
-      }
+  SampleReader reader(in, name, table);
+  for (Sample sample; reader.next(sample);) {
+    there.insert(sample.wavelength);
+    const auto is_it = [&](double wavelength) { return same_wavelength(wavelength, sample.wavelength); };
+    if (wanted.empty() || std::any_of(wanted.begin(), wanted.end(), is_it)) samples.push_back(sample);
+    if (samples.size() == some) {
+      use(samples);
+      samples.clear();
     }
-    said = {reader.understood(), reader.reduction()};
-  });
+  }
+  const SaidOfTable said{reader.understood(), reader.reduction()};
   use(samples);
   for (const double wavelength : wanted) {
     if (std::none_of(there.begin(), there.end(), [&](double one) { return same_wavelength(one, wavelength); })) {
@@ -131,11 +154,30 @@ SaidOfTable read_samples_at(const std::string& path, const std::optional<std::ve
   return said;
 }
 
+}  // namespace
+
+SaidOfTable read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
+                            const SampleTable& table, const std::function<void(std::span<const Sample>)>& use) {
+  SaidOfTable said;
+  read_input(path, [&](std::istream& in, const std::string& name) {
+    said = read_samples_of(in, name, path, wavelengths_nm, table, use);
+  });
+  return said;
+}
+
 std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
-                               const SampleTable& table) {
+                               const SampleTable& table, std::string* bytes) {
   std::vector<Sample> all;
-  read_samples_at(path, wavelengths_nm, table,
-                  [&](std::span<const Sample> samples) { all.insert(all.end(), samples.begin(), samples.end()); });
+  const auto use = [&](std::span<const Sample> samples) { all.insert(all.end(), samples.begin(), samples.end()); };
+  if (bytes == nullptr) {
+    read_samples_at(path, wavelengths_nm, table, use);
+    return all;
+  }
+  read_input(path, [&](std::istream& in, const std::string& name) {
+    Keeping keeping(*in.rdbuf(), *bytes);
+    std::istream kept(&keeping);
+    read_samples_of(kept, name, path, wavelengths_nm, table, use);
+  });
   return all;
 }
 

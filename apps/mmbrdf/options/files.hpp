@@ -22,8 +22,9 @@ std::string base_name(const std::string& path);
 /// Whether this is the name of a built-in model, which comes before a file of that name.
 bool is_built_in(const std::string& name);
 
-/// A built-in model, or one from a file. Warns of elements without modes.
-Model open_model(const std::string& name);
+/// A built-in model, or one from a file. Warns of elements without modes. `bytes` becomes what the file held, nothing for a
+/// built-in one.
+Model open_model(const std::string& name, std::string* bytes = nullptr);
 
 /// Whether this is a file of samples and no model: neither a built-in one, nor JSON, nor rows of numbers without a
 /// header. "-" is standard input, which is samples. Throws std::runtime_error for a file that cannot be read.
@@ -46,9 +47,9 @@ struct SaidOfTable {
 SaidOfTable read_samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
                             const SampleTable& table, const std::function<void(std::span<const Sample>)>& use);
 
-/// The same, in memory.
+/// The same, in memory. `bytes` becomes what the file held.
 std::vector<Sample> samples_at(const std::string& path, const std::optional<std::vector<double>>& wavelengths_nm,
-                               const SampleTable& table);
+                               const SampleTable& table, std::string* bytes = nullptr);
 
 /// --columns, --skip-incomplete, --frame, --convention
 void add_table_options(CLI::App& app, SampleTable& table);

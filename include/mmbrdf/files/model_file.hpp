@@ -37,7 +37,9 @@ const ModelFormat& model_format(const std::string& path);
 /// without a name gets that of the file, without folder and extension.
 Model load_model(const std::string& path);
 
-/// The same of the text of such a file, which messages call `path`.
+/// The text of such a file, which load_model() reads. Throws std::runtime_error for a file that cannot be read, or is no text.
+std::string model_text(const std::string& path);
+/// The same of that text, which messages call `path`.
 Model model_from_text(std::string_view text, const std::string& path);
 
 /// In the format of the path.
