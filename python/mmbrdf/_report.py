@@ -286,7 +286,7 @@ def _parser(prog: str) -> _Parser:
     add(
         "--frame",
         choices=("xy", "sp", "scattering_plane"),
-        help="of the matrices of DATA.csv [xy; sp of f_ss ... f_pp]",
+        help="of the matrices of DATA.csv [as its column frame says, or xy; sp of f_ss ... f_pp]",
     )
     add("--convention", default="germer2017", help="signs of their Stokes vectors [germer2017]")
     add("--made-by", default="", help=argparse.SUPPRESS)

@@ -16,6 +16,7 @@ namespace mmbrdf {
 namespace {
 
 constexpr std::string_view rotation_name = "sample_rotation_deg";
+constexpr std::string_view frame_name = "frame";
 
 /// The line of a table's names, as it is known to be read.
 void list(std::string& text, const std::string& part) { text += (text.empty() ? "" : ", ") + part; }
@@ -43,8 +44,8 @@ std::string lower_case(std::string text) {
 
 /// Whether all samples have uncertainties.
 bool have_uncertainties(std::span<const Sample> samples) {
-  if (std::none_of(samples.begin(), samples.end(), has_uncertainty)) return false;
-  const auto without = std::find_if_not(samples.begin(), samples.end(), has_uncertainty);
+  if (std::ranges::none_of(samples, has_uncertainty, in_own_frame)) return false;
+  const auto without = std::ranges::find_if_not(samples, has_uncertainty, in_own_frame);
   if (without != samples.end())
     throw std::invalid_argument("sample " + std::to_string(without - samples.begin() + 1) +
                                 " has no uncertainties, but others have");
@@ -59,9 +60,11 @@ SampleReader::SampleReader(std::istream& in, const std::string& name, const Samp
       reader_(own_table(in, name), name, table.columns),
       geometry_(reader_),
       elements_(std::make_unique<ElementColumns>(reader_)),
-      rotation_(reader_.find(rotation_name)) {
+      rotation_(reader_.find(rotation_name)),
+      frame_(reader_.find(frame_name)) {
   needed_ = geometry_.columns();
-  if (rotation_ >= 0) needed_.push_back(rotation_);
+  for (const int column : {rotation_, frame_})
+    if (column >= 0) needed_.push_back(column);
   read_ = elements_->columns();
   for (std::size_t c = 0; c < reader_.keys().size(); ++c)
     if (static_cast<int>(c) != rotation_ && reader_.keys()[c].find("rotation") != std::string::npos)
@@ -75,6 +78,9 @@ SampleReader::SampleReader(std::istream& in, const std::string& name, const Samp
   }
   if (elements_->polarized() && table.frame == Frame::xy)
     throw reader_.error("f_ss ... f_pp are of s and p, not of the frame xy");
+  if (table_.frame && frame_ >= 0)
+    throw reader_.error("column " + shown_name(reader_.columns()[static_cast<std::size_t>(frame_)]) +
+                        " says the frame of each row: leave out that it is " + to_string(*table_.frame));
   if (!table_.frame) table_.frame = elements_->polarized() ? Frame::sp : Frame::xy;
 }
 
@@ -105,13 +111,29 @@ bool SampleReader::next(Sample& sample) {
     if (elements_->polarized())  // s is s whatever the convention
       for (const std::size_t e : {1UL, 4UL, 5UL}) sample.normalized.elements[e] = before.elements[e];
   }
-  if (table_.frame != Frame::xy) {
+  if (const Frame frame = frame_of_row(); frame != Frame::xy) {
     const Elements before = not_measured(sample);
-    sample = from_frame(sample, *table_.frame);
+    sample = from_frame(sample, frame);
     if ((not_measured(sample) & ~before).any()) ++lost_;
   }
   if (rotation_ >= 0) sample = turned(sample, -radians(reader_.number(rotation_)));
   return true;
+}
+
+Frame SampleReader::frame_of_row() const {
+  if (frame_ < 0) return *table_.frame;
+  const std::string name(reader_.field(frame_));
+  const Frame frame = [&] {
+    try {
+      return frame_from(name);
+    } catch (const std::invalid_argument& error) {
+      throw reader_.error("column " + shown_name(reader_.columns()[static_cast<std::size_t>(frame_)]) + ": " +
+                          error.what());
+    }
+  }();
+  if (frame == Frame::xy && elements_->polarized())
+    throw reader_.error("f_ss ... f_pp are of s and p, not of the frame xy");
+  return frame;
 }
 
 std::string SampleReader::understood() const {
@@ -182,10 +204,16 @@ void write_samples(const std::string& path, std::span<const Sample> samples, con
   write_file(path, [&](std::ostream& out) { write_samples(out, samples, reduction); });
 }
 
-SampleWriter::SampleWriter(std::ostream& out, const Elements& measured, bool with_uncertainties, bool in_micrometres)
-    : out_(out), written_(measured), with_uncertainties_(with_uncertainties), in_micrometres_(in_micrometres) {
+SampleWriter::SampleWriter(std::ostream& out, const Elements& measured, bool with_uncertainties, bool with_frames,
+                           bool in_micrometres)
+    : out_(out),
+      written_(measured),
+      with_uncertainties_(with_uncertainties),
+      with_frames_(with_frames),
+      in_micrometres_(in_micrometres) {
   written_.set(0);  // a file needs the column of f11
   out << (in_micrometres ? "wavelength_um" : "wavelength_nm") << ",theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg";
+  if (with_frames) out << ',' << frame_name;
   for (const char* prefix : {"", "u_"})
     for (std::size_t e = 0; e < 16 && (*prefix == 0 || with_uncertainties); ++e)
       if (written_[e]) out << ',' << prefix << sample_element(e);
@@ -193,11 +221,13 @@ SampleWriter::SampleWriter(std::ostream& out, const Elements& measured, bool wit
 }
 
 void SampleWriter::write(std::span<const Sample> samples) {
-  for (const Sample& sample : samples) {
+  for (const Sample& one : samples) {
+    const Sample sample = in_own_frame(one);
     const Elements unknown = not_measured(sample);
     out_ << shortest(in_micrometres_ ? sample.wavelength : in_nanometres(sample.wavelength));
     for (const Direction& direction : {sample.geometry.incident, sample.geometry.reflected})
       out_ << ',' << shortest(in_degrees(direction.theta)) << ',' << shortest(in_degrees(direction.phi));
+    if (with_frames_) out_ << ',' << to_string(own_frame(one));
     Mueller values = sample.normalized;
     values(0, 0) = sample.f11;
     for (const Mueller* numbers : std::array<const Mueller*, 2>{&values, &sample.uncertainty})
@@ -212,10 +242,11 @@ void write_samples(std::ostream& out, std::span<const Sample> samples, const std
   if (std::ranges::any_of(reduction, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
     throw std::invalid_argument("the text on the reduction has a line end or another control character");
   const bool with_uncertainties = have_uncertainties(samples);
-  const Elements measured = samples.empty() ? Elements{}.set() : ~not_measured(samples);
+  const bool with_frames = std::ranges::any_of(samples, [](const Sample& s) { return s.as_measured != nullptr; });
+  const Elements measured = samples.empty() ? Elements{}.set() : measured_elements(samples);
   const bool x_rays = std::ranges::any_of(samples, [](const Sample& s) { return s.wavelength < 0.01; });
   if (!reduction.empty()) out << "# reduction: " << reduction << '\n';
-  SampleWriter(out, measured, with_uncertainties, x_rays).write(samples);
+  SampleWriter(out, measured, with_uncertainties, with_frames, x_rays).write(samples);
 }
 
 }  // namespace mmbrdf

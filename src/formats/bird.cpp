@@ -222,10 +222,11 @@ class BirdReader : public ForeignFile::Reader {
   }
 
   void finish() {
-    measured = ~not_measured(samples_);
+    measured = measured_elements(samples_);
+    frames = std::ranges::any_of(samples_, [](const Sample& s) { return s.as_measured != nullptr; });
     if (!measured[0])
       throw data_.error("polarization_i", "the states determine f11 nowhere: it takes u, or s and p, on each side");
-    uncertainties = std::ranges::any_of(samples_, has_uncertainty);
+    uncertainties = std::ranges::any_of(samples_, has_uncertainty, in_own_frame);
     understood += "f11 in sr^-1";
     if (polarized_)
       understood += ", elements by least squares of " + std::to_string(rows_) +

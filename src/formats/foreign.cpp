@@ -80,6 +80,7 @@ ForeignFile& ForeignFile::operator=(ForeignFile&&) noexcept = default;
 
 Elements ForeignFile::measured() const { return reader_->measured; }
 bool ForeignFile::has_uncertainties() const { return reader_->uncertainties; }
+bool ForeignFile::has_frames() const { return reader_->frames; }
 void ForeignFile::read(const std::function<void(std::span<const Sample>)>& use) { reader_->read(use); }
 
 std::string ForeignFile::understood() const { return format_ + ": " + reader_->understood + reader_->passed_over; }

@@ -61,6 +61,7 @@ class NetcdfReader : public ForeignFile::Reader {
     find_uncertainty();
     measured.reset().set(0);
     if (matrix_) measured.set();
+    frames = frame_ != Frame::xy;
     understood = (matrix_ ? "sixteen elements" : std::string("f11")) + " in sr^-1 over (" + axes_text() + ")";
     if (wavelength_told_) understood += " at " + nanometre_text({&coordinates_[0].constant, 1}) + " as told";
     if (!coordinates_[2].variable) understood += ", phi_i = 0";

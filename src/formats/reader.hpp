@@ -67,6 +67,7 @@ class ForeignFile::Reader {
 
   Elements measured{1};  ///< f11
   bool uncertainties = false;
+  bool frames = false;        ///< whether samples may be known as_measured
   std::string understood;     ///< known from the beginning
   std::string passed_over{};  ///< after read(), with "; " in front
 };

@@ -159,7 +159,7 @@ void look_at_azimuths(Inspection& result, const Looked& at) {
           {azimuths, line, "give phi_i and phi_r as they were, from -180 to 180 or 0 to 360", {}});
       return;
     }
-  const Elements unknown = not_measured(at.samples);
+  const Elements unknown = ~measured_elements(at.samples);
   constexpr std::array<std::size_t, 8> odd = {2, 3, 6, 7, 8, 9, 12, 13};
   const bool one_side = ((at.fitted.sides & negative_side) != 0) != ((at.fitted.sides & positive_side) != 0);
   if (!one_side) return;
@@ -190,7 +190,7 @@ std::string as_good(std::span<const ConventionFit> fits) {
 }
 
 void look_at_frame(Inspection& result, const Looked& at) {
-  const Elements unknown = not_measured(at.samples);
+  const Elements unknown = ~measured_elements(at.samples);
   std::string why = unknown.count() >= 15 ? "f11 alone was measured" : too_few(at, false);
   if (why.empty()) {
     const auto fits = convention_fits(at.samples, inspected_orders);
@@ -294,10 +294,12 @@ std::string sides_line(Sides sides) {
 }
 
 std::vector<InspectionRow> inspection_rows(const Inspection& seen, std::span<const Sample> samples) {
-  const Elements measured = ~not_measured(samples);
-  const bool uncertain = std::ranges::all_of(samples, [](const Sample& s) { return has_uncertainty(s); });
+  const Elements measured = measured_elements(samples);
+  const bool uncertain = std::ranges::all_of(samples, has_uncertainty, in_own_frame);
+  const auto turning = std::ranges::find_if(samples, [](const Sample& s) { return s.as_measured != nullptr; });
   std::vector<InspectionRow> rows = {
       {"elements", (measured.all() ? "all sixteen" : element_names(measured)) +
+                       (turning == samples.end() ? "" : " in the frame " + to_string(own_frame(*turning))) +
                        (uncertain ? ", with their uncertainties" : ", without uncertainties")},
       {"theta_i", span_line(angles(samples, &Geometry::incident))},
       {"theta_r", span_line(angles(samples, &Geometry::reflected)) + ", " + sides_line(seen.sides)},

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "mmbrdf/polarization/analysis.hpp"
@@ -113,7 +114,8 @@ double typical_f11(std::span<const Sample> samples) {
   return *middle;
 }
 
-bool is_fill(const Sample& sample, double typical) {
+bool is_fill(const Sample& one, double typical) {
+  const Sample sample = in_own_frame(one);
   const std::vector<double> values = known_values(sample);
   if (values.size() > 1 && std::ranges::all_of(values, [&](double value) { return value == values.front(); }))
     return true;
@@ -121,8 +123,10 @@ bool is_fill(const Sample& sample, double typical) {
          (typical > 0 && (sample.f11 > bright * typical || sample.f11 < -dark * typical));
 }
 
-std::vector<Finding> row_findings(std::span<const Sample> samples, std::span<const long> numbers) {
-  require_valid(samples);
+std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const long> numbers) {
+  require_valid(given);
+  std::vector<Sample> samples;
+  std::ranges::transform(given, std::back_inserter(samples), in_own_frame);
   const Named named(numbers);
   const double typical = typical_f11(samples);
   std::vector<Finding> result;

@@ -120,6 +120,16 @@ Sides side(const Geometry& geometry) {
   return out < 0 ? negative_side : positive_side;
 }
 
+Sample in_own_frame(const Sample& sample) {
+  Sample result = sample;
+  if (sample.as_measured) {
+    result.normalized = sample.as_measured->normalized;
+    result.uncertainty = sample.as_measured->uncertainty;
+    result.as_measured.reset();
+  }
+  return result;
+}
+
 Elements not_measured(const Sample& sample) {
   Elements result = unknown_elements(sample.normalized);
   result[0] = std::isnan(sample.f11);
@@ -130,6 +140,12 @@ Elements not_measured(std::span<const Sample> samples) {
   Elements result;
   result.set();
   for (const Sample& sample : samples) result &= not_measured(sample);
+  return result;
+}
+
+Elements measured_elements(std::span<const Sample> samples) {
+  Elements result;
+  for (const Sample& sample : samples) result |= ~not_measured(in_own_frame(sample));
   return result;
 }
 

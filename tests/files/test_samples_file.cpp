@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -135,6 +136,43 @@ TEST(Samples, WrittenAndReadAreTheSame) {
     EXPECT_DOUBLE_EQ(read[i].geometry.reflected.theta, samples[i].geometry.reflected.theta);
     EXPECT_DOUBLE_EQ(read[i].geometry.reflected.phi, samples[i].geometry.reflected.phi);
   }
+}
+
+TEST(Samples, ThatLoseElementsOnTheWayToXyAreWrittenAndReadAsTheyWereMeasured) {
+  const Folder folder;
+  const std::string names =
+      "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11,m12,m22,m33,u_f11,u_m12\n";
+  const auto samples = samples_in(names +
+                                  "532,15,10,30,70,sp,0.3,0.1,0.25,0.2,0.01,0.02\n"
+                                  "532,15,0,30,0,sp,0.3,0.1,0.25,0.2,0.01,0.02\n"
+                                  "532,15,0,30,50,xy,0.3,0.1,0.25,,0.01,0.02\n"
+                                  "532,15,0,30,20,scattering_plane,0.3,0.1,0.25,0.2,0.01,0.02\n");
+  ASSERT_TRUE(samples[0].as_measured && !samples[1].as_measured && !samples[2].as_measured && samples[3].as_measured);
+  ASSERT_TRUE(std::isnan(samples[0].normalized(1, 1)));
+  write_samples(folder / "s.csv", samples);
+  const auto read = read_samples(folder / "s.csv");
+  ASSERT_EQ(read.size(), samples.size());
+  const auto same_bits = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    EXPECT_EQ(own_frame(read[s]), own_frame(samples[s])) << s;
+    const Sample back = in_own_frame(read[s]), was = in_own_frame(samples[s]);
+    for (std::size_t e = 0; e < 16; ++e) {
+      EXPECT_TRUE(same_bits(back.normalized.elements[e], was.normalized.elements[e])) << s << ' ' << e;
+      EXPECT_TRUE(same_bits(read[s].normalized.elements[e], samples[s].normalized.elements[e])) << s << ' ' << e;
+      EXPECT_EQ(back.uncertainty.elements[e], not_measured(was)[e] ? 0 : was.uncertainty.elements[e]) << s << ' ' << e;
+    }
+  }
+}
+
+TEST(Samples, WithAColumnOfFramesTakeNoOtherFrameAndNoOtherNames) {
+  const std::string text = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11\n532,15,10,30,70,";
+  EXPECT_EQ(message_of([&] { samples_in(text + "tilted,0.3\n"); }),
+            "d.csv:2: column frame: frame \"tilted\" is not one of xy, sp, scattering_plane");
+  EXPECT_EQ(message_of([&] { samples_in(text + ",0.3\n"); }),
+            "d.csv:2: column frame: frame \"\" is not one of xy, sp, scattering_plane");
+  std::istringstream in(text + "sp,0.3\n");
+  EXPECT_EQ(message_of([&] { read_samples(in, "d.csv", {.frame = Frame::sp}); }),
+            "d.csv:1: column frame says the frame of each row: leave out that it is sp");
 }
 
 TEST(Samples, OfRoundAnglesAreWrittenRound) {

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::stringstream written;
   const auto read = fuzz::unless_refused([&] {
     ForeignFile file(input.path(), options);
-    SampleWriter writer(written, file.measured(), file.has_uncertainties());
+    SampleWriter writer(written, file.measured(), file.has_uncertainties(), file.has_frames());
     file.read([&](std::span<const Sample> some) {
       writer.write(some);
       samples.insert(samples.end(), some.begin(), some.end());

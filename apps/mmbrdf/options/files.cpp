@@ -254,7 +254,8 @@ void add_table_options(CLI::App& app, SampleTable& table) {
   add_flag(app, "--skip-incomplete", table.skip_incomplete,
            "Pass over rows with NA or NaN, or without an angle or\nwavelength, and say how many");
   add_option(app, "--frame", table.frame, frame_from, "FRAME",
-             "In which the matrices of DATA.csv are: xy, sp or\nscattering_plane [xy; sp of f_ss ... f_pp]");
+             "In which the matrices of DATA.csv are: xy, sp or\nscattering_plane [as its column frame says, or xy; sp "
+             "of\nf_ss ... f_pp]");
   add_option(app, "--convention", table.convention, convention_from, "NAME",
              "Signs of their Stokes vectors: germer2017,\ns_first_right, p_first_left, p_first_right ... "
              "[germer2017]");

@@ -29,7 +29,7 @@ void write_as_samples(const std::string& input, const std::string& output,
   require_kept(input, output, "measurement");
   ForeignFile file(input, {micrometres(wavelengths_nm.value_or(std::vector<double>{}))});
   write_file(output, [&](std::ostream& out) {
-    SampleWriter writer(out, file.measured(), file.has_uncertainties());
+    SampleWriter writer(out, file.measured(), file.has_uncertainties(), file.has_frames());
     file.read([&](std::span<const Sample> samples) { writer.write(samples); });
   });
   note_written(output);

@@ -25,7 +25,7 @@ struct SampleTable {
   ColumnNames columns = {};
   /// Whether rows with a field that is NA or NaN, or without an angle or wavelength, are passed over, not refused.
   bool skip_incomplete = false;
-  /// In which the matrices are. Not given: xy; of f_ss … f_pp, sp.
+  /// In which the matrices are. Not given: as a column `frame` says, else xy; of f_ss … f_pp, sp.
   std::optional<Frame> frame = {};
   StokesConvention convention = StokesConvention::germer2017;
 
@@ -53,13 +53,14 @@ class SampleReader {
 
  private:
   bool complete() const;
+  Frame frame_of_row() const;
 
   std::string name_;
   SampleTable table_;
   CsvReader reader_;
   GeometryColumns geometry_;
   std::unique_ptr<const ElementColumns> elements_;
-  int rotation_;
+  int rotation_, frame_;
   std::vector<int> needed_, read_;  // columns
   long rows_ = 0, passed_over_ = 0, lost_ = 0;
 };
@@ -81,22 +82,24 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name, cons
 /// matrices read back are the same bits, wavelengths and angles equal to 1 in the last place. Behind them u_f11, u_m12
 /// … u_m44, if the samples have uncertainties. Wavelengths below 10 nm make it wavelength_um, as GeometryColumns ask.
 /// Above the header "# reduction: " and that text, if there is one. Throws std::invalid_argument for invalid samples, if
-/// only some have uncertainties, and for a text with a line end.
+/// only some have uncertainties, and for a text with a line end. Where any is known as_measured, a column `frame` says in
+/// which frame the elements of each row are, and those are as they were measured.
 void write_samples(const std::string& path, std::span<const Sample> samples, const std::string& reduction = "");
 void write_samples(std::ostream& out, std::span<const Sample> samples, const std::string& reduction = "");
 
 /// The same, some samples at a time, in constant memory. Not checked: they must be valid.
 class SampleWriter {
  public:
-  /// Writes the header line: columns of these elements, and of f11; wavelengths in nanometres, or below 10 nm
-  /// in micrometres. `out` must outlive the writer.
-  SampleWriter(std::ostream& out, const Elements& measured, bool with_uncertainties, bool in_micrometres = false);
+  /// Writes the header line: columns of these elements, and of f11; of the frame of each row, without which none may be
+  /// known as_measured; wavelengths in nanometres, or below 10 nm in micrometres. `out` must outlive the writer.
+  SampleWriter(std::ostream& out, const Elements& measured, bool with_uncertainties, bool with_frames,
+               bool in_micrometres = false);
   void write(std::span<const Sample> samples);
 
  private:
   std::ostream& out_;
   Elements written_;
-  bool with_uncertainties_, in_micrometres_;
+  bool with_uncertainties_, with_frames_, in_micrometres_;
 };
 
 }  // namespace mmbrdf

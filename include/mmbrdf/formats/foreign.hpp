@@ -52,11 +52,14 @@ class ForeignFile {
   /// As foreign_format().
   const std::string& format() const { return format_; }
 
-  /// The elements that any of its samples may have; the others are unknown in all.
+  /// The elements that any of its samples may have, in the frame in which it was measured; the others are unknown in all.
   Elements measured() const;
 
   /// Whether its samples have uncertainties.
   bool has_uncertainties() const;
+
+  /// Whether samples may be known as_measured in another frame than xy.
+  bool has_frames() const;
 
   /// Hands over all samples, a few thousand at a time, in the order of the file; once. Rows and nodes of which a direction is at
   /// or below the horizon are passed over, as are those that the format marks as not measured.

@@ -34,9 +34,17 @@ struct Sample {
   std::shared_ptr<const AsMeasured> as_measured{};
 };
 
+/// The sample with its elements in the frame in which they were measured, if that is known, else in xy: to be looked at, not
+/// to be fitted.
+Sample in_own_frame(const Sample& sample);
+inline Frame own_frame(const Sample& sample) { return sample.as_measured ? sample.as_measured->frame : Frame::xy; }
+
 /// What is not measured in a sample, or in none of several.
 Elements not_measured(const Sample& sample);
 Elements not_measured(std::span<const Sample> samples);
+
+/// What is measured in any of several, each in its own frame.
+Elements measured_elements(std::span<const Sample> samples);
 
 /// Whether the uncertainty of any of its elements is known.
 bool has_uncertainty(const Sample& sample);
