@@ -51,9 +51,10 @@ DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, con
       sample.f11 = m(0, 0);
       sample.normalized = normalized(m);
       if (uncertainty) sample.uncertainty = broadcast.mueller(6, i);
-      if (frame != Frame::xy) sample = from_frame(sample, frame);
     }
-    require_valid(samples);
+    require_valid(samples);  // as they were given: turned, a negative uncertainty is a positive one
+    if (frame != Frame::xy)
+      for (Sample& sample : samples) sample = from_frame(sample, frame);
     return pointer(std::move(samples));
   });
 }
@@ -312,7 +313,8 @@ void bind_samples(py::module_& m) {
         "A Dataset from a table: the published layout, the project's own, or as other programs write it; read_as says "
         "what was\nunderstood. columns has other names, as in {'theta_i_deg': 'AOI'}, or numbers from 1; "
         "skip_incomplete passes over rows\nwith NA or NaN, or without an angle or wavelength; frame and convention are "
-        "those of the matrices: xy, or sp of f_ss ... f_pp.\nRaises OSError for a file that cannot be read, with line "
+        "those of the matrices: as a column frame says, else xy,\nor sp of f_ss ... f_pp.\nRaises OSError for a file "
+        "that cannot be read, with line "
         "and column for one that holds something else.");
   m.def(
       "read_foreign", foreign_samples_of, py::arg("path"), py::arg("wavelength_nm") = py::none(),

@@ -80,14 +80,15 @@ def test_uncertainties_of_a_dataset_are_kept(ptfe, tmp_path):
     )  # equal ones stay equal: the turn is orthogonal
 
 
-def test_states_s_and_p_out_of_plane_are_fitted_as_they_were_measured(ptfe):
+def test_states_s_and_p_out_of_plane_are_fitted_as_they_were_measured(ptfe, tmp_path):
     geometry = mmbrdf.random_geometries(600, seed=2)
     m = ptfe.evaluate(532, *geometry, frame="sp")
     m[:, 3, :] = m[:, :, 3] = np.nan
     m[10:, 2, :] = m[10:, :, 2] = np.nan  # ten samples of all linear states, else s and p
     data = mmbrdf.Dataset(532, *geometry, m, frame="sp")
     assert np.isnan(data.normalized[10:, 1, 1]).any()
-    for one in (data, pickle.loads(pickle.dumps(data)), data[:]):
+    data.save(tmp_path / "s_and_p.csv")  # with the frame of each sample
+    for one in (data, pickle.loads(pickle.dumps(data)), data[:], mmbrdf.load(tmp_path / "s_and_p.csv")):
         found = mmbrdf.fit(one, uncertainty="noise").model
         seen, truth = (model.evaluate(532, 40, 0, 50, 77)[:3, :3] for model in (found, ptfe))
         np.testing.assert_allclose(seen, truth, rtol=0, atol=1e-9)
@@ -103,6 +104,9 @@ def test_invalid_samples_are_refused(ptfe):
         mmbrdf.Dataset(532, 45, 0, 30, 180, np.nan * f)
     with pytest.raises(ValueError, match="wavelength_nm"):
         mmbrdf.Dataset(-1, 45, 0, 30, 180, f)
+    for frame in ("xy", "sp", "scattering_plane"):
+        with pytest.raises(ValueError, match="u_m33 = -0.01, must be finite and not negative"):
+            mmbrdf.Dataset(532, 45, 0, 30, 70, f, frame=frame, uncertainty=np.diag([0.01, 0.01, -0.01, 0.01]))
     with pytest.raises(ValueError, match="mueller: a part of it is masked"):
         mmbrdf.Dataset(532, 45, 0, 30, 180, np.ma.masked_array(f, mask=np.eye(4)))
 
