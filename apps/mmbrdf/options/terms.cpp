@@ -23,6 +23,16 @@ double freedom_from(const std::string& text) {
   return freedom;
 }
 
+/// k, which nobody has at 20 or more: who types 95 means per cent.
+double coverage_from(const std::string& text) {
+  constexpr double per_cent = 20;
+  const double factor = positive_number(text);
+  if (factor >= per_cent)
+    throw std::invalid_argument("\"" + text +
+                                "\": expected a coverage factor k, as 2; U of 95 % coverage is in the budget anyway");
+  return factor;
+}
+
 TypeBTerm term_from(const std::string& text) {
   const std::size_t equals = text.find('='), dof = text.find(",dof=");
   if (equals == std::string::npos)
@@ -53,7 +63,7 @@ void add_terms(CLI::App& app, Terms& terms) {
            "calibration=0.001; repeatable");
   const Option budget =
       add_flag(app, "--budget", terms.budget, "Print the budget of each value, and its expanded\nuncertainty");
-  add_option(app, "--coverage", terms.coverage, positive_number, "K",
+  add_option(app, "--coverage", terms.coverage, coverage_from, "K",
              "In the budget also U = K u, as a certificate has it with\nK = 2")
       .needs(budget);
 }
