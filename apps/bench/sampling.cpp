@@ -115,6 +115,8 @@ void register_sampling() {
     add(of + "angles/one_incident",
         [=](auto& s) { draw<Direction, SampledDirection>(s, family, std::span(asked().incident).first(1)); });
     add(of + "vectors", [=](auto& s) { draw<Vector3, SampledVector>(s, family, asked().vectors); });
+    add(of + "vectors/one_incident",
+        [=](auto& s) { draw<Vector3, SampledVector>(s, family, std::span(asked().vectors).first(1)); });
   }
   add("pdf", pdf);
   add("weights/sp", weights);

@@ -23,6 +23,9 @@ using std::numbers::pi;
 /// The largest sin² theta_r that is drawn: at the horizon itself weights would be 0/0.
 constexpr double largest_v = 1 - 0x1p-52;
 
+/// So many directions for one incident one are drawn sooner with a table of their own.
+constexpr std::size_t worth_a_table = 500;
+
 // ---- what is asked --------------------------------------------------------------------------------------------------
 
 bool is_valid(const Direction& d) { return d.theta >= 0 && d.theta <= radians(90) && std::isfinite(d.phi); }
@@ -86,19 +89,37 @@ SamplingMap::Incidence incidence(const SamplingMap& map, const Polar& incident) 
           map.depends_on_incident_azimuth() ? std::atan2(incident.sin_phi, incident.cos_phi) : 0};
 }
 
-SampledDirection drawn(const SamplingMap& map, const Direction& incident, const UnitPoint& u) {
-  const auto [place, density] = map.map(incidence(map, incident), u);
-  const double v = std::min(place.v, largest_v), cos_theta = std::sqrt(1 - v);
-  return {{std::acos(cos_theta), incident.phi + place.azimuth}, per_solid_angle(density, cos_theta)};
+/// What is the same for all that is drawn for one incident direction.
+struct From {
+  SamplingMap::Incidence incidence;
+  double phi;
+};
+From from(const SamplingMap& map, const Direction& incident) { return {incidence(map, incident), incident.phi}; }
+
+struct FromVector {
+  SamplingMap::Incidence incidence;
+  double cos_phi, sin_phi;
+};
+FromVector from(const SamplingMap& map, const Vector3& incident) {
+  const Polar at = polar(incident);
+  return {incidence(map, at), at.cos_phi, at.sin_phi};
 }
 
-SampledVector drawn(const SamplingMap& map, const Vector3& incident, const UnitPoint& u) {
-  const Polar from = polar(incident);
-  const auto [place, density] = map.map(incidence(map, from), u);
-  const double v = std::min(place.v, largest_v), cos_theta = std::sqrt(1 - v), sin_theta = std::sqrt(v);
-  const double c = sin_theta * std::cos(place.azimuth), s = sin_theta * std::sin(place.azimuth);
+SampledDirection drawn(const From& from, const SamplingMap::Mapped& mapped) {
+  const double v = std::min(mapped.place.v, largest_v), cos_theta = std::sqrt(1 - v);
+  return {{std::acos(cos_theta), from.phi + mapped.place.azimuth}, per_solid_angle(mapped.density, cos_theta)};
+}
+
+SampledVector drawn(const FromVector& from, const SamplingMap::Mapped& mapped) {
+  const double v = std::min(mapped.place.v, largest_v), cos_theta = std::sqrt(1 - v), sin_theta = std::sqrt(v);
+  const double c = sin_theta * std::cos(mapped.place.azimuth), s = sin_theta * std::sin(mapped.place.azimuth);
   return {{c * from.cos_phi - s * from.sin_phi, s * from.cos_phi + c * from.sin_phi, cos_theta},
-          per_solid_angle(density, cos_theta)};
+          per_solid_angle(mapped.density, cos_theta)};
+}
+
+auto drawn(const SamplingMap& map, const auto& incident, const UnitPoint& u) {
+  const auto begin = from(map, incident);
+  return drawn(begin, map.map(begin.incidence, u));
 }
 
 template <class Sampled>
@@ -115,6 +136,13 @@ void draw(const SamplingMap& map, std::span<const Incident> incident, std::span<
   require_sizes(incident.size(), u.size(), out.size());
   require_all_valid(incident, threads);
   require_all_valid(u, threads);
+  if (incident.size() == 1 && u.size() > worth_a_table) {
+    const auto begin = from(map, incident.front());
+    const SamplingMap::Table table = map.table(begin.incidence);
+    return in_parts(u.size(), threads, [&](std::size_t first, std::size_t count) {
+      for (std::size_t q = first; q < first + count; ++q) out[q] = drawn(begin, map.map(table, u[q]));
+    });
+  }
   const std::size_t each = incident.size() == 1 ? 0 : 1;
   in_parts(u.size(), threads, [&](std::size_t first, std::size_t count) {
     for (std::size_t q = first; q < first + count; ++q) out[q] = drawn(map, incident[each * q], u[q]);

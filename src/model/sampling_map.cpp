@@ -86,7 +86,7 @@ double polar_angle(double v) { return std::asin(std::sqrt(v)); }
 
 }  // namespace
 
-SamplingMap::Made SamplingMap::table(const PreparedModel& model, const Direction& incident) const {
+SamplingMap::Made SamplingMap::made(const PreparedModel& model, const Direction& incident) const {
   const PreparedIncidence at = model.at(incident);
   const bool one_side = turns_ == 1;
   const std::vector<double> azimuths = axis(one_side ? 0 : -pi, pi, one_side ? azimuth_steps : 2 * azimuth_steps);
@@ -94,7 +94,7 @@ SamplingMap::Made SamplingMap::table(const PreparedModel& model, const Direction
   const std::vector<double> thetas = axis(0, pi / 2, theta_steps);
   std::vector<double> v, marginal;
   std::vector<double> all = f11_of(at, thetas, azimuths);
-  Made made{{}, *std::max_element(all.begin(), all.end())};
+  Made result{{}, *std::max_element(all.begin(), all.end())};
   make_positive(all);
   for (std::size_t i = 0; i < thetas.size(); ++i) {
     v.push_back(std::pow(std::sin(thetas[i]), 2));
@@ -110,9 +110,9 @@ SamplingMap::Made SamplingMap::table(const PreparedModel& model, const Direction
     const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(j * shares.size());
     std::vector<double> conditional(begin, begin + static_cast<std::ptrdiff_t>(shares.size()));
     raise(shares, conditional);
-    made.table[j] = {cuts[j], equal_shares<steps>(shares, conditional)};
+    result.table[j] = {cuts[j], equal_shares<steps>(shares, conditional)};
   }
-  return made;
+  return result;
 }
 
 SamplingMap::SamplingMap(const PreparedModel& model)
@@ -122,9 +122,9 @@ SamplingMap::SamplingMap(const PreparedModel& model)
   in_any_order(tables_.size(), [&](std::size_t i) {
     const double rho = static_cast<double>(i / turns_) / static_cast<double>(incident_steps);
     const double turn = static_cast<double>(i % turns_) / static_cast<double>(turns_);
-    const Made made = table(model, {std::acos(1 - rho * rho), 2 * pi * turn});
-    tables_[i] = made.table;
-    largest_f11[i] = made.largest_f11;
+    const Made at = made(model, {std::acos(1 - rho * rho), 2 * pi * turn});
+    tables_[i] = at.table;
+    largest_f11[i] = at.largest_f11;
   });
   if (*std::max_element(largest_f11.begin(), largest_f11.end()) <= 0)
     throw std::invalid_argument("f11 is positive nowhere: no directions can be drawn by it");
@@ -141,29 +141,25 @@ class SamplingMap::Blend {
   std::array<double, corners> weights;
 
   double v(std::size_t j) const {
-    double sum = 0;
-    for (std::size_t c = 0; c < corners; ++c) sum += weights[c] * (*tables[c])[j].v;
-    return sum;
+    return mean([j](const Table& table) { return table[j].v; });
+  }
+
+  double share(std::size_t j, std::size_t k) const {
+    return mean([j, k](const Table& table) { return table[j].share[k]; });
   }
 
   /// Between rows j and j + 1, at a step of u2.
   double share(std::size_t j, double between, std::size_t k) const {
-    double sum = 0;
-    for (std::size_t c = 0; c < corners; ++c) {
-      const double low = (*tables[c])[j].share[k], high = (*tables[c])[j + 1].share[k];
-      sum += weights[c] * (low + between * (high - low));
-    }
-    return sum;
+    const double low = share(j, k);
+    return low + between * (share(j + 1, k) - low);
   }
 
-  /// At a step and the next: the numbers stand side by side.
-  std::array<double, 2> shares(std::size_t j, double between, std::size_t k) const {
-    std::array<double, 2> sums{};
-    for (std::size_t c = 0; c < corners; ++c) {
-      const double *const low = &(*tables[c])[j].share[k], *const high = &(*tables[c])[j + 1].share[k];
-      for (std::size_t n = 0; n < 2; ++n) sums[n] += weights[c] * (low[n] + between * (high[n] - low[n]));
-    }
-    return sums;
+ private:
+  template <class Of>
+  double mean(Of of) const {
+    double sum = 0;
+    for (std::size_t c = 0; c < corners; ++c) sum += weights[c] * of(*tables[c]);
+    return sum;
   }
 };
 
@@ -209,17 +205,34 @@ auto SamplingMap::with_blend(const Incidence& incidence, Ask ask) const {
                       {(1 - r) * (1 - t), (1 - r) * t, r * (1 - t), r * t}});
 }
 
-SamplingMap::Mapped SamplingMap::map(const Incidence& incidence, const std::array<double, 2>& u) const {
-  return with_blend(incidence, [&](const auto& blend) -> Mapped {
-    const auto [j, s] = step(u[0], steps);
-    const auto [k, t] = step(turns_ == 1 ? std::abs(2 * u[1] - 1) : u[1], steps);
-    const double v = blend.v(j), dv = blend.v(j + 1) - v;
-    const auto [share, next] = blend.shares(j, s, k);
-    const double dshare = next - share;
-    const double reached = share + t * dshare;
-    const double azimuth = turns_ == 1 ? std::copysign(pi * reached, u[1] - 0.5) : pi * (2 * reached - 1);
-    return {{v + s * dv, azimuth}, reciprocal_area / (dv * dshare)};
+template <std::size_t corners>
+SamplingMap::Mapped SamplingMap::mapped(const Blend<corners>& blend, const UnitPoint& u) const {
+  const auto [j, s] = step(u[0], steps);
+  const auto [k, t] = step(turns_ == 1 ? std::abs(2 * u[1] - 1) : u[1], steps);
+  const double v = blend.v(j), dv = blend.v(j + 1) - v;
+  const double share = blend.share(j, s, k), dshare = blend.share(j, s, k + 1) - share;
+  const double reached = share + t * dshare;
+  const double azimuth = turns_ == 1 ? std::copysign(pi * reached, u[1] - 0.5) : pi * (2 * reached - 1);
+  return {{v + s * dv, azimuth}, reciprocal_area / (dv * dshare)};
+}
+
+SamplingMap::Mapped SamplingMap::map(const Incidence& incidence, const UnitPoint& u) const {
+  return with_blend(incidence, [&](const auto& blend) { return mapped(blend, u); });
+}
+
+SamplingMap::Table SamplingMap::table(const Incidence& incidence) const {
+  return with_blend(incidence, [](const auto& blend) {
+    Table result;
+    for (std::size_t j = 0; j <= steps; ++j) {
+      result[j].v = blend.v(j);
+      for (std::size_t k = 0; k <= steps; ++k) result[j].share[k] = blend.share(j, k);
+    }
+    return result;
   });
+}
+
+SamplingMap::Mapped SamplingMap::map(const Table& table, const UnitPoint& u) const {
+  return mapped(Blend<1>{{&table}, {1}}, u);
 }
 
 double SamplingMap::density(const Incidence& incidence, const ProjectedPlace& place) const {

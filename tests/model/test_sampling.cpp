@@ -347,6 +347,29 @@ TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
   }
 }
 
+TEST(Sampling, ForOneIncidentDirectionHasTheBitsOfOneAtATimeHoweverMany) {
+  const std::vector<UnitPoint> points = random_points(2000, 10);
+  for (const Family family : {Family::isotropic, Family::anisotropic}) {
+    const DirectionSampler sampler(any_model(family));
+    for (int i = 0; i < 20; ++i) {
+      const Direction incident{incidence(i).theta, 3 - i / 3.0};
+      const Vector3 vector = unit_vector(incident);
+      std::vector<SampledDirection> drawn(points.size());
+      std::vector<SampledVector> vectors(points.size());
+      sampler.sample(std::span(&incident, 1), points, drawn);
+      sampler.sample(std::span(&vector, 1), points, vectors);
+      for (std::size_t q = 0; q < points.size(); ++q) {
+        const SampledDirection one = sampler.sample(incident, points[q]);
+        const SampledVector other = sampler.sample(vector, points[q]);
+        ASSERT_EQ(one.reflected, drawn[q].reflected);
+        ASSERT_EQ(one.pdf, drawn[q].pdf);
+        ASSERT_EQ(other.reflected, vectors[q].reflected);
+        ASSERT_EQ(other.pdf, vectors[q].pdf);
+      }
+    }
+  }
+}
+
 TEST(Sampling, WeightsVectorsAsItWeightsTheirDirections) {
   for (const Family family : {Family::isotropic, Family::anisotropic}) {
     const DirectionSampler sampler(any_model(family));
