@@ -141,12 +141,12 @@ TEST(Samples, WrittenAndReadAreTheSame) {
 TEST(Samples, ThatLoseElementsOnTheWayToXyAreWrittenAndReadAsTheyWereMeasured) {
   const Folder folder;
   const std::string names =
-      "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11,m12,m22,m33,u_f11,u_m12\n";
+      "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11,m12,m22,m33,u_f11,u_m12,u_m22,u_m33\n";
   const auto samples = samples_in(names +
-                                  "532,15,10,30,70,sp,0.3,0.1,0.25,0.2,0.01,0.02\n"
-                                  "532,15,0,30,0,sp,0.3,0.1,0.25,0.2,0.01,0.02\n"
-                                  "532,15,0,30,50,xy,0.3,0.1,0.25,,0.01,0.02\n"
-                                  "532,15,0,30,20,scattering_plane,0.3,0.1,0.25,0.2,0.01,0.02\n");
+                                  "532,15,10,30,70,sp,0.3,0.1,0.25,0.2,0.01,0.02,0.03,0.04\n"
+                                  "532,15,0,30,0,sp,0.3,0.1,0.25,0.2,0.01,0.02,0.03,0.04\n"
+                                  "532,15,0,30,50,xy,0.3,0.1,0.25,,0.01,0.02,0.03,\n"
+                                  "532,15,0,30,20,scattering_plane,0.3,0.1,0.25,0.2,0.01,0.02,0.03,0.04\n");
   ASSERT_TRUE(samples[0].as_measured && !samples[1].as_measured && !samples[2].as_measured && samples[3].as_measured);
   ASSERT_TRUE(std::isnan(samples[0].normalized(1, 1)));
   write_samples(folder / "s.csv", samples);
@@ -166,12 +166,12 @@ TEST(Samples, ThatLoseElementsOnTheWayToXyAreWrittenAndReadAsTheyWereMeasured) {
 
 TEST(Samples, WithAColumnOfFramesTakeNoOtherFrameAndNoOtherNames) {
   const std::string text = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11\n532,15,10,30,70,";
-  EXPECT_EQ(message_of([&] { samples_in(text + "tilted,0.3\n"); }),
-            "d.csv:2: column frame: frame \"tilted\" is not one of xy, sp, scattering_plane");
-  EXPECT_EQ(message_of([&] { samples_in(text + ",0.3\n"); }),
-            "d.csv:2: column frame: frame \"\" is not one of xy, sp, scattering_plane");
+  EXPECT_EQ(complaint([&] { samples_in(text + "tilted,0.3\n"); }),
+            "d.csv:2: column frame: frame 'tilted' is not one of xy, sp, scattering_plane");
+  EXPECT_EQ(complaint([&] { samples_in(text + ",0.3\n"); }),
+            "d.csv:2: column frame: frame '' is not one of xy, sp, scattering_plane");
   std::istringstream in(text + "sp,0.3\n");
-  EXPECT_EQ(message_of([&] { read_samples(in, "d.csv", {.frame = Frame::sp}); }),
+  EXPECT_EQ(complaint([&] { read_samples(in, "d.csv", {.frame = Frame::sp}); }),
             "d.csv:1: column frame says the frame of each row: leave out that it is sp");
 }
 
