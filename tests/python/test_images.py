@@ -67,7 +67,7 @@ def test_dark_frames_saturation_and_masks(camera):
 
 def test_many_rows_are_worked_on_in_blocks_with_the_same_bits(camera, monkeypatch):
     whole = images.reduce(camera.stack, camera.instrument, dark=0.125)
-    monkeypatch.setattr(images, "_ROWS_AT_ONCE", 2 * SHAPE[1])
+    monkeypatch.setattr(images.reduction, "_ROWS_AT_ONCE", 2 * SHAPE[1])
     np.testing.assert_array_equal(images.reduce(camera.stack, camera.instrument, dark=0.125), whole)
 
 
