@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _mmbrdf
 from ._arguments import two_orders
+from ._files import replacing
 from ._mmbrdf import Model, __version__
 
 if TYPE_CHECKING:
@@ -230,13 +231,8 @@ class PixelModels:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """One NetCDF file: wholly, or not at all."""
-        beside = f"{os.fspath(path)}.{os.getpid()}.part"
-        try:
+        with replacing(path) as beside:
             self.to_xarray().to_netcdf(beside)
-            os.replace(beside, path)
-        finally:
-            if os.path.exists(beside):
-                os.unlink(beside)
 
     @staticmethod
     def from_xarray(data: xarray.Dataset) -> PixelModels:

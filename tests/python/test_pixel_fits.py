@@ -2,7 +2,9 @@
 """A BRDF in each pixel: as if each had been fitted alone."""
 
 import copy
+import os
 import pickle
+import threading
 
 import numpy as np
 import pytest
@@ -154,6 +156,46 @@ def test_models_of_many_pixels_are_one_file(models, tmp_path):
     where = (45, 0, 30, 180)
     np.testing.assert_array_equal(again.evaluate(*where, pixel=(2, 3)), models.evaluate(*where, pixel=(2, 3)))
     assert [path.name for path in tmp_path.iterdir()] == ["models.nc"]
+
+
+def test_threads_that_save_at_once_do_not_disturb_each_other(models, tmp_path):
+    pytest.importorskip("xarray")
+    pytest.importorskip("netCDF4")
+    together, failed = threading.Barrier(4), []
+
+    def save():
+        together.wait()
+        try:
+            for _ in range(3):
+                models.save(tmp_path / "models.nc")
+        except Exception as error:  # what a library says of a file that is gone
+            failed.append(error)
+
+    threads = [threading.Thread(target=save) for _ in range(4)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert failed == [] and [path.name for path in tmp_path.iterdir()] == ["models.nc"]
+    np.testing.assert_array_equal(images.load_models(tmp_path / "models.nc").coefficients, models.coefficients)
+
+
+def test_models_are_saved_through_links_and_keep_the_mode_of_the_file(models, tmp_path):
+    pytest.importorskip("xarray")
+    pytest.importorskip("netCDF4")
+    target, link = tmp_path / "target.nc", tmp_path / "link.nc"
+    target.write_text("earlier")
+    target.chmod(0o640)
+    link.symlink_to("target.nc")
+    models.save(link)
+    assert link.is_symlink() and target.stat().st_mode & 0o777 == 0o640
+    np.testing.assert_array_equal(images.load_models(target).coefficients, models.coefficients)
+    with pytest.raises(FileNotFoundError) as missing:
+        models.save(tmp_path / "no" / "models.nc")
+    assert missing.value.filename == os.fspath(tmp_path / "no" / "models.nc")
+    with pytest.raises(OSError, match="not a file that can be replaced"):
+        models.save(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link.nc", "target.nc"]
 
 
 def test_no_pixels_are_no_models(prepared, values):
