@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _mmbrdf
 from .._mmbrdf import Calibration, Polarimeter
 
-
 FAILURES = ("", "not finite", "no convergence", "misfit", "dependent states", "masked")
 """What the numbers of PixelInstrument.failure mean: 0 is a calibrated pixel."""
 
