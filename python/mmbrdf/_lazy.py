@@ -12,35 +12,15 @@ import functools
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from . import _mmbrdf
+from ._signatures import DIRECTIONS, MATRIX, Signature, signatures
 
-_MATRIX = ("row", "column")
 _SIZES = {"row": 4, "column": 4, "stokes": 4, "component": 3, "eigenvalue": 4, "part": 4, "coherency": 16}
 _SIZES |= {"element": 16, "element_2": 16}
-_DIRECTIONS = ("theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg")
-
-
-class Signature(NamedTuple):
-    """What a function takes and gives."""
-
-    parameters: tuple[str, ...]
-    """Names of arguments in their order."""
-    arrays: Mapping[str, tuple[str, ...]]
-    """Which of them are arrays, and the names of their last axes, which are not cut into chunks."""
-    outputs: tuple[tuple[str, ...], ...] = ((),)
-    """Names of the last axes of each result."""
-    record: str | None = None
-    """The named tuple of several results."""
-    dtype: Any = float
-    units: str | None = None
-    """Of the result; None: those of the argument."""
-    meaning: str | None = None
-    leading: bool = False
-    """The first of the names in `outputs` is the first axis."""
 
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {}
@@ -209,7 +189,7 @@ def _named_result(function: str, result: Any, signature: Signature, given: Mappi
     if function == "reflectance_factor":  # no more of a matrix
         for name in ("frame", "axes", "convention"):
             result.attrs.pop(name, None)
-        result = result.drop_vars([name for name in _MATRIX if name in result.coords])
+        result = result.drop_vars([name for name in MATRIX if name in result.coords])
     return result
 
 
@@ -303,7 +283,7 @@ def _together(function: str, given: dict[str, Any]) -> Any:
     from . import Evaluation
 
     asked = {name: value for name, value in given.items() if name not in ("uncertainty", "terms")}
-    where = {name: asked[name] for name in ("self", "wavelength_nm", *_DIRECTIONS, "invalid") if name in asked}
+    where = {name: asked[name] for name in ("self", "wavelength_nm", *DIRECTIONS, "invalid") if name in asked}
     u = lazily(f"{function}_uncertainty", {**asked, "terms": given.get("terms")})
     return Evaluation(lazily(function, asked), u, lazily("Model.outside", where))
 
@@ -335,7 +315,7 @@ def _analyze(given: dict[str, Any]) -> Any:
 
     if given.pop("as_xarray", False):
         raise TypeError("analyze: as_xarray is not for Dask arrays and xarray.DataArrays")
-    one = {**given, **dict.fromkeys(_DIRECTIONS, 0.0)}
+    one = {**given, **dict.fromkeys(DIRECTIONS, 0.0)}
     if _is_lazy(one.get("wavelength_nm")) or np.ndim(one.get("wavelength_nm") or 0) > 0:
         one["wavelength_nm"] = given["self"].wavelengths_nm[0]
     with warnings.catch_warnings():
@@ -374,102 +354,9 @@ def _wrapper(function: str, signature: Signature, original: Callable[..., Any]) 
     return wrapped
 
 
-def _matrix(*outputs: tuple[str, ...], **more: Any) -> Signature:
-    return Signature(("mueller",), {"mueller": _MATRIX}, outputs, **more)
-
-
-def _question(*outputs: tuple[str, ...], first: tuple[str, ...] = ("self",), **more: Any) -> Signature:
-    names = ("wavelength_nm", *_DIRECTIONS)
-    return Signature((*first, *names), dict.fromkeys(names, ()), outputs, units="", **more)
-
-
-def _signatures() -> dict[str, Signature]:
-    result: dict[str, Signature] = {}
-    for q in _mmbrdf.quantities():
-        more = ("stokes",) if q.takes_light else ()
-        arrays: dict[str, tuple[str, ...]] = {"mueller": _MATRIX} | ({"stokes": ("stokes",)} if more else {})
-        units = None if q.unit == "sr^-1" else q.unit
-        result[q.name] = Signature(("mueller", *more), arrays, ((),), units=units, meaning=q.meaning)
-        slope = Signature(("mueller", *more), arrays, (_MATRIX,), units="", meaning=f"derivatives of {q.name}")
-        result[f"{q.name}_gradient"] = slope
-    result["realizability_margin"] = result["eigenvalue_min"]
-    result["realizability_margin_gradient"] = result["eigenvalue_min_gradient"]
-    result["smallest_eigenvalue_gradient"] = _matrix(_MATRIX, units="")
-    result["diattenuation_vector"] = result["polarizance_vector"] = _matrix(("component",), units="")
-    result["coherency_eigenvalues"] = _matrix(("eigenvalue",))
-    result["coherency"] = _matrix(("coherency",), dtype=complex)
-    result["realizable"] = _matrix((), dtype=bool, units="")
-    result["retardance"] = _matrix((), units="degree")
-    result["depolarization_power"] = _matrix((), units="")
-    for name in ("exchanged", "mirrored", "nearest_realizable"):
-        result[name] = _matrix(_MATRIX)
-    result["normalized"] = _matrix(_MATRIX, units="")
-    result["cloude_decomposition"] = _matrix(("part",), ("part", *_MATRIX), record="CloudeDecomposition")
-    result["lu_chipman"] = _matrix(*[_MATRIX] * 3, record="LuChipman")
-    result["symmetric_decomposition"] = _matrix(*[_MATRIX] * 5, record="SymmetricDecomposition")
-    result["co_and_cross_polarized"] = Signature(
-        ("mueller_sp",), {"mueller_sp": _MATRIX}, ((), (), (), ()), "PolarizedBrdf"
-    )
-    result["standard_uncertainty"] = Signature(
-        ("gradient", "covariance"), {"gradient": _MATRIX, "covariance": ("element", "element_2")}, units=""
-    )
-    result["change_frame"] = Signature(
-        ("mueller", *_DIRECTIONS, "from_frame", "to_frame"),
-        {"mueller": _MATRIX, **dict.fromkeys(_DIRECTIONS, ())},
-        (_MATRIX,),
-    )
-    result["convert"] = Signature(("mueller", "from_convention", "to_convention"), {"mueller": _MATRIX}, (_MATRIX,))
-    result["reflectance_factor"] = Signature(("f11",), {"f11": ()}, units="1", meaning="reflectance factor")
-    for name, arguments in {"polarizer": ("azimuth_deg", "extinction"), "rotator": ("angle_deg",)}.items():
-        result[name] = Signature(arguments, dict.fromkeys(arguments, ()), (_MATRIX,), units="")
-    arguments = ("retardance_deg", "azimuth_deg")
-    result["retarder"] = Signature(arguments, dict.fromkeys(arguments, ()), (_MATRIX,), units="")
-    return result | _reflectances() | _methods()
-
-
-def _reflectances() -> dict[str, Signature]:
-    result = {}
-    for way, end, stokes in (
-        ("directional_hemispherical", "i", "stokes"),
-        ("hemispherical_directional", "r", "analyzer"),
-    ):
-        angles = ("wavelength_nm", f"theta_{end}_deg", f"phi_{end}_deg")
-        arrays: dict[str, tuple[str, ...]] = {**dict.fromkeys(angles, ()), stokes: ("stokes",)}
-        for what in ("reflectance", "uncertainty"):
-            result[f"{way}_{what}"] = Signature(("model", *angles, stokes), arrays, units="")
-    for what in ("reflectance", "uncertainty"):
-        result[f"bihemispherical_{what}"] = Signature(("model", "wavelength_nm"), {"wavelength_nm": ()}, units="")
-    return result
-
-
-def _methods() -> dict[str, Signature]:
-    sampled = ("theta_i_deg", "phi_i_deg", "u1", "u2")
-    weighted = (*_DIRECTIONS, "pdf")
-    return {
-        "Model.evaluate": _question(_MATRIX),
-        "Model.evaluate_uncertainty": _question(_MATRIX),
-        "Model.reflectance_factor": _question(())._replace(units="1", meaning="reflectance factor"),
-        "Model.reflectance_factor_uncertainty": _question(())._replace(units="1"),
-        "Model.covariance": _question(("element", "element_2")),
-        "Model.outside": _question((), dtype=np.uint8),
-        "Model.estimable": _question((), dtype=bool),
-        "Model.evaluate_draws": _question(("draw", *_MATRIX), first=("self", "count", "seed"), leading=True),
-        "Model.analyze": _question(()),
-        "Model._analyzed": _question(("number",)),
-        "DirectionSampler.sample": Signature(
-            ("self", *sampled), dict.fromkeys(sampled, ()), ((), (), ()), "SampledDirections", units=""
-        ),
-        "DirectionSampler.pdf": Signature(("self", *_DIRECTIONS), dict.fromkeys(_DIRECTIONS, ()), units="sr-1"),
-        "DirectionSampler.weight": Signature(("self", *weighted), dict.fromkeys(weighted, ()), (_MATRIX,), units=""),
-        "Polarimeter.reduce": Signature(("self", "readings", "invalid"), {"readings": ()}, (_MATRIX,)),
-        "Polarimeter.covariance": Signature(("self", "variances"), {"variances": ()}, (("element", "element_2"),)),
-        "Polarimeter.readings": Signature(("self", "mueller"), {"mueller": _MATRIX}, ((),)),
-    }
-
-
 def install(package: dict[str, Any]) -> None:
     """Wraps the functions of the package, and the methods of its classes."""
-    _SIGNATURES.update(_signatures())
+    _SIGNATURES.update(signatures())
     _FUNCTIONS["Model._analyzed"] = _analyzed
     for function, signature in _SIGNATURES.items():
         owner, _, name = function.rpartition(".")
