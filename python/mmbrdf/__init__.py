@@ -128,6 +128,7 @@ class SymmetricDecomposition(_NamedTuple):
 
 
 def load(path: str | _os.PathLike[str]) -> Model | Dataset:
+@_calls.told_in_a_line("load")
     """A Model from a model file or published coefficients, a Dataset from a file of samples.
 
     Files of samples are CSV with a header line; coefficients have none; model files are JSON. Raises OSError for a file
@@ -137,6 +138,7 @@ def load(path: str | _os.PathLike[str]) -> Model | Dataset:
 
 
 def _write_report(
+@_calls.told_in_a_line("report")
     model: Model | None,
     data: Dataset | None,
     path: str | _os.PathLike[str],

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ._arguments import two_orders
+from ._calls import told_in_a_line
 from ._files import replacing
 from ._mmbrdf import FitAccumulator, FitResult, __version__, read_samples
 
@@ -176,6 +177,7 @@ def _there(client: distributed.Client, leaves: Sequence[Any], progress: Callable
     return result
 
 
+@told_in_a_line("distributed.fit")
 def fit(
     files: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
     client: distributed.Client | None = None,

@@ -21,17 +21,43 @@ def test_other_things_than_models_and_samples_are_refused_in_a_line(ptfe, data):
     fitted, plot = mmbrdf.fit(data, orders=(1, 1)), mmbrdf.plot
     hint = r"expected mmbrdf\.Model, not FitResult: its \.model is one$"
     for draw, message in (
-        (lambda: plot.in_plane_curves(fitted, 532), "^model: " + hint),
+        (lambda: plot.in_plane_curves(fitted, 532), "^plot.in_plane_curves: model: " + hint),
         (lambda: plot.polar_in_plane([ptfe, fitted], 532), "^models: " + hint),
-        (lambda: plot.polar_in_plane(fitted, 532), "^models: " + hint),
+        (
+            lambda: plot.polar_in_plane(fitted, 532),
+            r"^plot.polar_in_plane: models: expected mmbrdf.Model or a sequence, not FitR",
+        ),
         (lambda: plot.subset_study([fitted], ptfe, 532), "^parts: " + hint),
-        (lambda: plot.subset_study([ptfe], fitted, 532), "^reference: " + hint),
-        (lambda: plot.coefficient_spectrum(fitted), "^model: " + hint),
-        (lambda: plot.residual_map(data, ptfe, 532, 45), r"^model: expected mmbrdf\.Model, not Dataset$"),
-        (lambda: plot.residual_map(ptfe, fitted, 532, 45), r"^data: expected mmbrdf\.Dataset, not FitResult$"),
+        (lambda: plot.subset_study([ptfe], fitted, 532), "^plot.subset_study: reference: " + hint),
+        (lambda: plot.coefficient_spectrum(fitted), "^plot.coefficient_spectrum: model: " + hint),
+        (
+            lambda: plot.residual_map(data, ptfe, 532, 45),
+            r"^plot.residual_map: model: expected mmbrdf\.Model, not Dataset$",
+        ),
+        (
+            lambda: plot.residual_map(ptfe, fitted, 532, 45),
+            r"^plot.residual_map: data: expected mmbrdf\.Dataset, not FitResult$",
+        ),
         (
             lambda: plot.hemisphere(fitted, 532, 45),
-            r"^source: expected mmbrdf\.Model or mmbrdf\.Dataset, not FitResult: its",
+            r"^plot.hemisphere: source: expected mmbrdf\.Model or mmbrdf\.Dataset, not FitResult: its",
+        ),
+        (
+            lambda: plot.depolarization_map("ptfe", 532, 45),
+            r"^plot.depolarization_map: source: expected .* not str 'ptfe'$",
+        ),
+        (lambda: plot.realizability_map(None, 532, 45), r"^plot.realizability_map: source: expected .* not NoneType$"),
+        (
+            lambda: plot.hemisphere(ptfe, "532", 45),
+            "^plot.hemisphere: wavelength_nm: expected a number, not str '532'$",
+        ),
+        (
+            lambda: plot.hemisphere(ptfe, [532, 633], 45),
+            "^plot.hemisphere: wavelength_nm: expected a number, not list$",
+        ),
+        (
+            lambda: plot.in_plane_curves(ptfe, 532, None),
+            "^plot.in_plane_curves: theta_i_deg: expected a number, not NoneType$",
         ),
         (lambda: plot.depolarization_map("ptfe", 532, 45), r"^source: expected .* not str$"),
         (lambda: plot.realizability_map(None, 532, 45), r"^source: expected .* not NoneType$"),

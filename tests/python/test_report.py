@@ -207,16 +207,16 @@ def test_other_things_than_a_model_and_samples_are_refused_in_a_line(page, tmp_p
     model, data, _ = page
     fitted = mmbrdf.fit(data, orders=(1, 1))
     for arguments, message in (
-        ((fitted, data), "model: expected mmbrdf.Model, not FitResult: its .model is one"),
-        ((data, model), "model: expected mmbrdf.Model, not Dataset"),
-        ((model, fitted), "data: expected mmbrdf.Dataset, not FitResult"),
-        ((model, tmp_path), f"data: expected mmbrdf.Dataset, not {type(tmp_path).__name__}"),
+        ((fitted, data), "report: model: expected mmbrdf.Model, not FitResult: its .model is one"),
+        ((data, model), "report: model: expected mmbrdf.Model, not Dataset"),
+        ((model, fitted), "report: data: expected mmbrdf.Dataset, not FitResult"),
+        ((model, tmp_path), f"report: data: expected mmbrdf.Dataset, not {type(tmp_path).__name__}"),
     ):
         with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
             mmbrdf.report(*arguments, tmp_path / "report.html")
     for option, message in (
         ({"wavelength_nm": "532 nm"}, "wavelength_nm: expected a number, not '532 nm'"),
-        ({"theta_i_deg": None}, "theta_i_deg: expected a number, not None"),
+        ({"theta_i_deg": None}, "report: theta_i_deg: expected a number, not NoneType"),
     ):
         with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
             mmbrdf.report(model, data, tmp_path / "report.html", **option)

@@ -14,6 +14,7 @@ have them, become float32.
 
 from __future__ import annotations
 
+from .. import _calls
 from .._pixel_fits import PixelFit, PixelModels, load_models
 from .calibration import Reference, calibrate
 from .instruments import FAILURES, PixelInstrument, join
@@ -38,3 +39,5 @@ __all__ = [
     "simulate",
     "uncertainty",
 ]
+
+_calls.tell_in_a_line(globals(), __all__, "images")

@@ -64,8 +64,8 @@ def simulate(
     repeats    references of each kind: empty, polarizers and wafers of a grid; empty alone of retarders
     noise      relative standard deviation of each reading
     """
-    if len(shape) != 2 or min(shape) < 1:
-        raise ValueError(f"shape = {tuple(shape)}, expected (y, x), each 1 or more")
+    if np.shape(shape) != (2,) or min(shape) < 1:
+        raise ValueError(f"shape = {shape!r}, expected (y, x), each 1 or more")
     random = np.random.default_rng(seed)
     retardance, turn = 1 + _varying(shape, 0.02, random), _varying(shape, 1.0, random)
     leak = 1e-4 * (1 + _varying(shape, 1.0, random)) ** 2
