@@ -56,7 +56,8 @@ def test_a_pixel_has_the_coefficients_and_covariances_of_its_own_fit(grid, value
     for one, other in zip(models[pixel].blocks, own.model.blocks, strict=True):
         scale = np.sqrt(np.diag(other.covariance))
         off = (one.covariance - other.covariance) / np.outer(scale, scale)
-        assert one.name == other.name and np.abs(off).max() < 1e-9  # the misfit is a difference of squares
+        assert one.name == other.name
+        assert np.abs(off).max() < 1e-8  # a difference of squares: rounding x samples x (f11 / noise)^2
     where = (45, 0, [0.0, 30.0], 180)
     np.testing.assert_allclose(
         models.evaluate(*where, pixel=pixel), own.model.evaluate(532, *where), rtol=0, atol=1e-12
