@@ -27,7 +27,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {}
 _SIGNATURES: dict[str, Signature] = {}
 
 
-def _is_lazy(value: Any) -> bool:
+def is_lazy(value: Any) -> bool:
     dask, xarray = sys.modules.get("dask.array"), sys.modules.get("xarray")
     return (dask is not None and isinstance(value, dask.Array)) or (
         xarray is not None and isinstance(value, xarray.DataArray)
@@ -239,7 +239,7 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
         given.pop(name, None)
     if function == "reflectance_factor" and {"row", "column"} <= set(getattr(given["f11"], "dims", ())):
         raise ValueError("f11: sixteen elements, expected one: give f.sel(row=1, column=1)")
-    misplaced = [name for name, value in given.items() if _is_lazy(value) and name not in signature.arrays]
+    misplaced = [name for name, value in given.items() if is_lazy(value) and name not in signature.arrays]
     if misplaced:
         raise TypeError(f"{misplaced[0]}: not a Dask array or an xarray.DataArray")
     _require_names(given)
@@ -248,7 +248,7 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
     arrays = {
         name: given[name]
         for name in signature.arrays
-        if given.get(name) is not None and (_is_lazy(given[name]) or np.ndim(given[name]) > 0)
+        if given.get(name) is not None and (is_lazy(given[name]) or np.ndim(given[name]) > 0)
     }
     call = Call(function, {name: value for name, value in given.items() if name not in arrays}, list(arrays))
     named = any(hasattr(value, "dims") for value in arrays.values())
@@ -316,7 +316,7 @@ def _analyze(given: dict[str, Any]) -> Any:
     if given.pop("as_xarray", False):
         raise TypeError("analyze: as_xarray is not for Dask arrays and xarray.DataArrays")
     one = {**given, **dict.fromkeys(DIRECTIONS, 0.0)}
-    if _is_lazy(one.get("wavelength_nm")) or np.ndim(one.get("wavelength_nm") or 0) > 0:
+    if is_lazy(one.get("wavelength_nm")) or np.ndim(one.get("wavelength_nm") or 0) > 0:
         one["wavelength_nm"] = given["self"].wavelengths_nm[0]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -346,7 +346,7 @@ def _wrapper(function: str, signature: Signature, original: Callable[..., Any]) 
     @functools.wraps(original)
     def wrapped(*args: Any, **kwargs: Any) -> Any:
         if ("dask.array" in sys.modules or "xarray" in sys.modules) and (
-            any(map(_is_lazy, args)) or any(map(_is_lazy, kwargs.values()))
+            any(map(is_lazy, args)) or any(map(is_lazy, kwargs.values()))
         ):
             return lazily(function, _bound(function.rsplit(".", 1)[-1], signature, args, kwargs))
         return original(*args, **kwargs)

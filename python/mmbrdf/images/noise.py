@@ -63,7 +63,7 @@ def uncertainty(
             attributes["units"] = units
         result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", attributes)
         return result.transpose(*[name for name in stack.dims if name != frame], *core)
-    if not _lazy._is_lazy(stack):
+    if not _lazy.is_lazy(stack):
         array = np.asarray(stack)
         _checked(array, own)
         return work(array)

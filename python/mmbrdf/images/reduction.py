@@ -101,7 +101,7 @@ def reduce(
         return _reduced_named(stack, own, dark, saturation, mask)
     image = ("y", "x", "frame")
     dark, mask = _plain("dark", dark, image, image[:-1]), _plain("mask", mask, image, image[:-1])
-    if _lazy._is_lazy(stack):
+    if _lazy.is_lazy(stack):
         return _reduced_lazily(stack, own, dark, saturation, mask)
     array = np.asarray(stack)
     if array.dtype.kind not in "biuf":
