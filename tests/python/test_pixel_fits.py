@@ -199,6 +199,22 @@ def test_models_are_saved_through_links_and_keep_the_mode_of_the_file(models, tm
     assert sorted(path.name for path in tmp_path.iterdir()) == ["link.nc", "target.nc"]
 
 
+def test_masked_readings_are_missing_and_masked_geometries_are_refused(grid, prepared, values):
+    hidden = np.ma.masked_array(values[0, :3], np.zeros(values[0, :3].shape, bool))
+    hidden[1, 7] = np.ma.masked
+    missing = values[0, :3].copy()
+    missing[1, 7] = np.nan
+    np.testing.assert_array_equal(prepared.fit(hidden).coefficients, prepared.fit(missing).coefficients)
+    angles = np.ma.masked_array(grid.theta_r_deg, np.arange(len(grid.theta_r_deg)) == 5)
+    for call, name in (
+        (lambda: images.PixelFit(532, (*grid[:2], angles, grid[3])), "theta_r_deg"),
+        (lambda: prepared.require_geometry((*grid[:2], angles, grid[3])), "theta_r_deg"),
+        (lambda: images.PixelFit(532, grid, weights=np.ma.masked_less(np.zeros((len(grid[0]), 4, 4)), 1)), "weights"),
+    ):
+        with pytest.raises(ValueError, match=f"^{name}: a part of it is masked; leave it out$"):
+            call()
+
+
 def test_no_pixels_are_no_models(prepared, values):
     for some, shape in ((values[:0], (0, 20)), (values[:, :0], (3, 0)), (values[0, :0], (0,))):
         none = prepared.fit(some)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _mmbrdf
+from .._arguments import nan_where_masked, unmasked
 from .._mmbrdf import Calibration
 from .instruments import FAILURES, PixelInstrument
 from .noise import _variance
@@ -40,8 +41,8 @@ def _stacks(stacks: Any) -> NDArray[np.float32]:
     """As (reference, y, x, frame), by names where there are some."""
     image = ("y", "x", "frame")
     if isinstance(stacks, list | tuple):
-        return np.asarray([_by_name("stacks", one, image) for one in stacks], np.float32)
-    return np.asarray(_by_name("stacks", stacks, ("reference", *image)), np.float32)
+        return np.asarray([nan_where_masked(_by_name("stacks", one, image)) for one in stacks], np.float32)
+    return np.asarray(nan_where_masked(_by_name("stacks", stacks, ("reference", *image))), np.float32)
 
 
 def calibrate(
@@ -86,7 +87,7 @@ def calibrate(
     array = _stacks(stacks)
     if array.ndim != 4 or array.shape[0] != len(given):
         raise ValueError(f"stacks: shape {array.shape}, expected (reference, y, x, frame) with {len(given)} references")
-    dials = None if dials_deg is None else np.asarray(dials_deg, float)
+    dials = None if dials_deg is None else np.asarray(unmasked("dials_deg", dials_deg), float)
     frames = generator_states * analyzer_states if dials is None else len(dials)
     if array.shape[-1] != frames:
         raise ValueError(f"stacks: the last axis has {array.shape[-1]} frames, expected {frames}")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _mmbrdf
+from .._arguments import nan_where_masked, unmasked
 from .._mmbrdf import Calibration, Polarimeter
 
 FAILURES = ("", "not finite", "no convergence", "misfit", "dependent states", "masked")
@@ -32,8 +33,8 @@ class PixelInstrument:
 
         Raises ValueError for shapes that do not fit each other.
         """
-        self.generator = np.asarray(generator, float)
-        self.analyzer = np.asarray(analyzer, float)
+        self.generator = np.asarray(nan_where_masked(generator), float)
+        self.analyzer = np.asarray(nan_where_masked(analyzer), float)
         for name, array in (("generator", self.generator), ("analyzer", self.analyzer)):
             if array.ndim != 4 or array.shape[-1] != 4:
                 raise ValueError(f"{name}: shape {array.shape}, expected (y, x, states, 4)")
@@ -41,7 +42,7 @@ class PixelInstrument:
             raise ValueError(
                 f"generator: {self.generator.shape[:2]} pixels, analyzer: {self.analyzer.shape[:2]}: axes y and x differ"
             )
-        self.pairs = None if pairs is None else np.asarray(pairs, np.int64)
+        self.pairs = None if pairs is None else np.asarray(unmasked("pairs", pairs), np.int64)
         values = values or {}
         self.misfit = values.get("misfit")
         """(y, x): chi squared per degree of freedom."""

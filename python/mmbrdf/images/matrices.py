@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _mmbrdf
+from .._arguments import nan_where_masked
 from .._mmbrdf import Polarimeter
 from .instruments import PixelInstrument, _Instrument, _polarimeter
 from .stacks import _by_name
@@ -21,7 +22,7 @@ def readings(mueller: ArrayLike, instrument: _Instrument) -> NDArray[np.float64]
     own = _polarimeter(instrument)
     if isinstance(own, PixelInstrument):
         mueller = _by_name("mueller", mueller, ("y", "x", "row", "column"))
-    m = np.asarray(mueller, float)
+    m = np.asarray(nan_where_masked(mueller), float)
     if isinstance(own, Polarimeter):
         return np.asarray(own.readings(m)).reshape(*m.shape[:-2], -1)
     if m.shape != (*own.shape, 4, 4):

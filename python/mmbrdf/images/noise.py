@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lazy, _mmbrdf
-from .._arguments import number
+from .._arguments import nan_where_masked, number
 from .._mmbrdf import Polarimeter
 from .instruments import PixelInstrument, _core_shape, _Instrument, _polarimeter
 from .stacks import _ROWS_AT_ONCE, _checked, _named_axes
@@ -64,7 +64,7 @@ def uncertainty(
         result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", attributes)
         return result.transpose(*[name for name in stack.dims if name != frame], *core)
     if not _lazy.is_lazy(stack):
-        array = np.asarray(stack)
+        array = nan_where_masked(stack)
         _checked(array, own)
         return work(array)
     import dask.array
@@ -83,6 +83,7 @@ class _Noise:
         self.own, self.noise, self.quantity = own, noise, quantity
 
     def __call__(self, stack: NDArray[Any]) -> NDArray[Any]:
+        stack = nan_where_masked(stack)
         outer, frames = stack.shape[:-1], stack.shape[-1]
         result = np.empty(outer if self.quantity else (*outer, 4, 4), np.float32)
         flat, out = stack.reshape(-1, frames), result.reshape(-1) if self.quantity else result.reshape(-1, 16)

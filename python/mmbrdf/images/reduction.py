@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _lazy, _mmbrdf
+from .._arguments import nan_where_masked
 from .._mmbrdf import Polarimeter
 from .instruments import PixelInstrument, _core_shape, _Instrument, _polarimeter
 from .stacks import _ROWS_AT_ONCE, _checked, _dark_for, _mask_for, _named_axes, _plain, _saturation
@@ -88,8 +89,8 @@ def reduce(
     mask        truth values (y, x): False is not reduced, and NaN
     progress    of a numpy array: such as tqdm.tqdm, which is given what is gone through. Dask has its own
 
-    Result: float32, or float64 of a stack of float64 by one instrument. A pixel with a reading that is not finite, or
-    without calibration, is NaN. A DataArray gives one with its coordinates, in its order of axes, a Dask array one that is
+    Result: float32, or float64 of a stack of float64 by one instrument. A pixel with a reading that is not finite or is
+    masked, or without calibration, is NaN. A DataArray gives one with its coordinates, in its order of axes, a Dask array one that is
     lazy. Names count and not the order: dark and mask may have names, too, and without them have the order of the stack;
     with an instrument for each pixel the axes must be called y and x, and frames "frame" or come last.
     Raises ValueError, naming axis and sizes, for another number of frames or pixels than the instrument has, and for
@@ -103,7 +104,7 @@ def reduce(
     dark, mask = _plain("dark", dark, image, image[:-1]), _plain("mask", mask, image, image[:-1])
     if _lazy.is_lazy(stack):
         return _reduced_lazily(stack, own, dark, saturation, mask)
-    array = np.asarray(stack)
+    array = nan_where_masked(stack)
     if array.dtype.kind not in "biuf":
         raise TypeError(f"stack: expected real numbers, not {array.dtype}")
     _checked(array, own)
@@ -155,7 +156,11 @@ class _Block:
         self.pairs: NDArray[Any] | None = None
 
     def __call__(self, stack: NDArray[Any], *more: NDArray[Any]) -> NDArray[Any]:
-        given = dict(zip(self.names, more))
+        stack = nan_where_masked(stack)
+        given = {
+            name: nan_where_masked(one) if name == "dark" else np.ma.filled(one, False)
+            for name, one in zip(self.names, more)
+        }
         own: Polarimeter | PixelInstrument
         before = _mmbrdf._limit_threads(1)
         try:

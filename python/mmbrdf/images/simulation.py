@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _mmbrdf
+from .._arguments import unmasked
 from .calibration import Reference
 from .instruments import PixelInstrument
 from .matrices import readings
@@ -83,7 +84,7 @@ def simulate(
         grid = np.array([-51.69, -15.12, 15.12, 51.69])
         generator, analyzer = states(grid, 131.81)
     else:
-        turned = np.asarray(dials_deg, float)
+        turned = np.asarray(unmasked("dials_deg", dials_deg), float)
         generator, analyzer = states(turned[:, 0], 90.0)[0], states(turned[:, 1], 90.0)[1]
         pairs = np.stack([np.arange(len(turned))] * 2, axis=1)
     analyzer = analyzer * bright[..., None, None]
