@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import functools
 import sys
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -18,6 +17,7 @@ import numpy as np
 
 from . import _mmbrdf
 from ._signatures import DIRECTIONS, MATRIX, Signature, signatures
+from ._stand_ins import shortened, stand_in, tried
 
 _SIZES = {"row": 4, "column": 4, "stokes": 4, "component": 3, "eigenvalue": 4, "part": 4, "coherency": 16}
 _SIZES |= {"element": 16, "element_2": 16}
@@ -53,15 +53,27 @@ class Call:
         return np.moveaxis(values, 0, -len(signature.outputs[0])) if signature.leading else values
 
 
-def _bound(name: str, signature: Signature, args: Sequence[Any], kwargs: Mapping[str, Any]) -> dict[str, Any]:
-    """All arguments by their names."""
-    if len(args) > len(signature.parameters):
-        raise TypeError(f"{name}() takes {len(signature.parameters)} arguments, not {len(args)}")
+def _bound(signature: Signature, args: Sequence[Any], kwargs: Mapping[str, Any]) -> dict[str, Any] | None:
+    """All arguments by their names, and the directions of a geometry by theirs. None: they are too many, or not such."""
     given = dict(zip(signature.parameters, args))
-    twice = sorted(given.keys() & kwargs.keys())
-    if twice:
-        raise TypeError(f"{name}() got {twice[0]} twice")
-    return {**given, **kwargs}
+    if len(args) > len(signature.parameters) or given.keys() & kwargs.keys():
+        return None
+    given.update(kwargs)
+    if "geometry" in signature.parameters:
+        geometry = given.pop("geometry", ())
+        if len(geometry) != len(DIRECTIONS):
+            return None
+        given.update(zip(DIRECTIONS, geometry))
+        if np.ndim(given.get("wavelength_nm")) == 0 and is_lazy(given.get("wavelength_nm")):
+            given["wavelength_nm"] = float(given["wavelength_nm"])
+    return given
+
+
+def _has_lazy(value: Any) -> bool:
+    """It is one, or a geometry with one."""
+    return is_lazy(value) or (
+        isinstance(value, (tuple, list)) and len(value) == len(DIRECTIONS) and any(map(is_lazy, value))
+    )
 
 
 def _core(argument: str, value: Any, names: Sequence[str]) -> tuple[str, ...]:
@@ -127,7 +139,7 @@ def _of_dask(call: Call, arrays: Mapping[str, Any], signature: Signature, sizes:
         call,
         f"{','.join(inputs)}->{','.join(outputs)}",
         *_in_equal_chunks(list(arrays.values()), [len(signature.arrays[name]) for name in arrays]),
-        output_dtypes=[signature.dtype] * len(outputs) if several else signature.dtype,
+        output_dtypes=list(signature.dtypes) if several else signature.dtype,
         output_sizes=_sizes(new, sizes),
     )
 
@@ -157,7 +169,7 @@ def _of_named(call: Call, arrays: Mapping[str, Any], signature: Signature, sizes
         input_core_dims=cores,
         output_core_dims=outputs,
         dask="parallelized",
-        output_dtypes=[signature.dtype] * len(outputs),
+        output_dtypes=list(signature.dtypes),
         dask_gufunc_kwargs={"output_sizes": {n: s for n, s in sized.items() if n not in used}},
         keep_attrs=True,
     )
@@ -207,6 +219,8 @@ def _shaped(function: str, signature: Signature, given: dict[str, Any]) -> tuple
         return signature._replace(outputs=(core,)), dict(zip(core, counts))
     argument = next(iter(signature.arrays))
     value = given.get(argument)
+    if value is None:
+        return signature, {}
     own_names = _core(argument, value, core)
     lengths = [value.sizes[n] for n in own_names] if hasattr(value, "dims") else np.shape(value)[-len(core) :]
     if tuple(lengths) != counts:
@@ -216,33 +230,45 @@ def _shaped(function: str, signature: Signature, given: dict[str, Any]) -> tuple
     return signature._replace(arrays={argument: core}, dtype=dtype), dict(zip(core, counts))
 
 
-def _require_names(given: Mapping[str, Any]) -> None:
-    """Frames and conventions that there are not are refused at once, and not when it is computed."""
-    for name in ("frame", "from_frame", "to_frame"):
-        if name in given:
-            _FUNCTIONS["change_frame"](np.eye(4), 0.0, 0.0, 0.0, 0.0, given[name], given[name])
-    for name in ("from_convention", "to_convention"):
-        if name in given:
-            _FUNCTIONS["convert"](np.eye(4), given[name], given[name])
-
-
-def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None = None) -> Any:
-    """The function of arguments of which some are Dask arrays or DataArrays."""
-    if function == "Model.analyze":
-        return _analyze(given)
-    signature = _SIGNATURES[function]
-    if given.get("uncertainty") and function in _TOGETHER:
-        return _together(function, given)
+def _require_supported(function: str, signature: Signature, given: dict[str, Any]) -> None:
+    """Refuses what lazy arrays are not for, and takes away what was said of it."""
     for name in ("out", "as_xarray", "by_term", "uncertainty"):
         if given.get(name) is not None and given[name] is not False:
             raise TypeError(f"{function.rsplit('.', 1)[-1]}: {name} is not for Dask arrays and xarray.DataArrays")
         given.pop(name, None)
     if function == "reflectance_factor" and {"row", "column"} <= set(getattr(given["f11"], "dims", ())):
         raise ValueError("f11: sixteen elements, expected one: give f.sel(row=1, column=1)")
+    _require_placed(signature, given)
+
+
+def _require_placed(signature: Signature, given: Mapping[str, Any]) -> None:
     misplaced = [name for name, value in given.items() if is_lazy(value) and name not in signature.arrays]
     if misplaced:
         raise TypeError(f"{misplaced[0]}: not a Dask array or an xarray.DataArray")
-    _require_names(given)
+
+
+def _tried(function: str, signature: Signature, given: Mapping[str, Any]) -> Any:
+    """What the eager call gives of numbers in the place of lazy arrays; raises what that raises."""
+    _require_placed(signature, given)
+    known: Mapping[str, int] = {}
+    if function.startswith("Polarimeter."):
+        signature, known = _shaped(function, signature, given)
+    asked = {}
+    for name, value in given.items():
+        core = signature.arrays.get(name, ())
+        sizes = {**_SIZES, **known}
+        asked[name] = stand_in(name, value, core, sizes, given) if is_lazy(value) else value
+        if name in signature.arrays and not is_lazy(value):
+            asked[name] = shortened(value, core)
+    return tried(_FUNCTIONS[function], asked)
+
+
+def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None = None) -> Any:
+    """The function of arguments of which some are Dask arrays or DataArrays."""
+    signature = _SIGNATURES[function]
+    if given.get("uncertainty") and function in _TOGETHER:
+        return _together(function, given)
+    _require_supported(function, signature, given)
     signature, known = _shaped(function, signature, given)
     sizes = {**known, **(sizes or {})}
     arrays = {
@@ -254,28 +280,34 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
     named = any(hasattr(value, "dims") for value in arrays.values())
     result = (_of_named if named else _of_dask)(call, arrays, signature, sizes)
     if signature.leading:
-        first = signature.outputs[0][0]
-        if named:
-            result = result.transpose(first, ...)
-        else:
-            import dask.array
-
-            result = dask.array.moveaxis(result, -len(signature.outputs[0]), 0)
-    several = len(signature.outputs) > 1
+        result = _first_axis_first(result, signature, named)
+    parts = result if len(signature.outputs) > 1 else (result,)
     if named:
-        parts = result if several else (result,)
-        labelled = [_named_result(function, part, signature, given) for part in parts]
-        result = labelled if several else labelled[0]
-    if not several:
-        return result
+        parts = tuple(_named_result(function, part, signature, given) for part in parts)
+    if len(parts) == 1:
+        return parts[0]
     record = getattr(sys.modules[__package__], signature.record or "")
     if named:
-        for name, part in zip(record._fields, result):
+        for name, part in zip(record._fields, parts):
             part.name = name
-    return record(*result)
+    return record(*parts)
 
 
-_TOGETHER = ("Model.evaluate", "Model.reflectance_factor")
+def _first_axis_first(result: Any, signature: Signature, named: bool) -> Any:
+    core = signature.outputs[0]
+    if named:
+        return result.transpose(core[0], ...)
+    import dask.array
+
+    return dask.array.moveaxis(result, -len(core), 0)
+
+
+_TOGETHER = {
+    "Model.evaluate": "Model.evaluate_uncertainty",
+    "Model.reflectance_factor": "Model.reflectance_factor_uncertainty",
+    "polarized_curve": "polarized_uncertainty",
+}
+"""u of them."""
 
 
 def _together(function: str, given: dict[str, Any]) -> Any:
@@ -283,8 +315,9 @@ def _together(function: str, given: dict[str, Any]) -> Any:
     from . import Evaluation
 
     asked = {name: value for name, value in given.items() if name not in ("uncertainty", "terms")}
-    where = {name: asked[name] for name in ("self", "wavelength_nm", *DIRECTIONS, "invalid") if name in asked}
-    u = lazily(f"{function}_uncertainty", {**asked, "terms": given.get("terms")})
+    where = {name: asked[name] for name in ("wavelength_nm", *DIRECTIONS, "invalid") if name in asked}
+    where["self"] = asked.get("self", asked.get("model"))
+    u = lazily(_TOGETHER[function], {**asked, "terms": given.get("terms")})
     return Evaluation(lazily(function, asked), u, lazily("Model.outside", where))
 
 
@@ -309,18 +342,12 @@ def _analyzed(**arguments: Any) -> Any:
     return np.stack([np.asarray(_number(answer, place)) for place in _fields(answer)], axis=-1)
 
 
-def _analyze(given: dict[str, Any]) -> Any:
-    """All numbers as one array with another axis, of which each is a part."""
+def _analyze(given: dict[str, Any], like: Mapping[str, Any]) -> Any:
+    """All numbers as one array with another axis, of which each is a part; those of one geometry are like them."""
     from . import Analyzed
 
     if given.pop("as_xarray", False):
         raise TypeError("analyze: as_xarray is not for Dask arrays and xarray.DataArrays")
-    one = {**given, **dict.fromkeys(DIRECTIONS, 0.0)}
-    if is_lazy(one.get("wavelength_nm")) or np.ndim(one.get("wavelength_nm") or 0) > 0:
-        one["wavelength_nm"] = given["self"].wavelengths_nm[0]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        like = _FUNCTIONS["Model.analyze"](**one)
     places = _fields(like)
     stacked = lazily("Model._analyzed", given, {"number": len(places)})
     at = {place: stacked[..., i] for i, place in enumerate(places)}
@@ -343,12 +370,18 @@ def _analyze(given: dict[str, Any]) -> Any:
 
 
 def _wrapper(function: str, signature: Signature, original: Callable[..., Any]) -> Callable[..., Any]:
+    has_lazy = _has_lazy if "geometry" in signature.parameters else is_lazy
+
     @functools.wraps(original)
     def wrapped(*args: Any, **kwargs: Any) -> Any:
         if ("dask.array" in sys.modules or "xarray" in sys.modules) and (
-            any(map(is_lazy, args)) or any(map(is_lazy, kwargs.values()))
+            any(map(has_lazy, args)) or any(map(has_lazy, kwargs.values()))
         ):
-            return lazily(function, _bound(function.rsplit(".", 1)[-1], signature, args, kwargs))
+            given = _bound(signature, args, kwargs)
+            if given is None:
+                return original(*args, **kwargs)  # which says what is wrong
+            like = _tried(function, signature, given)
+            return _analyze(given, like) if function == "Model.analyze" else lazily(function, given)
         return original(*args, **kwargs)
 
     return wrapped
@@ -368,10 +401,29 @@ def install(package: dict[str, Any]) -> None:
             _FUNCTIONS[function] = functools.partial(_method_call, original)
             setattr(kind, name, _wrapper(function, signature, original))
         else:
-            original = _FUNCTIONS[function] = package[name]
+            original = package[name]
+            _FUNCTIONS[function] = _of_geometry(original) if "geometry" in signature.parameters else original
             package[name] = _wrapper(function, signature, original)
             if getattr(_mmbrdf, name, None) is original:
                 setattr(_mmbrdf, name, package[name])  # where pickles look for it
+
+
+def _of_geometry(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function of four arrays of directions of any shape, which its results have, too."""
+
+    @functools.wraps(function)
+    def call(**arguments: Any) -> Any:
+        directions = np.broadcast_arrays(*(arguments.pop(name) for name in DIRECTIONS), subok=True)
+        found = function(geometry=[one.ravel() for one in directions], **arguments)
+        return _reshaped(found, directions[0].shape)
+
+    return call
+
+
+def _reshaped(found: Any, shape: tuple[int, ...]) -> Any:
+    return (
+        type(found)(*(_reshaped(one, shape) for one in found)) if isinstance(found, tuple) else np.reshape(found, shape)
+    )
 
 
 def _method_call(method: Callable[..., Any], *, self: Any, **arguments: Any) -> Any:

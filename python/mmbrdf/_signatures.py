@@ -26,11 +26,16 @@ class Signature(NamedTuple):
     record: str | None = None
     """The named tuple of several results."""
     dtype: Any = float
+    """Of the result; of several results one for all, or those of each."""
     units: str | None = None
     """Of the result; None: those of the argument."""
     meaning: str | None = None
     leading: bool = False
     """The first of the names in `outputs` is the first axis."""
+
+    @property
+    def dtypes(self) -> tuple[Any, ...]:
+        return self.dtype if isinstance(self.dtype, tuple) else (self.dtype,) * len(self.outputs)
 
 
 def _matrix(*outputs: tuple[str, ...], **more: Any) -> Signature:
@@ -82,6 +87,14 @@ def signatures() -> dict[str, Signature]:
     for name, arguments in {"polarizer": ("azimuth_deg", "extinction"), "rotator": ("angle_deg",)}.items():
         result[name] = Signature(arguments, dict.fromkeys(arguments, ()), (MATRIX,), units="")
     arguments = ("retardance_deg", "azimuth_deg")
+    for name in ("polarized_curve", "polarized_uncertainty"):
+        result[name] = Signature(
+            ("model", "wavelength_nm", "geometry"),
+            dict.fromkeys(DIRECTIONS, ()),
+            ((),) * 4,
+            "PolarizedBrdf",
+            units="sr-1",
+        )
     result["retarder"] = Signature(arguments, dict.fromkeys(arguments, ()), (MATRIX,), units="")
     return result | _reflectances() | _methods()
 
@@ -113,6 +126,7 @@ def _methods() -> dict[str, Signature]:
         "Model.outside": _question((), dtype=np.uint8),
         "Model.estimable": _question((), dtype=bool),
         "Model.evaluate_draws": _question(("draw", *MATRIX), first=("self", "count", "seed"), leading=True),
+        "Model.predict_readings": _question(MATRIX, MATRIX, (), record="Evaluation", dtype=(float, float, np.uint8)),
         "Model.analyze": _question(()),
         "Model._analyzed": _question(("number",)),
         "DirectionSampler.sample": Signature(
