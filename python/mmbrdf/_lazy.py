@@ -10,47 +10,15 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from . import _mmbrdf
+from ._chunks import FUNCTIONS, SIGNATURES, SIZES, Call, core_of, is_lazy, of_dask, of_named
 from ._signatures import DIRECTIONS, MATRIX, Signature, signatures
 from ._stand_ins import shortened, stand_in, tried
-
-_SIZES = {"row": 4, "column": 4, "stokes": 4, "component": 3, "eigenvalue": 4, "part": 4, "coherency": 16}
-_SIZES |= {"element": 16, "element_2": 16}
-
-
-_FUNCTIONS: dict[str, Callable[..., Any]] = {}
-_SIGNATURES: dict[str, Signature] = {}
-
-
-def is_lazy(value: Any) -> bool:
-    dask, xarray = sys.modules.get("dask.array"), sys.modules.get("xarray")
-    return (dask is not None and isinstance(value, dask.Array)) or (
-        xarray is not None and isinstance(value, xarray.DataArray)
-    )
-
-
-class Call:
-    """A call of a function by its name, with all arguments but arrays: it can be sent to another process."""
-
-    def __init__(self, function: str, fixed: Mapping[str, Any], arrays: Sequence[str]):
-        self.function, self.fixed, self.arrays = function, dict(fixed), tuple(arrays)
-
-    def __call__(self, *arrays: Any) -> Any:
-        signature = _SIGNATURES[self.function]
-        before = _mmbrdf._limit_threads(1)
-        try:
-            result = _FUNCTIONS[self.function](**self.fixed, **dict(zip(self.arrays, arrays, strict=True)))
-        finally:
-            _mmbrdf._limit_threads(before)
-        if len(signature.outputs) > 1:
-            return tuple(map(np.asarray, result))
-        values = np.asarray(result)
-        return np.moveaxis(values, 0, -len(signature.outputs[0])) if signature.leading else values
 
 
 def _bound(signature: Signature, args: Sequence[Any], kwargs: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -61,7 +29,7 @@ def _bound(signature: Signature, args: Sequence[Any], kwargs: Mapping[str, Any])
     given.update(kwargs)
     if "geometry" in signature.parameters:
         geometry = given.pop("geometry", ())
-        if len(geometry) != len(DIRECTIONS):
+        if not hasattr(geometry, "__len__") or len(geometry) != len(DIRECTIONS):
             return None
         given.update(zip(DIRECTIONS, geometry))
         if np.ndim(given.get("wavelength_nm")) == 0 and is_lazy(given.get("wavelength_nm")):
@@ -73,105 +41,6 @@ def _has_lazy(value: Any) -> bool:
     """It is one, or a geometry with one."""
     return is_lazy(value) or (
         isinstance(value, (tuple, list)) and len(value) == len(DIRECTIONS) and any(map(is_lazy, value))
-    )
-
-
-def _core(argument: str, value: Any, names: Sequence[str]) -> tuple[str, ...]:
-    """What the last axes of an argument are called: by these names if it has them, else its last ones."""
-    dims = getattr(value, "dims", None)
-    if dims is None:
-        return tuple(names)
-    if len(dims) < len(names):
-        raise ValueError(f"{argument}: dimensions {dims}, expected {len(names)} more of matrices: {', '.join(names)}")
-    own = tuple(names) if set(names) <= set(dims) else tuple(dims[len(dims) - len(names) :])
-    for own_name, expected in zip(own, names):
-        if expected in _SIZES and value.sizes[own_name] != _SIZES[expected]:
-            raise ValueError(
-                f"{argument}: axis {own_name!r} has {value.sizes[own_name]} places, expected {_SIZES[expected]}"
-            )
-    return own
-
-
-def require_whole(argument: str, value: Any, core: Sequence[str]) -> None:
-    """Refuses chunks that cut one of the last axes, with the call that joins them."""
-    chunks = getattr(value, "chunks", None)
-    if not chunks or not core:
-        return
-    dims = getattr(value, "dims", None)
-    for k, name in enumerate(core):
-        axis = dims.index(name) if dims else len(chunks) - len(core) + k
-        if len(chunks[axis]) > 1:
-            joined = (
-                f".chunk({{{', '.join(f'{one!r}: -1' for one in core)}}})"
-                if dims
-                else f".rechunk({{{', '.join(f'{j - len(core)}: -1' for j in range(len(core)))}}})"
-            )
-            raise ValueError(f"{argument}: chunks {chunks[axis]} cut the axis {name!r}: join them, {argument}{joined}")
-
-
-def _sizes(names: Iterable[str], sizes: Mapping[str, int]) -> dict[str, int]:
-    return {name: sizes.get(name, _SIZES.get(name, 0)) for name in names}
-
-
-def _in_equal_chunks(values: list[Any], cores: list[int]) -> list[Any]:
-    """Arrays that are cut at the same places, but for their last axes."""
-    import dask.array
-
-    arrays = [dask.array.asarray(value) for value in values]
-    where: list[Any] = []
-    for array, core in zip(arrays, cores):
-        outer = array.ndim - core
-        where += [array, [j - outer for j in range(outer)] + [f"core {len(where)} {j}" for j in range(core)]]
-    return list(dask.array.core.unify_chunks(*where, warn=False)[1])
-
-
-def _of_dask(call: Call, arrays: Mapping[str, Any], signature: Signature, sizes: Mapping[str, int]) -> Any:
-    import dask.array
-
-    inputs = [f"({','.join(signature.arrays[name])})" for name in arrays]
-    outputs = [f"({','.join(names)})" for names in signature.outputs]
-    known = {name for argument in arrays for name in signature.arrays[argument]}
-    new = [name for names in signature.outputs for name in names if name not in known]
-    for name, value in arrays.items():
-        require_whole(name, value, signature.arrays[name])
-    several = len(outputs) > 1
-    return dask.array.apply_gufunc(
-        call,
-        f"{','.join(inputs)}->{','.join(outputs)}",
-        *_in_equal_chunks(list(arrays.values()), [len(signature.arrays[name]) for name in arrays]),
-        output_dtypes=list(signature.dtypes) if several else signature.dtype,
-        output_sizes=_sizes(new, sizes),
-    )
-
-
-def _of_named(call: Call, arrays: Mapping[str, Any], signature: Signature, sizes: Mapping[str, int]) -> Any:
-    import xarray
-
-    cores = []
-    renamed: dict[str, str] = {}
-    for name, value in arrays.items():
-        core = _core(name, value, signature.arrays[name])
-        if not hasattr(value, "dims") and np.ndim(value) > len(core):
-            raise TypeError(f"{name}: an array without names beside an xarray.DataArray: make it one")
-        require_whole(name, value, core)
-        renamed.update(zip(signature.arrays[name], core))
-        cores.append(core)
-    outputs = [tuple(renamed.get(name, name) for name in names) for names in signature.outputs]
-    used = {name for core in cores for name in core}
-    sized = {renamed.get(n, n): size for n, size in _sizes((n for o in signature.outputs for n in o), sizes).items()}
-    values = list(arrays.values())
-    named = [i for i, value in enumerate(values) if hasattr(value, "dims")]
-    for i, value in zip(named, xarray.unify_chunks(*[values[i] for i in named])):
-        values[i] = value
-    return xarray.apply_ufunc(
-        call,
-        *values,
-        input_core_dims=cores,
-        output_core_dims=outputs,
-        dask="parallelized",
-        output_dtypes=list(signature.dtypes),
-        dask_gufunc_kwargs={"output_sizes": {n: s for n, s in sized.items() if n not in used}},
-        keep_attrs=True,
     )
 
 
@@ -221,7 +90,7 @@ def _shaped(function: str, signature: Signature, given: dict[str, Any]) -> tuple
     value = given.get(argument)
     if value is None:
         return signature, {}
-    own_names = _core(argument, value, core)
+    own_names = core_of(argument, value, core)
     lengths = [value.sizes[n] for n in own_names] if hasattr(value, "dims") else np.shape(value)[-len(core) :]
     if tuple(lengths) != counts:
         raise ValueError(f"{argument}: last axes {tuple(lengths)}, the instrument has {counts} ({', '.join(core)})")
@@ -256,16 +125,16 @@ def _tried(function: str, signature: Signature, given: Mapping[str, Any]) -> Any
     asked = {}
     for name, value in given.items():
         core = signature.arrays.get(name, ())
-        sizes = {**_SIZES, **known}
+        sizes = {**SIZES, **known}
         asked[name] = stand_in(name, value, core, sizes, given) if is_lazy(value) else value
         if name in signature.arrays and not is_lazy(value):
             asked[name] = shortened(value, core)
-    return tried(_FUNCTIONS[function], asked)
+    return tried(FUNCTIONS[function], asked)
 
 
 def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None = None) -> Any:
     """The function of arguments of which some are Dask arrays or DataArrays."""
-    signature = _SIGNATURES[function]
+    signature = SIGNATURES[function]
     if given.get("uncertainty") and function in _TOGETHER:
         return _together(function, given)
     _require_supported(function, signature, given)
@@ -278,7 +147,7 @@ def lazily(function: str, given: dict[str, Any], sizes: Mapping[str, int] | None
     }
     call = Call(function, {name: value for name, value in given.items() if name not in arrays}, list(arrays))
     named = any(hasattr(value, "dims") for value in arrays.values())
-    result = (_of_named if named else _of_dask)(call, arrays, signature, sizes)
+    result = (of_named if named else of_dask)(call, arrays, signature, sizes)
     if signature.leading:
         result = _first_axis_first(result, signature, named)
     parts = result if len(signature.outputs) > 1 else (result,)
@@ -338,7 +207,7 @@ def _number(answer: Mapping[str, Any], place: tuple[str, str]) -> Any:
 
 
 def _analyzed(**arguments: Any) -> Any:
-    answer = _FUNCTIONS["Model.analyze"](**arguments)
+    answer = FUNCTIONS["Model.analyze"](**arguments)
     return np.stack([np.asarray(_number(answer, place)) for place in _fields(answer)], axis=-1)
 
 
@@ -389,20 +258,20 @@ def _wrapper(function: str, signature: Signature, original: Callable[..., Any]) 
 
 def install(package: dict[str, Any]) -> None:
     """Wraps the functions of the package, and the methods of its classes."""
-    _SIGNATURES.update(signatures())
-    _FUNCTIONS["Model._analyzed"] = _analyzed
-    for function, signature in _SIGNATURES.items():
+    SIGNATURES.update(signatures())
+    FUNCTIONS["Model._analyzed"] = _analyzed
+    for function, signature in SIGNATURES.items():
         owner, _, name = function.rpartition(".")
         if name.startswith("_"):
             continue
         if owner:
             kind = package[owner]
             original = vars(kind)[name]
-            _FUNCTIONS[function] = functools.partial(_method_call, original)
+            FUNCTIONS[function] = functools.partial(_method_call, original)
             setattr(kind, name, _wrapper(function, signature, original))
         else:
             original = package[name]
-            _FUNCTIONS[function] = _of_geometry(original) if "geometry" in signature.parameters else original
+            FUNCTIONS[function] = _of_geometry(original) if "geometry" in signature.parameters else original
             package[name] = _wrapper(function, signature, original)
             if getattr(_mmbrdf, name, None) is original:
                 setattr(_mmbrdf, name, package[name])  # where pickles look for it

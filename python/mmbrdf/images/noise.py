@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _lazy, _mmbrdf
+from .. import _chunks, _mmbrdf
 from .._arguments import nan_where_masked, number
 from .._mmbrdf import Polarimeter
 from .instruments import PixelInstrument, _core_shape, _Instrument, _polarimeter
@@ -63,14 +63,14 @@ def uncertainty(
             attributes["units"] = units
         result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", attributes)
         return result.transpose(*[name for name in stack.dims if name != frame], *core)
-    if not _lazy.is_lazy(stack):
+    if not _chunks.is_lazy(stack):
         array = nan_where_masked(stack)
         _checked(array, own)
         return work(array)
     import dask.array
 
     _checked(stack, own)
-    _lazy.require_whole("stack", stack, ("frame",))
+    _chunks.require_whole("stack", stack, ("frame",))
     if isinstance(own, PixelInstrument):
         raise TypeError("stack: uncertainties of a PixelInstrument take numpy arrays: go through rows of the image")
     core = "" if quantity else "row,column"

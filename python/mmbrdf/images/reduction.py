@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _lazy, _mmbrdf
+from .. import _chunks, _mmbrdf
 from .._arguments import nan_where_masked
 from .._mmbrdf import Polarimeter
 from .instruments import PixelInstrument, _core_shape, _Instrument, _polarimeter
@@ -102,7 +102,7 @@ def reduce(
         return _reduced_named(stack, own, dark, saturation, mask)
     image = ("y", "x", "frame")
     dark, mask = _plain("dark", dark, image, image[:-1]), _plain("mask", mask, image, image[:-1])
-    if _lazy.is_lazy(stack):
+    if _chunks.is_lazy(stack):
         return _reduced_lazily(stack, own, dark, saturation, mask)
     array = nan_where_masked(stack)
     if array.dtype.kind not in "biuf":
@@ -115,7 +115,7 @@ def _reduced_lazily(stack: Any, own: Polarimeter | PixelInstrument, dark: Any, s
     import dask.array
 
     _checked(stack, own)
-    _lazy.require_whole("stack", stack, ("frame",))
+    _chunks.require_whole("stack", stack, ("frame",))
     given = [dask.array.asarray(stack)]
     signature = ["(frame)"]
     dark, mask = _dark_for(dark, stack), _mask_for(mask, stack)
@@ -180,7 +180,7 @@ def _reduced_named(stack: xarray.DataArray, own: Any, dark: Any, saturation: Any
     import xarray
 
     outer, frame = _named_axes(stack, own)
-    _lazy.require_whole("stack", stack, (str(frame),))
+    _chunks.require_whole("stack", stack, (str(frame),))
     ordered = stack.transpose(*outer, frame)
     given = tuple(name for name in stack.dims if name != frame)
     plain = [_plain(name, array, (*outer, frame), given) for name, array in (("dark", dark), ("mask", mask))]
