@@ -333,6 +333,8 @@ def told_in_a_line(name: str, module: str | None = None) -> Callable[[F], F]:
                 raise TypeError(f"{name}: {wrong}")
             return function(*given, **named)
 
+        del call.__wrapped__  # type: ignore[attr-defined]
+        call.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]
         call.__module__ = module or function.__module__
         return call  # type: ignore[return-value]
 
