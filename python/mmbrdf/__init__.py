@@ -21,10 +21,11 @@ from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
 
-from . import _asking, _calls, _lazy, _mmbrdf, _summaries
+from . import _asking, _calls, _comparing, _lazy, _mmbrdf, _summaries
 
 _calls.install(_mmbrdf, _asking.answering(_mmbrdf))
 _asking.install(_mmbrdf)
+_comparing.install(_mmbrdf)
 _summaries.install(_mmbrdf)
 
 from ._mmbrdf import *  # noqa: F403: the names of the library
@@ -127,6 +128,7 @@ class SymmetricDecomposition(_NamedTuple):
     diattenuator1: _Array
 
 
+@_calls.told_in_a_line("load")
 def load(path: str | _os.PathLike[str]) -> Model | Dataset:
     """A Model from a model file or published coefficients, a Dataset from a file of samples.
 
@@ -136,6 +138,7 @@ def load(path: str | _os.PathLike[str]) -> Model | Dataset:
     return read_samples(path) if _holds_samples(path) else load_model(path)
 
 
+@_calls.told_in_a_line("report")
 def _write_report(
     model: Model | None,
     data: Dataset | None,

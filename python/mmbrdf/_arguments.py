@@ -20,9 +20,24 @@ def require(name: str, value: Any, *kinds: type) -> None:
         raise TypeError(f"{name}: expected {expected}, not {type(value).__name__}{hint}")
 
 
+def unmasked(name: str, value: Any) -> Any:
+    """The argument called ``name``. Raises ValueError where something of it is masked: it would count."""
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name}: a part of it is masked; leave it out")
+    return value
+
+
+def nan_where_masked(value: Any, dtype: Any = np.float32) -> np.ndarray:
+    """As an array, with nan for what is masked: of integers as one of this type."""
+    if not np.ma.is_masked(value):
+        return np.asarray(value)
+    array = np.ma.asanyarray(value)
+    return np.asarray(array.astype(array.dtype if array.dtype.kind in "fc" else dtype).filled(np.nan))
+
+
 def number(name: str, value: Any) -> float:
     """The argument called ``name`` as a finite number. Raises TypeError for another thing, ValueError for nan and inf."""
-    array = np.asarray(value)
+    array = np.asarray(unmasked(name, value))
     if array.ndim > 0 or array.dtype.kind not in "iuf":
         raise TypeError(f"{name}: expected a number, not {value!r}"[:200])
     if not np.isfinite(array):

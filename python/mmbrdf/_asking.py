@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _calls
+from ._arguments import nan_where_masked
 from ._results import Evaluation, Outside
 from ._warnings import ExtrapolationWarning
 
@@ -254,13 +255,32 @@ def _documentation(function: Callable[..., Any], question: Question) -> tuple[st
     return "\n".join([signature, rest.rstrip(), "", *(_MORE[name] for name in more)]), more
 
 
+def _taking_masks(function: Callable[..., Any], name: str) -> Callable[..., Any]:
+    """A function of matrices or readings, which are nan where they are masked if it is asked with invalid="nan"."""
+    if "invalid" not in getattr(getattr(function, "__signature__", None), "parameters", ()):
+        return function
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        if named.get("invalid") == "nan" or any(isinstance(one, str) and one == "nan" for one in given):
+            given = tuple(map(_filled, given))
+            named = {key: _filled(one) for key, one in named.items()}
+        return function(*given, **named)
+
+    return _calls.dressed(call, name, function.__doc__ or "")
+
+
+def _filled(value: Any) -> Any:
+    return nan_where_masked(value) if np.ma.is_masked(value) else value
+
+
 def answering(compiled: Any) -> Callable[[Callable[..., Any], str], Callable[..., Any]]:
     """Makes of a function of the compiled part one that is called as Python's: see _calls.install()."""
 
     def wrap(function: Callable[..., Any], name: str) -> Callable[..., Any]:
         question = QUESTIONS.get(name)
         if question is None:
-            return _calls.wrapped(function, name)
+            return _taking_masks(_calls.wrapped(function, name), name)
         documentation, more = _documentation(function, question)
         plain = _calls.wrapped(function, name, documentation)
         signature = _calls.arguments_of(documentation.splitlines()[0])

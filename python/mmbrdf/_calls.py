@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The compiled functions as Python calls them: their signatures, and in one line what is wrong with the arguments of a call.
+"""The functions of the package as Python calls them: their signatures, and in one line what is wrong with the arguments of a call.
 
 Each function and method of the compiled part is wrapped once, when the package is imported. What it takes is read from the first
-line of its documentation, which pybind11 writes.
+line of its documentation, which pybind11 writes; what functions of Python take, from their annotations.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import inspect
 import operator
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -103,6 +103,9 @@ _WORDS = {
     "sequence": "a sequence",
     "tuple": "a tuple",
     "bytes": "bytes",
+    "iterable": "a sequence",
+    "mapping": "a dict",
+    "callable": "a function",
 }
 
 
@@ -151,6 +154,9 @@ _FITS: dict[str, Callable[[Any], bool]] = {
     "list": lambda value: isinstance(value, list),
     "tuple": lambda value: isinstance(value, tuple),
     "sequence": lambda value: hasattr(value, "__getitem__") and hasattr(value, "__len__"),
+    "iterable": lambda value: hasattr(value, "__iter__") or hasattr(value, "__getitem__"),
+    "mapping": lambda value: isinstance(value, Mapping),
+    "callable": callable,
 }
 
 
@@ -171,7 +177,7 @@ def fits(value: Any, wanted: str, default: str | None = None) -> bool:
         return isinstance(value, dict) and all(fits(k, inner[0]) and fits(v, inner[1]) for k, v in value.items())
     if head.startswith("numpy.ndarray"):
         return isinstance(value, np.ndarray)
-    if head.startswith("mmbrdf."):
+    if head.startswith(("mmbrdf.", "matplotlib.")):
         return any(one.__name__ == head.rpartition(".")[2] for one in type(value).__mro__)
     return _FITS.get(head, lambda _: True)(value)
 
@@ -270,6 +276,86 @@ def dressed(call: Callable[..., Any], name: str, documentation: str) -> Callable
     if len(signatures(documentation)) == 1:
         call.__signature__ = signature_of(arguments_of(signatures(documentation)[0]))
     return call
+
+
+# ---- functions of Python ---------------------------------------------------------------------------------------------
+
+_ANNOTATED = {name: name for name in ("str", "bool", "int", "float", "complex", "os.PathLike")}
+_ANNOTATED |= {
+    "Sequence": "iterable",
+    "Iterable": "iterable",
+    "Mapping": "mapping",
+    "dict": "mapping",
+    "Callable": "callable",
+}
+_ANNOTATED |= {name: f"mmbrdf.{name}" for name in ("Model", "Dataset", "FitResult", "Polarimeter", "Calibration")}
+_ANNOTATED |= {name: f"matplotlib.{name}" for name in ("Axes", "PolarAxes", "Figure", "SubFigure")}
+_BETWEEN = re.compile(r"\|(?![^\[]*\])")
+
+
+def _wanted(annotation: Any) -> str:
+    """A type as the documentation of the compiled part has it; "object" of what the function looks at itself."""
+    kinds = [kind.strip().lstrip("_").partition("[")[0] for kind in _BETWEEN.split(str(annotation))]
+    known = list(dict.fromkeys(_ANNOTATED.get(kind, "object") for kind in kinds if kind != "None"))
+    known = [kind for kind in known if kind != "str" or "os.PathLike" not in known]  # which text is, too
+    if "object" in known:
+        return "object"
+    wanted = known[0] if len(known) == 1 else f"Union[{', '.join(known)}]"
+    return f"Optional[{wanted}]" if "None" in kinds else wanted
+
+
+def arguments_in_python(function: Callable[..., Any]) -> list[Argument]:
+    """As they are annotated, but for **others."""
+    return [
+        Argument(
+            one.name, _wanted(one.annotation), None if one.default is one.empty else "", one.kind is one.KEYWORD_ONLY
+        )
+        for one in inspect.signature(function).parameters.values()
+        if one.kind is not one.VAR_KEYWORD
+    ]
+
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def told_in_a_line(name: str, module: str | None = None) -> Callable[[F], F]:
+    """Makes of a function of Python one whose TypeError is one line. ``name`` and ``module`` as users find it."""
+
+    def wrap(function: F) -> F:
+        takes = arguments_in_python(function)
+        known = {one.name for one in takes}
+        any_name = len(takes) < len(inspect.signature(function).parameters)
+
+        @functools.wraps(function)
+        def call(*given: Any, **named: Any) -> Any:
+            looked_at = {name: value for name, value in named.items() if name in known} if any_name else named
+            for wrong in faults(takes, given, looked_at):
+                raise TypeError(f"{name}: {wrong}")
+            return function(*given, **named)
+
+        del call.__wrapped__  # type: ignore[attr-defined]
+        call.__signature__ = inspect.signature(function)  # type: ignore[attr-defined]
+        call.__module__ = module or function.__module__
+        return call  # type: ignore[return-value]
+
+    return wrap
+
+
+def tell_in_a_line(package: dict[str, Any], names: Iterable[str], prefix: str) -> None:
+    """Does so with functions, and with what classes have, of a package."""
+    for name in names:
+        thing = package[name]
+        if inspect.isfunction(thing):
+            package[name] = told_in_a_line(f"{prefix}.{name}", package["__name__"])(thing)
+        elif inspect.isclass(thing) and not issubclass(thing, tuple):
+            for member, value in list(vars(thing).items()):
+                function = value.__func__ if isinstance(value, staticmethod) else value
+                if inspect.isfunction(function) and (member == "__init__" or not member.startswith("_")):
+                    told = told_in_a_line(name if member == "__init__" else f"{name}.{member}")(function)
+                    setattr(thing, member, staticmethod(told) if isinstance(value, staticmethod) else told)
+
+
+# ---- the compiled part -----------------------------------------------------------------------------------------------
 
 
 def install(module: Any, wrap: Callable[..., Any] = wrapped) -> None:

@@ -1052,6 +1052,8 @@ def compare(
     other: Dataset,
     wavelength_nm: ArrayLike | None = None,
     geometry: Sequence[ArrayLike] | None = None,
+    *,
+    theta_max_deg: float | None = None,
 ) -> mmbrdf.Comparison: ...
 @overload
 def compare(
@@ -1061,6 +1063,7 @@ def compare(
     geometry: Sequence[ArrayLike] | None = None,
     *,
     as_printed: bool = False,
+    theta_max_deg: float | None = None,
 ) -> mmbrdf.Comparison: ...
 def condition_number(states: ArrayLike) -> float: ...
 def convert(mueller: ArrayLike, from_convention: str, to_convention: str) -> NDArray[np.float64]: ...

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mmbrdf
-from ._arguments import two_orders
+from ._arguments import nan_where_masked, two_orders, unmasked
+from ._files import replacing
 from ._mmbrdf import Model, __version__
 
 if TYPE_CHECKING:
@@ -48,10 +49,12 @@ class PixelFit:
     ):
         if len(geometry) != 4:
             raise ValueError(f"geometry: {len(geometry)} arrays, expected {', '.join(_ANGLES)}")
-        broadcast = np.broadcast_arrays(*[np.asarray(angle, float) for angle in geometry])
+        broadcast = np.broadcast_arrays(
+            *[np.asarray(unmasked(name, angle), float) for name, angle in zip(_ANGLES, geometry)]
+        )
         self.geometry = tuple(np.ascontiguousarray(angle.reshape(-1)) for angle in broadcast)
         count = len(self.geometry[0])
-        self.weights = None if weights is None else np.asarray(weights, float)
+        self.weights = None if weights is None else np.asarray(unmasked("weights", weights), float)
         if self.weights is not None and self.weights.shape != (count, 4, 4):
             raise ValueError(f"weights: shape {self.weights.shape}, expected {(count, 4, 4)}")
         self.wavelength_nm, self.f11_only = float(wavelength_nm), bool(f11_only)
@@ -83,7 +86,7 @@ class PixelFit:
     def require_geometry(self, geometry: Sequence[ArrayLike]) -> None:
         """Raises ValueError unless these are the same geometries, and names the first that differs."""
         for name, own, angle in zip(_ANGLES, self.geometry, geometry, strict=True):
-            other = np.broadcast_to(np.asarray(angle, float), own.shape)
+            other = np.broadcast_to(np.asarray(unmasked(name, angle), float), own.shape)
             different = np.flatnonzero(own != other)
             if len(different):
                 g = int(different[0])
@@ -99,13 +102,13 @@ class PixelFit:
     ) -> PixelModels:
         """Models of sets of values (..., geometries, 4, 4), or (..., geometries) of f11 alone, in sr^-1.
 
-        Missing readings are nan: f11, or a whole matrix. Pixels that lack the same readings are fitted together, each such
+        Missing readings are nan, or masked: f11, or a whole matrix. Pixels that lack the same readings are fitted together, each such
         pattern with a matrix of its own; a pattern that does not determine the model is NaN. geometry, if it is given,
         must be that of the fit. What a pixel gives does not depend on the others, nor on threads.
         """
         if geometry is not None:
             self.require_geometry(geometry)
-        array = np.asarray(values)
+        array = nan_where_masked(values, float)
         if array.dtype != np.float32:
             array = np.asarray(array, float)
         core = (len(self.geometry[0]),) if self.f11_only else (len(self.geometry[0]), 4, 4)
@@ -230,13 +233,8 @@ class PixelModels:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """One NetCDF file: wholly, or not at all."""
-        beside = f"{os.fspath(path)}.{os.getpid()}.part"
-        try:
+        with replacing(path) as beside:
             self.to_xarray().to_netcdf(beside)
-            os.replace(beside, path)
-        finally:
-            if os.path.exists(beside):
-                os.unlink(beside)
 
     @staticmethod
     def from_xarray(data: xarray.Dataset) -> PixelModels:

@@ -6,14 +6,13 @@ from __future__ import annotations
 
 import argparse
 import errno
-import hashlib
 import html
 import json
 import os
 import shlex
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -22,6 +21,7 @@ import numpy as np
 from . import Dataset, Model, __version__, load, material, materials, read_samples, report_json
 from ._arguments import number, require
 from ._browser import printed
+from ._files import digest, digest_of_what_was_read, identity
 from ._mmbrdf import _holds_samples, _report_document, _report_markdown, _utc_timestamp, _write_text
 from ._pages import PAPERS, document, parts
 
@@ -30,7 +30,7 @@ NOTATIONS = ("brackets", "plus-minus")
 
 
 class Source(NamedTuple):
-    """What a report is on."""
+    """What a report is on. digests has the SHA-256 of files, by their names, as they were when they were read."""
 
     model: Model | None
     data: Dataset | None
@@ -41,6 +41,7 @@ class Source(NamedTuple):
     model_file: str | os.PathLike[str] | None = None
     data_file: str | os.PathLike[str] | None = None
     command: str = ""
+    digests: Mapping[str, str] = {}
 
 
 class Look(NamedTuple):
@@ -62,19 +63,21 @@ def kind_of(path: str | os.PathLike[str], chosen: str | None = None) -> str:
     return KINDS[ending]
 
 
-def _digest(path: str | os.PathLike[str]) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+def _digest(source: Source, path: str | os.PathLike[str]) -> str:
+    """As it was read, or is now, if others have read it."""
+    known = source.digests.get(os.fspath(path))
+    return digest(path) if known is None else known
 
 
 def _file_of_data(source: Source) -> tuple[str, str, str]:
     """The file, or the samples as Dataset.save() writes them."""
     assert source.data is not None
     if source.data_file is not None:
-        return "data", Path(source.data_file).name, _digest(source.data_file)
+        return "data", Path(source.data_file).name, _digest(source, source.data_file)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "samples.csv"
         source.data.save(path)
-        return "samples as CSV", source.data_name, _digest(path)
+        return "samples as CSV", source.data_name, digest(path)
 
 
 def _origin(source: Source) -> dict[str, Any]:
@@ -84,7 +87,7 @@ def _origin(source: Source) -> dict[str, Any]:
     elif os.fspath(source.model_file) in materials():
         files.append(("model", f"{os.fspath(source.model_file)} (built in)", ""))
     else:
-        files.append(("model", Path(source.model_file).name, _digest(source.model_file)))
+        files.append(("model", Path(source.model_file).name, _digest(source, source.model_file)))
     if source.data is not None:
         files.append(_file_of_data(source))
     return {
@@ -150,7 +153,7 @@ def _made(source: Source, look: Look) -> Report:
     text = report_json(model, name, chosen, source.data, source.data_name)
     origin = _origin(source._replace(name=name))
     whole = _report_document(model, text, origin, look.notation, source.theta_i_deg)
-    files = [{"what": what, "name": file, "sha256": digest or None} for what, file, digest in origin["files"]]
+    files = [{"what": what, "name": file, "sha256": sha256 or None} for what, file, sha256 in origin["files"]]
     said = {name: origin[name] for name in ("date", "software", "command")}
     return Report(source, {**json.loads(text), "origin": {**said, "files": files}}, whole)
 
@@ -175,11 +178,11 @@ def _page(source: Source, look: Look, paper: str | None) -> str:
 
 
 def _origin_lines(source: Source) -> dict[str, str]:
-    what, name, digest = _file_of_data(source)
+    what, name, sha256 = _file_of_data(source)
     return {
         "date": _utc_timestamp(),
         what: name,
-        f"SHA-256 of the {what}": digest,
+        **({f"SHA-256 of the {what}": sha256} if sha256 else {}),
         "software": f"mmbrdf {__version__}",
         "command": source.command or "mmbrdf.report() in Python",
     }
@@ -293,10 +296,18 @@ def _parser(prog: str) -> _Parser:
     return parser
 
 
-def _opened(name: str, options: argparse.Namespace) -> Model | Dataset:
-    """Of a model or of samples, whose table is read as the options say."""
+def _opened(name: str, options: argparse.Namespace, digests: dict[str, str]) -> Model | Dataset:
+    """A model or samples. Adds the digest of a file."""
     if name in materials():
         return material(name)
+    before = identity(name) if os.path.exists(name) else ()
+    result = _read(name, options)
+    digests[name] = digest_of_what_was_read(name, before)
+    return result
+
+
+def _read(name: str, options: argparse.Namespace) -> Model | Dataset:
+    """Of a model or of samples, whose table is read as the options say."""
     if not _holds_samples(name):
         return load(name)
     return read_samples(
@@ -309,17 +320,19 @@ def _opened(name: str, options: argparse.Namespace) -> Model | Dataset:
 
 
 def _source_of(options: argparse.Namespace, command: str) -> Source:
-    model = _opened(options.model, options)
+    digests: dict[str, str] = {}
+    model = _opened(options.model, options, digests)
     if isinstance(model, Dataset) and options.data is None:
         source = Source(None, model, "", Path(options.model).name, options.wavelength, data_file=options.model)
-        return source._replace(command=command)
-    data = _opened(options.data, options) if options.data else None
+        return source._replace(command=command, digests=digests)
+    data = _opened(options.data, options, digests) if options.data else None
     for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
         if thing is not None and not isinstance(thing, kind):
             raise ValueError(f"{name}: expected {'a model' if kind is Model else 'samples'}")
     assert isinstance(model, Model) and not isinstance(data, Model)
     names = Path(options.model).name, Path(options.data or "").name
-    return Source(model, data, *names, options.wavelength, options.theta_i, options.model, options.data, command)
+    source = Source(model, data, *names, options.wavelength, options.theta_i, options.model, options.data)
+    return source._replace(command=command, digests=digests)
 
 
 def _command(prog: str, words: Sequence[str], paths: Sequence[str | None]) -> str:

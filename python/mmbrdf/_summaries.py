@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _mmbrdf
+from . import _calls, _mmbrdf
 from ._warnings import ExtrapolationWarning
 
 Rows = Iterator[tuple[str, str]]
@@ -192,4 +192,4 @@ def install(compiled: Any) -> None:
     _told_of_a_fit[:] = [compiled.FitResult.summary]
     for name in _KINDS:
         kind = getattr(compiled, name)
-        kind.summary, kind._repr_html_ = summary, in_html
+        kind.summary, kind._repr_html_ = _calls.told_in_a_line(f"{name}.summary")(summary), in_html

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._calls import told_in_a_line
 from ._warnings import warn
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def _of_channel(m: np.ndarray, channel: str) -> np.ndarray:
     return (m[..., 0, 0] + a * m[..., 0, 1] + b * m[..., 1, 0] + c * m[..., 1, 1]) / 2
 
 
+@told_in_a_line("pythonic_disort_modes")
 def pythonic_disort_modes(
     model: Model, wavelength_nm: float | None = None, *, streams: int, moments: int = 0, channel: str = "f11"
 ) -> list[_Mode]:
@@ -80,6 +82,7 @@ def pythonic_disort_modes(
     return [mode(m) for m in range(min(present, moments or streams))]
 
 
+@told_in_a_line("py6s_surface")
 def py6s_surface(
     model: Model,
     wavelength_nm: float | None = None,

@@ -14,7 +14,6 @@ import copy
 import hashlib
 import io
 import os
-import uuid
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -22,6 +21,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ._arguments import two_orders
+from ._calls import told_in_a_line
+from ._files import replacing
 from ._mmbrdf import FitAccumulator, FitResult, __version__, read_samples
 
 if TYPE_CHECKING:
@@ -89,27 +90,20 @@ def _require_once(paths: Sequence[str]) -> None:
             raise ValueError(f"files: number {k} ({path}) is number {first} ({paths[first]}) again: leave one out")
 
 
-def _saved_as(path: str, kind: _Kind, checkpoint: str, read: dict[str, Any]) -> Path:
-    """Another file for what was changed, or is read or fitted otherwise."""
+def _saved_as(path: str, kind: _Kind, checkpoint: str | None, read: dict[str, Any]) -> Path | None:
+    """Another file for what was changed, or is read or fitted otherwise. None: nothing is kept."""
+    if checkpoint is None:
+        return None
     at = os.stat(path)
     key = repr((os.path.abspath(path), at.st_size, at.st_mtime_ns, tuple(kind), _canonical(read), __version__))
     return Path(checkpoint) / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.npy"
 
 
 def _save(state: Any, path: Path) -> None:
-    """Wholly, or not at all, whoever else writes the same: threads, and nodes on which processes have the same number."""
-    beside = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
-    try:
-        with open(beside, "xb") as out:
-            content = io.BytesIO()
-            np.save(content, state)
-            out.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
-            out.flush()
-            os.fsync(out.fileno())
-        os.replace(beside, path)
-    except BaseException:
-        beside.unlink(missing_ok=True)
-        raise
+    content = io.BytesIO()
+    np.save(content, state)
+    with replacing(path) as beside:
+        beside.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
 
 
 def _kept(path: Path | None, kind: _Kind) -> FitAccumulator | None:
@@ -127,18 +121,19 @@ def _kept(path: Path | None, kind: _Kind) -> FitAccumulator | None:
 
 def _leaf(path: str, kind: _Kind, skip_broken: bool, checkpoint: str | None, options: dict[str, Any]) -> _Part:
     try:
-        saved = None if checkpoint is None else _saved_as(path, kind, checkpoint, options)
+        saved = _saved_as(path, kind, checkpoint, options)
         kept = _kept(saved, kind)
         if kept is not None:
             return _Part(kept, {})
         accumulator = kind.empty()
         accumulator.add(read_samples(path, **options))
+        unchanged = saved == _saved_as(path, kind, checkpoint, options)
     except (OSError, ValueError) as error:
         text = str(error) if os.path.basename(path) in str(error) else f"{path}: {error}"
         if skip_broken:
             return _Part(None, {path: text})
         raise OSError(text) from None
-    if saved is not None:
+    if saved is not None and unchanged:
         _save(accumulator.state(), saved)
     return _Part(accumulator, {})
 
@@ -182,6 +177,7 @@ def _there(client: distributed.Client, leaves: Sequence[Any], progress: Callable
     return result
 
 
+@told_in_a_line("distributed.fit")
 def fit(
     files: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
     client: distributed.Client | None = None,

@@ -317,3 +317,20 @@ def test_the_calls_of_the_documentation_give_what_stands_beside_them(ptfe):
         assert re.sub(r"\s+", "", shown) == re.sub(r"\s+", "", lines[2].partition("#")[2])
         assert repr(eval(lines[3].partition("#")[0], names)) == lines[3].partition("# ")[2].partition(";")[0]
     assert 0 < names["u"] < 0.01 < names["value"] and names["validity"] == Outside.INSIDE
+
+
+def test_functions_of_matrices_and_readings_have_nan_for_what_is_masked(random_matrices):
+    hidden = np.ma.masked_array(random_matrices, np.zeros(random_matrices.shape, bool))
+    hidden[2, 3, 1, 1] = np.ma.masked
+    missing = np.where(np.ma.getmaskarray(hidden), np.nan, random_matrices)
+    for ask in (mmbrdf.depolarization, mmbrdf.nearest_realizable, mmbrdf.realizability_margin):
+        np.testing.assert_array_equal(ask(hidden, invalid="nan"), ask(missing, invalid="nan"))
+        with pytest.raises(ValueError, match="^mueller: a part of it is masked; leave it out$"):
+            ask(hidden)
+    instrument = mmbrdf.ideal_polarimeter(131.81, [-51.69, -15.12, 15.12, 51.69])
+    for dtype in (np.float32, np.float64):
+        readings = np.ma.masked_array(instrument.readings(random_matrices).astype(dtype), np.ma.getmaskarray(hidden))
+        for found in (instrument.reduce(readings, invalid="nan"), instrument.reduce(readings, "nan")):
+            assert np.argwhere(np.isnan(found).any(axis=(-2, -1))).tolist() == [[2, 3]] and found.dtype == dtype
+        with pytest.raises(ValueError, match="^readings: a part of it is masked; leave it out$"):
+            instrument.reduce(readings)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is wrong with the arguments of a call is said in one line: of which function, which argument, and what is wanted."""
 
+import importlib
 import inspect
+import pickle
 import re
 
 import numpy as np
@@ -47,8 +49,6 @@ def line_of(call):
 
 @pytest.mark.parametrize("name, function, own", CALLS, ids=[name for name, _, _ in CALLS])
 def test_an_argument_that_there_is_not_is_named(name, function, own):
-    if name.endswith(".summary"):
-        return  # of Python
     text = line_of(lambda: function(*[None] * own, no_such_thing=1))
     assert text.startswith(f"{name}: there is no argument no_such_thing"), text
 
@@ -56,7 +56,7 @@ def test_an_argument_that_there_is_not_is_named(name, function, own):
 @pytest.mark.parametrize("name, function, own", CALLS, ids=[name for name, _, _ in CALLS])
 def test_arguments_that_are_missing_are_named(name, function, own):
     needed = [one.name for one in parameters(name, function) if one.default is one.empty and one.name != "self"]
-    if not needed or name.endswith(".summary"):
+    if not needed:
         return
     text = line_of(lambda: function(*[mmbrdf.material("ptfe")] * own))
     said = re.match(r"[\w.]+: (.*?) missing", text)
@@ -114,6 +114,17 @@ def test_signatures_are_those_of_help():
         (lambda p: mmbrdf.Model(), "Model: functions give it, it has no constructor"),
         (lambda p: mmbrdf.Block(p, 0), "Block: functions give it, it has no constructor"),
         (lambda p: p.save(), "Model.save: path missing: expected a path"),
+        (lambda p: mmbrdf.load(), "load: path missing: expected a path"),
+        (lambda p: mmbrdf.load(3), "load: path: expected a path, not int 3"),
+        (lambda p: mmbrdf.report(p), "report: data and path missing"),
+        (lambda p: mmbrdf.report(p, None, 5), "report: path: expected a path, not int 5"),
+        (lambda p: mmbrdf.report(p, None, "r.md", theta=45), "report: there is no argument theta, but theta_i_deg"),
+        (lambda p: mmbrdf.report(p, None, "r.md", name=5), "report: name: expected text, not int 5"),
+        (lambda p: mmbrdf.report(p, None, "r.md", model_file=5), "report: model_file: expected a path, not int 5"),
+        (lambda p: mmbrdf.plot.hemisphere(p), "plot.hemisphere: wavelength_nm and theta_i_deg missing"),
+        (lambda p: mmbrdf.images.reduce(), "images.reduce: stack and instrument missing"),
+        (lambda p: mmbrdf.images.PixelFit(532), "PixelFit: geometry missing: expected a sequence"),
+        (lambda p: p.summary(1), "Model.summary: takes no arguments without a name, not 1"),
         (
             lambda p: mmbrdf.fit(mmbrdf.simulate(p, 532, mmbrdf.germer2017_grid()), "isotropic", 7),
             "fit: orders: expected a tuple (a whole number, a whole number), not int 7",
@@ -126,6 +137,76 @@ def test_signatures_are_those_of_help():
 )
 def test_what_is_wrong_is_one_line(call, line, ptfe):
     assert line_of(lambda: call(ptfe)).startswith(line)
+
+
+def of_python():
+    """Functions and methods that are written in Python, by the name that users call them by."""
+    distributed = importlib.import_module("mmbrdf.distributed")
+    modules = {"images.": mmbrdf.images, "plot.": mmbrdf.plot, "distributed.": distributed}
+    named = [
+        (f"{prefix}{name}", getattr(module, name)) for prefix, module in modules.items() for name in module.__all__
+    ]
+    named += [(name, getattr(mmbrdf, name)) for name in ("load", "report", "py6s_surface", "pythonic_disort_modes")]
+    for name, thing in named:
+        if not inspect.isclass(thing):
+            if callable(thing):
+                yield name, thing, 0
+        elif not issubclass(thing, tuple):
+            own = name.rpartition(".")[2]
+            yield own, thing, 0
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and not isinstance(value, property):
+                    yield f"{own}.{member}", getattr(thing, member), int(not isinstance(value, staticmethod))
+
+
+OF_PYTHON = sorted(of_python(), key=lambda one: one[0])
+
+
+@pytest.mark.parametrize("name, function, own", OF_PYTHON, ids=[name for name, _, _ in OF_PYTHON])
+def test_functions_of_python_say_it_as_those_of_the_library_do(name, function, own):
+    if "read" not in inspect.signature(function).parameters:  # whose other options are those of read_samples
+        line = line_of(lambda: function(*[None] * own, no_such_thing=1))
+        assert line.startswith(f"{name}: there is no argument no_such_thing"), line
+    needed = [one.name for one in parameters(name, function) if one.default is one.empty and one.name != "self"]
+    needed = [one for one in needed if one != "read"]
+    if needed:
+        line = line_of(lambda: function(*[None] * own))
+        said = re.match(r"[\w.]+: (.*?) missing", line)
+        assert line.startswith(f"{name}: ") and said, line
+        assert re.split(", | and ", said.group(1)) == needed
+    line = line_of(lambda: function(*[None] * 40))
+    assert re.match(rf"{re.escape(name)}: takes (no|\d+) arguments? without a name, not", line), line
+    pickled = pickle.loads(pickle.dumps(function))
+    assert pickled is function or own
+
+
+WRONG = {
+    "str": 5,
+    "bool": "yes",
+    "int": 1.5,
+    "float": "1",
+    "Model": 5,
+    "Dataset": 5,
+    "Sequence": 5,
+    "Mapping": 5,
+    "dict": 5,
+    "Callable": 5,
+}
+WRONG |= {"os.PathLike": 5, "Calibration": 5, "Axes": 5, "Figure": 5, "Iterable": 5, "Polarimeter": 5}
+
+
+@pytest.mark.parametrize("name, function, own", OF_PYTHON, ids=[name for name, _, _ in OF_PYTHON])
+def test_functions_of_python_name_the_argument_that_is_of_another_kind(name, function, own):
+    """Whatever else is wrong with the call: the others are missing."""
+    for one in parameters(name, function):
+        kinds = [kind.strip().partition("[")[0] for kind in str(one.annotation).split("|")]
+        if not kinds or any(kind not in WRONG and kind != "None" for kind in kinds):
+            continue  # the function looks itself
+        wrong = next(WRONG[kind] for kind in kinds if kind != "None")
+        if any(_calls.fits(wrong, _calls._wanted(kind)) for kind in kinds):
+            continue
+        wrong_call = list(_calls.faults(_calls.arguments_in_python(function), [None] * own, {one.name: wrong}))
+        assert any(line.startswith(f"{one.name}: expected ") for line in wrong_call), (name, one)
 
 
 def test_right_calls_are_not_refused():

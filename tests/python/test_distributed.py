@@ -178,6 +178,21 @@ def test_a_damaged_state_is_made_again_and_its_file_is_not_left_out(files, plain
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == whole
 
 
+def test_the_state_of_a_file_that_changes_while_it_is_read_is_not_kept(files, tmp_path, monkeypatch):
+    """It would be that of the earlier file, for all who put that back."""
+    changing, folder = tmp_path / "changing.csv", tmp_path / "states"
+    changing.write_bytes(files[0].read_bytes())
+    read = archive.read_samples
+
+    def replaced_before(path, **options):
+        changing.write_bytes(files[1].read_bytes())
+        return read(path, **options)
+
+    monkeypatch.setattr(archive, "read_samples", replaced_before)
+    archive.fit(changing, checkpoint=folder, **OPTIONS)
+    assert list(folder.iterdir()) == []
+
+
 def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):

@@ -65,9 +65,60 @@ def test_dark_frames_saturation_and_masks(camera):
     assert np.isnan(images.reduce(raw, instrument)[4, 4]).all()
 
 
+def masked(array, *places):
+    """With these places masked, whatever stands beneath."""
+    result = np.ma.masked_array(array, np.zeros(np.shape(array), bool))
+    for place in places:
+        result[place] = np.ma.masked
+    return result
+
+
+@pytest.mark.parametrize("of_each_pixel", [False, True])
+def test_what_is_masked_is_unknown_and_never_the_number_beneath(camera, of_each_pixel):
+    instrument = camera.instrument if of_each_pixel else camera.instrument.at(0, 0)
+    stack = masked(camera.stack, (2, 3, 5), (0, 1))
+    unknown = np.zeros(SHAPE, bool)
+    unknown[2, 3] = unknown[0, 1] = True
+    expected = np.where(unknown[..., None, None], np.nan, images.reduce(camera.stack, instrument))
+    np.testing.assert_array_equal(images.reduce(stack, instrument), expected)
+    np.testing.assert_array_equal(images.reduce(stack, instrument, progress=iter, saturation=99.0), expected)
+    raw = masked((1000 * camera.stack).astype(np.uint16), (2, 3, 5), (0, 1))
+    found = images.reduce(raw, instrument)
+    assert found.dtype == np.float32 and (np.isnan(found).all(axis=(-2, -1)) == unknown).all()
+    dark = masked(np.zeros(SHAPE), (2, 3), (0, 1))
+    assert (np.isnan(images.reduce(camera.stack, instrument, dark=dark)).all(axis=(-2, -1)) == unknown).all()
+    use = masked(np.ones(SHAPE, bool), (2, 3), (0, 1))
+    assert (np.isnan(images.reduce(camera.stack, instrument, mask=use)).all(axis=(-2, -1)) == unknown).all()
+    u = images.uncertainty(stack, instrument, {"shot": 1e-3})
+    assert (np.isnan(u).any(axis=(-2, -1)) == unknown).all()
+    matrices = masked(camera.mueller, (2, 3))
+    if of_each_pixel:
+        assert np.argwhere(np.isnan(images.readings(matrices, instrument)).all(axis=-1)).tolist() == [[2, 3]]
+
+
+def test_masked_chunks_are_unknown_too(camera):
+    da = pytest.importorskip("dask.array")
+    stack = masked(camera.stack, (2, 3, 5))
+    for instrument in (camera.instrument, camera.instrument.at(0, 0)):
+        lazy = images.reduce(da.from_array(stack, chunks=(3, 4, -1)), instrument, dark=da.zeros(SHAPE), saturation=99.0)
+        np.testing.assert_array_equal(lazy.compute(), images.reduce(stack, instrument, dark=0.0, saturation=99.0))
+
+
+def test_masked_readings_of_references_are_not_calibrated_with(camera, calibrated):
+    stacks = masked(camera.stacks, (3, 1, 2, 0))
+    for given in (stacks, list(stacks)):
+        found = images.calibrate(camera.references, given, wavelength_nm=532, start=calibrated.start)
+        assert np.argwhere(found.failure).tolist() == [[1, 2]] and images.FAILURES[found.failure[1, 2]] == "not finite"
+    states = masked(camera.instrument.generator, (1, 2, 0, 0))
+    partly = images.PixelInstrument(states, camera.instrument.analyzer)
+    assert np.isnan(images.reduce(camera.stack, partly)[1, 2]).all()
+    with pytest.raises(ValueError, match="^dials_deg: a part of it is masked; leave it out$"):
+        images.simulate(SHAPE, dials_deg=masked(DIALS, (0, 0)))
+
+
 def test_many_rows_are_worked_on_in_blocks_with_the_same_bits(camera, monkeypatch):
     whole = images.reduce(camera.stack, camera.instrument, dark=0.125)
-    monkeypatch.setattr(images, "_ROWS_AT_ONCE", 2 * SHAPE[1])
+    monkeypatch.setattr(images.reduction, "_ROWS_AT_ONCE", 2 * SHAPE[1])
     np.testing.assert_array_equal(images.reduce(camera.stack, camera.instrument, dark=0.125), whole)
 
 
@@ -245,7 +296,8 @@ def test_a_saturation_that_is_no_number_is_refused_in_a_line(camera, level):
         lambda: images.calibrate(camera.references, camera.stacks, wavelength_nm=532, saturation=level),
     ):
         with pytest.raises(
-            (TypeError, ValueError), match=r"^saturation(: expected a number, not| = nan, must be finite)"
+            (TypeError, ValueError),
+            match=r"^(images\.\w+: saturation: expected a number, not|saturation = nan, must be finite)",
         ):
             ask()
     found = images.reduce(camera.stack, camera.instrument, saturation=np.inf)

@@ -5,6 +5,8 @@ import csv
 import io
 import json
 import pickle
+import re
+import warnings
 
 import numpy as np
 import pytest
@@ -210,6 +212,69 @@ def test_a_comparison_is_that_of_the_program(ring, told):
             assert difference == pytest.approx([row[name] for name in difference._fields], rel=same, abs=same)
         assert list(here.normalized) == [row["element"] for row in there["elements"][2:]]
         assert repr(here).startswith(f"<mmbrdf.Comparison: {here.samples} samples, rms of f11 ")
+
+
+def test_samples_beyond_the_fitted_range_are_left_out_as_by_the_program(ptfe, told, tmp_path):
+    geometry = mmbrdf.random_geometries(400, seed=5, theta_max_deg=89)
+    mmbrdf.simulate(ptfe, [532, 633], geometry, speckle=0.01).save(tmp_path / "wide.csv")
+    wide = mmbrdf.load(tmp_path / "wide.csv")
+    for options, command in (({}, ()), ({"theta_max_deg": 90}, ("--theta-max", 90)), ({"theta_max_deg": 40.5}, ("--theta-max", 40.5)),
+                             ({"wavelength_nm": 633}, ("-w", 633))):  # fmt: skip
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            here = mmbrdf.compare(ptfe, wide, **options)
+        there = told("compare", "ptfe", "wide.csv", *command)
+        assert (here.samples, here.largest.largest) == (there["samples"], there["largest"])
+        assert (
+            (len(caught) == 1)
+            == ("theta_max_deg" not in options)
+            == (here.samples < len(wide) and not command[:1] == ("--theta-max",))
+        )
+    assert re.fullmatch(
+        rf"\d+ of 400 samples beyond the fitted range are left out: theta_max_deg=90 takes all", str(caught[0].message)
+    )
+    assert caught[0].category is mmbrdf.ExtrapolationWarning and caught[0].filename == __file__
+
+
+def test_two_models_are_compared_as_far_as_it_is_said(told):
+    first, second = mmbrdf.material("ptfe"), mmbrdf.material("ptfe-532")
+    for options, command in (
+        ({"theta_max_deg": 30}, ("--theta-max", 30)),
+        ({"theta_max_deg": 90}, ("--theta-max", 90)),
+    ):
+        there = told("compare", "ptfe", "ptfe-532", *command)
+        assert mmbrdf.compare(first, second, **options).samples == there["samples"]
+    near = mmbrdf.in_plane(30, [0, 20, 60])
+    assert mmbrdf.compare(first, second, geometry=near, theta_max_deg=30).samples == 2
+    for wrong, message in (
+        (0, "theta_max_deg = 0: must be in (0, 90] degrees"),
+        (95, "theta_max_deg = 95: must be in"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(message)):
+            mmbrdf.compare(first, second, theta_max_deg=wrong)
+    with pytest.raises(ValueError, match="^theta_max_deg = 1: no geometry is within$"):
+        mmbrdf.compare(first, second, geometry=near, theta_max_deg=1)
+
+
+def test_two_data_sets_that_share_no_wavelength_are_said_to(ptfe):
+    grid = mmbrdf.random_geometries(300, seed=3)
+    one, other = (mmbrdf.simulate(ptfe, nm, grid, speckle=0.02) for nm in ([351, 532], [633, 1064]))
+    with pytest.raises(
+        ValueError,
+        match="^the samples have no wavelength in common: they are at 351, 532 nm and 633, 1064 nm$",
+    ):
+        mmbrdf.compare(one, other)
+
+
+def test_two_data_sets_are_fitted_at_the_wavelengths_that_are_asked_for(ptfe, told, tmp_path):
+    grid = mmbrdf.random_geometries(400, seed=3)
+    names = []
+    for seed in (1, 2):
+        mmbrdf.simulate(ptfe, [532, 633], grid, speckle=0.02, seed=seed).save(tmp_path / f"{seed}.csv")
+        names.append(f"{seed}.csv")
+    here = mmbrdf.compare(*(mmbrdf.load(tmp_path / name) for name in names), 633)
+    there = told("compare", *names, "-w", 633)
+    assert (here.samples, here.largest.largest) == pytest.approx((there["samples"], there["largest"]), rel=1e-12)
 
 
 def test_two_models_differ_by_so_many_uncertainties(ring, told, ptfe):

@@ -2,6 +2,7 @@
 """Dask arrays and DataArrays in, the same out: lazily, with names, and with the bits of the eager call."""
 
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -165,7 +166,7 @@ def test_shapes_and_names_that_do_not_fit_are_named(ptfe, random_matrices):
         ptfe.evaluate(532, 45, 0, da.zeros(3), 0, out=np.zeros((3, 4, 4)))
     with pytest.raises(ValueError, match=r"readings: last axes \(3, 4\), the instrument has \(4, 4\)"):
         mmbrdf.ideal_states(["s", "p", "+45", "L"]).reduce(da.zeros((2, 3, 4)))
-    with pytest.raises(TypeError, match="got theta_r_deg twice"):
+    with pytest.raises(TypeError, match="^Model.evaluate: theta_r_deg is given twice$"):
         ptfe.evaluate(532, 45, 0, da.zeros(3), 0, theta_r_deg=0)
 
 
@@ -209,6 +210,119 @@ def test_value_u_and_validity_come_together_and_stay_lazy(ptfe):
             np.testing.assert_array_equal(labelled.values, one)
     with pytest.raises(TypeError, match="^analyze: as_xarray is not for Dask arrays and xarray.DataArrays$"):
         ptfe.analyze(532, 45, 0, xarray.DataArray(theta[:2], dims="view"), 180, as_xarray=True)
+
+
+@pytest.fixture(scope="module")
+def fitted(ptfe):
+    """A fit of a sample, which knows what a reading of it will be."""
+    return mmbrdf.fit(
+        mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(600, seed=1), speckle=0.01), orders=(3, 2)
+    ).model
+
+
+def test_predicted_readings_keep_names_and_stay_lazy(fitted):
+    theta = np.array([0.0, 30.0, np.nan, 60.0])
+    eager = fitted.predict_readings(532, 45, 0, theta, 180, invalid="nan")
+    chunked = fitted.predict_readings(532, 45, 0, da.from_array(theta, chunks=2), 180, invalid="nan")
+    view = xarray.DataArray(theta, {"view": [1, 2, 3, 4]}, dims="view")
+    named = fitted.predict_readings(532, 45, 0, view, 180, invalid="nan")
+    for one, lazy, labelled in zip(eager, chunked, named):
+        same(lazy, one)
+        np.testing.assert_array_equal(labelled.values, one)
+        assert labelled.dims[0] == "view" and labelled.view.values.tolist() == [1, 2, 3, 4]
+    assert [one.name for one in named] == list(named._fields) and named.validity.dtype == np.uint8
+    assert named.value.dims == named.u.dims == ("view", "row", "column") and "units" not in named.value.attrs
+
+
+def test_curves_of_polarization_keep_names_and_stay_lazy(fitted):
+    plane = mmbrdf.in_plane(45, [-40, 0, 30, 60])
+    place = {"place": list("abcd")}
+    for ask in (mmbrdf.polarized_curve, mmbrdf.polarized_uncertainty):
+        eager = ask(fitted, 532, plane)
+        chunked = ask(fitted, 532, [da.from_array(one, chunks=2) for one in plane])
+        named = ask(fitted, xarray.DataArray(532), [xarray.DataArray(one, place, dims="place") for one in plane])
+        for name, one, lazy, labelled in zip(eager._fields, eager, chunked, named):
+            same(lazy, one)
+            np.testing.assert_array_equal(labelled.values, one)
+            assert labelled.name == name and labelled.place.values.tolist() == list("abcd")
+            assert labelled.attrs["units"] == "sr-1"
+    image = [np.reshape(one, (2, 2)) for one in plane]
+    curves = mmbrdf.polarized_curve(fitted, 532, [xarray.DataArray(one, dims=["y", "x"]) for one in image])
+    assert curves.ss.dims == ("y", "x")
+    whole = mmbrdf.polarized_curve(fitted, 532, mmbrdf.Geometry(*map(xarray.DataArray, plane)), uncertainty=True)
+    expected = mmbrdf.polarized_curve(fitted, 532, plane, uncertainty=True)
+    np.testing.assert_array_equal(whole.u.sp, expected.u.sp)
+    np.testing.assert_array_equal(whole.validity, expected.validity)
+    with pytest.raises(ValueError) as caught:
+        mmbrdf.polarized_curve(fitted, 532, plane[:3])
+    with pytest.raises(ValueError, match=re.escape(str(caught.value))):
+        mmbrdf.polarized_curve(fitted, 532, [xarray.DataArray(one) for one in plane[:3]])
+
+
+def wrong_calls(model, matrices):
+    """Of a model and of functions, each with something wrong that the values of the lazy array have no part in."""
+    sampler, instrument = mmbrdf.DirectionSampler(model, 532), mmbrdf.ideal_states(["s", "p", "+45", "L"])
+    angle, ask = np.array([0.0, 30.0]), model.evaluate
+    for wrong in (
+        {"frame": "zz"}, {"theta_i": 1}, {"terms": {"scale": 0.1}}, {"invalid": "skip"}, {"threads": 1.5}, {"phi_i_deg": 1},
+        {"uncertainty": True, "terms": {"skale": 0.1}}, {"uncertainty": True, "terms": 5}, {"as_printed": "yes"},
+    ):  # fmt: skip
+        yield angle, lambda a, wrong=wrong: ask(532, 45, 0, a, 180, **wrong)
+    yield angle, lambda a: ask(532, 95, 0, a, 180)
+    yield angle, lambda a: ask(-532, 45, 0, a, 180)
+    yield angle, lambda a: ask(None, 45, 0, a, 180)
+    yield angle, lambda a: ask(532, 45, [np.nan], a, 180)
+    yield angle, lambda a: ask(532, "45", 0, a, 180)
+    yield angle, lambda a: ask(532, 45, 0, a)
+    yield angle, lambda a: ask(532, 45, 0, a, 180, "xy")
+    yield angle, lambda a: ask(532, 45, a, 0, 180, theta_r_deg=0)
+    yield angle.astype(complex), lambda a: ask(532, 45, 0, a, 180)
+    yield angle, lambda a: model.evaluate_uncertainty(532, 45, 0, a, 180, terms={"scale": -1})
+    yield angle, lambda a: model.evaluate_draws(0, 1, 532, 45, 0, a, 180)
+    yield angle, lambda a: model.evaluate_draws("a", 1, 532, 45, 0, a, 180)
+    yield angle, lambda a: model.analyze(532, 95, 0, a, 180)
+    yield angle, lambda a: model.analyze(532, 45, 0, a, 180, stokes=[1, 2, 0, 0])
+    yield angle, lambda a: mmbrdf.directional_hemispherical_reflectance(model, -532, a)
+    yield angle, lambda a: mmbrdf.directional_hemispherical_reflectance(5, 532, a)
+    yield angle, lambda a: mmbrdf.change_frame(np.eye(4), a, 0, 95, 0, "xy", "sp")
+    yield angle, lambda a: sampler.sample(a, 0, 1.5, 0.2)
+    yield angle, lambda a: mmbrdf.retarder(a, float("inf"))
+    yield matrices, lambda a: mmbrdf.depolarization(a, invalid="skip")
+    yield matrices, lambda a: mmbrdf.degree_of_polarization(a, [1, 2, 3])
+    yield matrices, lambda a: mmbrdf.convert(a, "germer2017", "zz")
+    yield np.ones((3, 4, 4)), lambda a: instrument.reduce(a, "skip")
+
+
+def test_what_is_wrong_is_refused_at_the_call_with_the_words_of_the_eager_one(ptfe, random_matrices):
+    for value, call in wrong_calls(ptfe, random_matrices):
+        with pytest.raises((TypeError, ValueError)) as eager:
+            call(value)
+        names = [f"axis_{k}" for k in range(value.ndim - 2)] + ["row", "column"] if value.ndim > 1 else ["view"]
+        for lazy in (da.from_array(value), xarray.DataArray(value, dims=names).chunk()):
+            with pytest.raises(type(eager.value)) as caught:
+                call(lazy)
+            assert str(caught.value) == re.sub(r"(, at \[0\])+$", "", str(eager.value))  # it is wrong at all places
+
+
+def test_nothing_of_a_lazy_array_is_computed_by_a_call(ptfe, random_matrices):
+    def broken(block):
+        raise AssertionError("computed")
+
+    def never(shape):
+        return da.zeros(shape, chunks=-1).map_blocks(broken, dtype=float, meta=np.zeros((0,) * len(shape)))
+
+    angle, matrix = never((3,)), never((3, 4, 4))
+    ptfe.evaluate(532, 45, 0, angle, 180, uncertainty=True, terms={"scale": 0.01})
+    ptfe.analyze(532, 45, 0, angle, 180, stokes=[1, 0, 0, 1], draws=2)
+    mmbrdf.polarized_curve(ptfe, 532, [45.0, 0.0, angle, 180.0], uncertainty=True)
+    mmbrdf.directional_hemispherical_reflectance(ptfe, 532, angle)
+    for q in mmbrdf.quantities():
+        for name in (q.name, f"{q.name}_gradient"):
+            getattr(mmbrdf, name)(matrix, *[[1, 0, 0, 0.5]] * q.takes_light)
+    for name in ("lu_chipman", "cloude_decomposition", "symmetric_decomposition", "normalized", "nearest_realizable"):
+        getattr(mmbrdf, name)(matrix)
+    large = np.zeros((1000, 1000))  # which goes to every chunk, and is not tried as a whole
+    assert ptfe.evaluate(532, da.zeros((1000, 1000)), 0, large, 180).shape == (1000, 1000, 4, 4)
 
 
 def test_frames_and_conventions_that_there_are_not_are_refused_at_once(ptfe):

@@ -33,6 +33,16 @@ def test_the_stub_names_all_methods_and_properties():
             assert public(there) == public(vars(getattr(_mmbrdf, name))), name
 
 
+def test_the_stub_names_everything_once():
+    """But for overloads; of two others a type checker takes the last."""
+    tree = ast.parse(STUB.read_text())
+    for scope in [tree, *(node for node in tree.body if isinstance(node, ast.ClassDef))]:
+        defined = [node for node in scope.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))]
+        alone = [n.name for n in defined if "overload" not in {getattr(one, "id", "") for one in n.decorator_list}]
+        twice = {name for name in alone if alone.count(name) > 1}
+        assert not twice, f"{getattr(scope, 'name', STUB.name)}: {sorted(twice)}"
+
+
 def test_the_stub_names_all_arguments():
     for name, node in stub_definitions().items():
         if isinstance(node, ast.FunctionDef):

@@ -21,28 +21,62 @@ def test_other_things_than_models_and_samples_are_refused_in_a_line(ptfe, data):
     fitted, plot = mmbrdf.fit(data, orders=(1, 1)), mmbrdf.plot
     hint = r"expected mmbrdf\.Model, not FitResult: its \.model is one$"
     for draw, message in (
-        (lambda: plot.in_plane_curves(fitted, 532), "^model: " + hint),
+        (lambda: plot.in_plane_curves(fitted, 532), "^plot.in_plane_curves: model: " + hint),
         (lambda: plot.polar_in_plane([ptfe, fitted], 532), "^models: " + hint),
-        (lambda: plot.polar_in_plane(fitted, 532), "^models: " + hint),
+        (
+            lambda: plot.polar_in_plane(fitted, 532),
+            r"^plot.polar_in_plane: models: expected mmbrdf.Model or a sequence, not FitR",
+        ),
         (lambda: plot.subset_study([fitted], ptfe, 532), "^parts: " + hint),
-        (lambda: plot.subset_study([ptfe], fitted, 532), "^reference: " + hint),
-        (lambda: plot.coefficient_spectrum(fitted), "^model: " + hint),
-        (lambda: plot.residual_map(data, ptfe, 532, 45), r"^model: expected mmbrdf\.Model, not Dataset$"),
-        (lambda: plot.residual_map(ptfe, fitted, 532, 45), r"^data: expected mmbrdf\.Dataset, not FitResult$"),
+        (lambda: plot.subset_study([ptfe], fitted, 532), "^plot.subset_study: reference: " + hint),
+        (lambda: plot.coefficient_spectrum(fitted), "^plot.coefficient_spectrum: model: " + hint),
+        (
+            lambda: plot.residual_map(data, ptfe, 532, 45),
+            r"^plot.residual_map: model: expected mmbrdf\.Model, not Dataset$",
+        ),
+        (
+            lambda: plot.residual_map(ptfe, fitted, 532, 45),
+            r"^plot.residual_map: data: expected mmbrdf\.Dataset, not FitResult$",
+        ),
         (
             lambda: plot.hemisphere(fitted, 532, 45),
-            r"^source: expected mmbrdf\.Model or mmbrdf\.Dataset, not FitResult: its",
+            r"^plot.hemisphere: source: expected mmbrdf\.Model or mmbrdf\.Dataset, not FitResult: its",
         ),
-        (lambda: plot.depolarization_map("ptfe", 532, 45), r"^source: expected .* not str$"),
-        (lambda: plot.realizability_map(None, 532, 45), r"^source: expected .* not NoneType$"),
-        (lambda: plot.hemisphere(ptfe, "532", 45), "^wavelength_nm: expected a number, not '532'$"),
-        (lambda: plot.hemisphere(ptfe, [532, 633], 45), r"^wavelength_nm: expected a number, not \[532, 633\]$"),
-        (lambda: plot.in_plane_curves(ptfe, 532, None), "^theta_i_deg: expected a number, not None$"),
+        (
+            lambda: plot.depolarization_map("ptfe", 532, 45),
+            r"^plot.depolarization_map: source: expected .* not str 'ptfe'$",
+        ),
+        (lambda: plot.realizability_map(None, 532, 45), r"^plot.realizability_map: source: expected .* not NoneType$"),
+        (
+            lambda: plot.hemisphere(ptfe, "532", 45),
+            "^plot.hemisphere: wavelength_nm: expected a number, not str '532'$",
+        ),
+        (
+            lambda: plot.hemisphere(ptfe, [532, 633], 45),
+            "^plot.hemisphere: wavelength_nm: expected a number, not list$",
+        ),
+        (
+            lambda: plot.in_plane_curves(ptfe, 532, None),
+            "^plot.in_plane_curves: theta_i_deg: expected a number, not NoneType$",
+        ),
     ):
         with pytest.raises(TypeError, match=message):
             draw()
     with pytest.raises(ValueError, match="^theta_i_deg = nan, must be finite$"):
         plot.hemisphere(data, 532, np.nan)
+
+
+def test_masked_abscissae_are_refused(ptfe):
+    hidden = np.ma.masked_array([10.0, 20.0, 30.0], [False, True, False])
+    for draw, name in (
+        (lambda: mmbrdf.plot.in_plane_curves(ptfe, 532, theta_r_deg=hidden), "theta_r_deg"),
+        (lambda: mmbrdf.plot.uncertainty_parts(ptfe, 532, 45, theta_r_deg=hidden), "theta_r_deg"),
+        (lambda: mmbrdf.plot.uncertainty_parts(ptfe, 532, hidden, quantity="dhr"), "theta_i_deg"),
+        (lambda: mmbrdf.plot.reflectance_against_angle(ptfe, 532, theta_i_deg=hidden), "theta_i_deg"),
+        (lambda: mmbrdf.plot.hemisphere(ptfe, 532, np.ma.masked), "theta_i_deg"),
+    ):
+        with pytest.raises(ValueError, match=f"^{name}: a part of it is masked; leave it out$"):
+            draw()
 
 
 def test_none_is_the_wavelength_of_a_model_or_of_samples_that_have_one(data, tmp_path):

@@ -207,16 +207,16 @@ def test_other_things_than_a_model_and_samples_are_refused_in_a_line(page, tmp_p
     model, data, _ = page
     fitted = mmbrdf.fit(data, orders=(1, 1))
     for arguments, message in (
-        ((fitted, data), "model: expected mmbrdf.Model, not FitResult: its .model is one"),
-        ((data, model), "model: expected mmbrdf.Model, not Dataset"),
-        ((model, fitted), "data: expected mmbrdf.Dataset, not FitResult"),
-        ((model, tmp_path), f"data: expected mmbrdf.Dataset, not {type(tmp_path).__name__}"),
+        ((fitted, data), "report: model: expected mmbrdf.Model, not FitResult: its .model is one"),
+        ((data, model), "report: model: expected mmbrdf.Model, not Dataset"),
+        ((model, fitted), "report: data: expected mmbrdf.Dataset, not FitResult"),
+        ((model, tmp_path), f"report: data: expected mmbrdf.Dataset, not {type(tmp_path).__name__}"),
     ):
         with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
             mmbrdf.report(*arguments, tmp_path / "report.html")
     for option, message in (
         ({"wavelength_nm": "532 nm"}, "wavelength_nm: expected a number, not '532 nm'"),
-        ({"theta_i_deg": None}, "theta_i_deg: expected a number, not None"),
+        ({"theta_i_deg": None}, "report: theta_i_deg: expected a number, not NoneType"),
     ):
         with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
             mmbrdf.report(model, data, tmp_path / "report.html", **option)
@@ -364,6 +364,43 @@ def test_it_does_not_overwrite_what_it_reports_on(page, tmp_path):
         done = run_module("model.json", "data.csv", "--format", "html", "-o", output, folder=tmp_path)
         assert done.returncode == 1 and "would overwrite" in done.stderr
     assert (tmp_path / "data.csv").read_bytes() == before and mmbrdf.load(tmp_path / "model.json") == model
+
+
+@pytest.mark.parametrize("ending", ["md", "html"])
+def test_a_file_that_is_replaced_while_it_is_read_has_no_report(page, tmp_path, monkeypatch, capsys, ending):
+    """Its digest would be that of another one."""
+    model, data, _ = page
+    model.save(tmp_path / "model.json")
+    data.save(tmp_path / "data.csv")
+    data[:100].save(tmp_path / "other.csv")
+    read = _report.read_samples
+
+    def replaced_after(path, **options):
+        result = read(path, **options)
+        os.replace(tmp_path / "other.csv", tmp_path / "data.csv")
+        return result
+
+    monkeypatch.setattr(_report, "read_samples", replaced_after)
+    arguments = [str(tmp_path / name) for name in ("model.json", "data.csv")]
+    output = ["-o", str(tmp_path / f"r.{ending}")]
+    assert _report.main([*arguments[ending == "html" :], *output]) == 1
+    assert capsys.readouterr().err.endswith("data.csv: changed while it was read: run it again\n")
+    assert not (tmp_path / f"r.{ending}").exists()
+
+
+def test_the_digest_is_that_of_what_was_read(page, tmp_path, monkeypatch):
+    """And not that of the file that took its place before the pictures were drawn."""
+    model, data, _ = page
+    model.save(tmp_path / "model.json")
+    digest = hashlib.sha256((tmp_path / "model.json").read_bytes()).hexdigest()
+
+    def facts(*given):
+        (tmp_path / "model.json").write_text("{}")
+        return mmbrdf.report_json(*given)
+
+    monkeypatch.setattr(_report, "report_json", facts)
+    assert _report.main([str(tmp_path / "model.json"), "-o", str(tmp_path / "r.md")]) == 0
+    assert digest in (tmp_path / "r.md").read_text()
 
 
 def test_importing_the_module_leaves_the_function():

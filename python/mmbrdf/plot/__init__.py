@@ -17,6 +17,7 @@ otherwise, so light comes from the left, the plane of incidence is the horizonta
 scattering is on the right. A ring is the source, which is the retro direction, too; a cross the specular direction; a dashed
 circle the end of the fitted polar angles. Hatched is what has no value.
 """
+from .. import _calls
 from .budgets import anisotropy, uncertainty_parts
 from .curves import in_plane_curves, polar_in_plane, subset_study
 from .designs import plan
@@ -51,3 +52,5 @@ __all__ = [
     "suspicious",
     "uncertainty_parts",
 ]
+
+_calls.tell_in_a_line(globals(), __all__, "plot")

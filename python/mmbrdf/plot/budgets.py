@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 import mmbrdf
 
-from .._arguments import number, own_wavelength, require
+from .._arguments import number, own_wavelength, require, unmasked
 from . import disc, labels, sizes
 from .colours import series
 from .curves import ANGLE_LABEL, grey_beyond, in_plane, mark_plane
@@ -86,7 +86,11 @@ class Parts(NamedTuple):
 
 
 def _of_dhr(model: Model, wavelength_nm, theta_i_deg, phi_i_deg: float, terms) -> Parts:
-    angles = np.arange(0.0, 86.0, 2.5) if theta_i_deg is None else np.atleast_1d(np.asarray(theta_i_deg, float))
+    angles = (
+        np.arange(0.0, 86.0, 2.5)
+        if theta_i_deg is None
+        else np.atleast_1d(np.asarray(unmasked("theta_i_deg", theta_i_deg), float))
+    )
     where = wavelength_nm, angles, phi_i_deg
     value = np.asarray(mmbrdf.directional_hemispherical_reflectance(model, *where))
     parts = mmbrdf.directional_hemispherical_uncertainty(model, *where, terms=terms, by_term=True)
@@ -94,7 +98,9 @@ def _of_dhr(model: Model, wavelength_nm, theta_i_deg, phi_i_deg: float, terms) -
 
 
 def _in_plane(model: Model, wavelength_nm, theta_i_deg: float, phi_i_deg: float, theta_r_deg, quantity, terms) -> Parts:
-    angles = np.arange(-85.0, 86.0, 2.5) if theta_r_deg is None else np.asarray(theta_r_deg, float)
+    angles = (
+        np.arange(-85.0, 86.0, 2.5) if theta_r_deg is None else np.asarray(unmasked("theta_r_deg", theta_r_deg), float)
+    )
     # The intensity that unpolarized light of intensity 1 leaves behind is f11.
     where = in_plane(theta_i_deg, phi_i_deg, angles)
     found = model.analyze(wavelength_nm, *where, terms=terms, stokes=[1, 0, 0, 0])

@@ -12,7 +12,7 @@ from matplotlib.ticker import MultipleLocator
 
 import mmbrdf
 
-from .._arguments import number, own_wavelength, require, require_measured, several_models
+from .._arguments import number, own_wavelength, require, require_measured, several_models, unmasked
 from . import disc, labels, sizes
 from .colours import COMPONENTS, series
 from .scalars import in_frame, sample_uncertainty, scalar
@@ -76,7 +76,7 @@ def in_plane_curves(
     require("model", model, mmbrdf.Model)
     require_measured(model, ("12", "21", "22"))
     wavelength_nm, theta_i_deg = own_wavelength(model, wavelength_nm), number("theta_i_deg", theta_i_deg)
-    angles = np.arange(-90.0, 91.0) if theta_r_deg is None else np.asarray(theta_r_deg, float)
+    angles = np.arange(-90.0, 91.0) if theta_r_deg is None else np.asarray(unmasked("theta_r_deg", theta_r_deg), float)
     geometry = in_plane(theta_i_deg, phi_i_deg, angles)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mmbrdf.ExtrapolationWarning)

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 import mmbrdf
 
-from .._arguments import number, own_wavelength, require
+from .._arguments import number, own_wavelength, require, unmasked
 from . import disc, labels, sizes
 from .colours import STYLES, Stroke, series
 from .curves import grey_beyond
@@ -155,7 +155,7 @@ def _wavelength_handles(model: Model, wavelengths: Sequence[float | None], **sty
 
 def _several(name: str, values: Any) -> NDArray:
     """Abscissae of a curve. ValueError for fewer than two."""
-    result = np.atleast_1d(np.asarray(values, float))
+    result = np.atleast_1d(np.asarray(unmasked(name, values), float))
     if result.ndim != 1 or result.size < 2:
         raise ValueError(f"{name}: a curve needs two values at least")
     return result
