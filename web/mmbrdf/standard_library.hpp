@@ -113,6 +113,11 @@ constexpr void sort(Range&& range, Less less = {}, Projection of = {}) {
   std::sort(std::begin(range), std::end(range),
             [&](auto&& a, auto&& b) { return less(std::invoke(of, a), std::invoke(of, b)); });
 }
+template <class Range, class Less = std::less<>, class Projection = identity>
+void stable_sort(Range&& range, Less less = {}, Projection of = {}) {
+  std::stable_sort(std::begin(range), std::end(range),
+                   [&](auto&& a, auto&& b) { return less(std::invoke(of, a), std::invoke(of, b)); });
+}
 
 template <class Range, class Iterator>
 constexpr void nth_element(Range&& range, Iterator nth) {
