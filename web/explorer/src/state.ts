@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is shown, and the link that says it.
-import type { Frame, StokesConvention } from "mmbrdf";
+import type { Frame, Geometry, StokesConvention } from "mmbrdf";
 
 export interface State {
   model: string;
@@ -110,4 +110,9 @@ export function understood(asked: State, known: Record<"frame" | "convention" | 
     state.limits = [];
   }
   return { state, line: lines.map((one) => `${one}.`).join(" ") };
+}
+
+/** Where the matrix is. */
+export function chosen({ thetaI, phiI, thetaR, phiR }: State): Geometry {
+  return { thetaI, phiI, thetaR, phiR };
 }

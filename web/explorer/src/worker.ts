@@ -3,7 +3,7 @@
 import load, { type Answer, type Mmbrdf, type Model, type ModelAt } from "mmbrdf";
 
 import { dhrAngles, inPlane } from "./scan";
-import type { State } from "./state";
+import { chosen, type State } from "./state";
 
 export interface Question {
   id: number;
@@ -55,7 +55,7 @@ function prepared({ state, opened, contents }: Question): ModelAt {
 function reply(question: Question): Reply {
   const { state, id } = question;
   const here = prepared(question);
-  const geometry = { thetaI: state.thetaI, phiI: state.phiI, thetaR: state.thetaR, phiR: state.phiR };
+  const geometry = chosen(state);
   const scan = inPlane(state);
   const f11 = here.evaluate(scan).filter((_, i) => i % 16 === 0);
   const u11 = here.standardUncertainty(scan).filter((_, i) => i % 16 === 0);
