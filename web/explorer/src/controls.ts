@@ -3,9 +3,10 @@
 import type { Mmbrdf } from "mmbrdf";
 
 import { choice, element, field } from "./dom";
-import { allowed, angles, longest, type State } from "./state";
-
-export const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
+import { polarized } from "./curves";
+import type { Incidence } from "./measured";
+import { kindOf } from "./scan";
+import { allowed, angles, choices, longest, paperLimits, type State } from "./state";
 
 /** Who is told. */
 export interface Listener {
@@ -15,9 +16,13 @@ export interface Listener {
   change(some: Partial<State>, typed?: HTMLInputElement): void;
   open(name: string): void;
   read(file: File): Promise<void>;
+  /** Without the samples that are shown. */
+  forget(): void;
 }
 
 export class Controls {
+  #incidences: Incidence[] = [];
+
   constructor(
     mmbrdf: Mmbrdf,
     readonly page: Listener,
@@ -38,22 +43,49 @@ export class Controls {
       input.value = String(state[id]);
       this.#valid(input, true);
     }
-    for (const id of ["model", "frame", "convention", "projection", "curve"] as const) choice(id).value = state[id];
+    for (const id of ["model", "compare", ...choices] as const) choice(id).value = state[id];
     for (const id of ["normalized", "digits"] as const) field(id).checked = state[id];
     field("locked").checked = state.limits.length > 0;
+    for (const one of document.querySelectorAll<HTMLElement>(".of-other")) one.hidden = !state.compare;
+    const kind = kindOf(state);
+    element("scan-label").hidden = kind !== "plane" && kind !== "azimuth";
+    element("block-label").hidden = kind !== "coefficients";
   }
 
-  /** Names of curves that there are. */
-  get curves(): string[] {
-    return Array.from(choice("curve").options, ({ value }) => value);
+  /** A model that can be chosen. */
+  offer(name: string) {
+    for (const id of ["model", "compare"]) if (!this.values(id).includes(name)) element(id).append(new Option(name, name));
+  }
+
+  /** What can be chosen of a list. */
+  values(id: string): string[] {
+    return Array.from(choice(id).options, ({ value }) => value);
+  }
+
+  /** Blocks of the model's modes, of which `block` is shown. */
+  showBlocks(blocks: string[], block: string) {
+    if (String(this.values("block")) !== String(blocks)) choice("block").replaceChildren(...blocks.map((one) => new Option(one, one)));
+    choice("block").value = block;
+  }
+
+  /** Where there are samples, of which this is shown, if any is; none: there are no samples. */
+  showIncidences(incidences: Incidence[], { wavelength, thetaI, phiI }: State) {
+    for (const one of document.querySelectorAll<HTMLElement>(".of-samples")) one.hidden = !incidences.length;
+    const words = (one: Incidence) => `${one.wavelength} nm, θi ${one.thetaI}°, φi ${one.phiI}° (${one.count})`;
+    const here = incidences.findIndex((one) => one.wavelength === wavelength && one.thetaI === thetaI && one.phiI === phiI);
+    this.#incidences = incidences;
+    choice("incidence").replaceChildren(new Option("another light than any of them", "-1"), ...incidences.map((one, i) => new Option(words(one), String(i))));
+    choice("incidence").value = String(here);
   }
 
   #fill(mmbrdf: Mmbrdf) {
-    for (const name of mmbrdf.materials) element("model").append(new Option(name, name));
-    const curves: [string, string][] = [["polarized", "co- and cross-polarized BRDF, plane of incidence"], ["f11", "f11, plane of incidence"]];
+    for (const name of mmbrdf.materials) this.offer(name);
+    const curves: [string, string][] = [["polarized", "co- and cross-polarized BRDF"], ["f11", "f11, unpolarized BRDF"]];
     for (const { name, meaning } of mmbrdf.quantities)
       if (!polarized.includes(name)) curves.push([name, `${name.replaceAll("_", " ")}: ${meaning}`]);
     curves.push(["dhr", "directional-hemispherical reflectance against θi"]);
+    curves.push(["dhr_wavelength", "directional-hemispherical reflectance against wavelength"]);
+    curves.push(["coefficients", "coefficients of the modes against wavelength"]);
     for (const [value, words] of curves) element("curve").append(new Option(words, value));
   }
 
@@ -82,8 +114,16 @@ export class Controls {
   }
 
   #listenToChoices() {
-    for (const id of ["frame", "convention", "projection", "curve"] as const)
-      choice(id).addEventListener("change", () => this.page.change({ [id]: choice(id).value }));
+    for (const id of [...choices, "block", "compare"] as const)
+      choice(id).addEventListener("change", () =>
+        this.page.change({ [id]: choice(id).value, ...(id === "shown" || id === "compare" ? { limits: [] } : {}) }),
+      );
+    choice("incidence").addEventListener("change", () => {
+      const asked = this.#incidences[Number(choice("incidence").value)];
+      if (asked) this.page.change({ wavelength: asked.wavelength, thetaI: asked.thetaI, phiI: asked.phiI });
+    });
+    element("no-samples").addEventListener("click", () => this.page.forget());
+    element("paper").addEventListener("click", () => this.page.change({ normalized: true, limits: paperLimits }));
     for (const id of ["normalized", "digits"] as const)
       field(id).addEventListener("change", () =>
         this.page.change({ [id]: field(id).checked, ...(id === "normalized" ? { limits: [] } : {}) }),
