@@ -8,6 +8,8 @@ import type { Incidence } from "./measured";
 import { kindOf } from "./scan";
 import { allowed, angles, choices, longest, paperLimits, type State } from "./state";
 
+const mostIncidences = 500; // in a list
+
 /** Who is told. */
 export interface Listener {
   state: State;
@@ -73,9 +75,14 @@ export class Controls {
     for (const one of document.querySelectorAll<HTMLElement>(".of-samples")) one.hidden = !incidences.length;
     const words = (one: Incidence) => `${one.wavelength} nm, θi ${one.thetaI}°, φi ${one.phiI}° (${one.count})`;
     const here = incidences.findIndex((one) => one.wavelength === wavelength && one.thetaI === thetaI && one.phiI === phiI);
-    this.#incidences = incidences;
-    choice("incidence").replaceChildren(new Option("another light than any of them", "-1"), ...incidences.map((one, i) => new Option(words(one), String(i))));
-    choice("incidence").value = String(here);
+    if (this.#incidences !== incidences) {
+      const listed = incidences.slice(0, mostIncidences).map((one, i) => new Option(words(one), String(i)));
+      const more = incidences.length - listed.length;
+      const none = more > 0 ? `another light, or one of ${more} more` : "another light than any of them";
+      choice("incidence").replaceChildren(new Option(none, "-1"), ...listed);
+      this.#incidences = incidences;
+    }
+    choice("incidence").value = String(here < mostIncidences ? here : -1);
   }
 
   #fill(mmbrdf: Mmbrdf) {

@@ -8,7 +8,7 @@ import { Controls } from "./controls";
 import { showCurve } from "./curves";
 import { element } from "./dom";
 import { Hemispheres } from "./hemispheres";
-import { Measured, type Near, nothing } from "./measured";
+import { type Incidence, Measured, type Near, nothing } from "./measured";
 import { Shelf, Shown } from "./models";
 import { Residuals } from "./residuals";
 import { type Along, along } from "./scan";
@@ -16,6 +16,8 @@ import { choices, fromLink, start, type State, toLink, understood } from "./stat
 import { csv, type Named, pictureWords, programLines, pythonLines, save } from "./take";
 import type { Curves, Numbers, Question, Reply } from "./worker";
 import Beside from "./worker?worker&inline";
+
+const noIncidences: Incidence[] = [];
 
 export class Page {
   state: State;
@@ -188,7 +190,7 @@ export class Page {
     if (this.#failed) this.#trouble("");
     this.#failed = false;
     this.#controls.show(typed);
-    this.#controls.showIncidences(this.#measured?.incidences ?? [], state);
+    this.#controls.showIncidences(this.#measured?.incidences ?? noIncidences, state);
     const { model } = this.#shown;
     const blocks = [...new Set(model.modes.map(({ block }) => block))];
     if (!blocks.includes(state.block)) state.block = blocks[0];

@@ -135,6 +135,17 @@ test("the list of lights goes to another, and samples can be taken away", { skip
   assert.equal(await page.textContent("#samples-words"), "");
 });
 
+test("of many lights the list has the first, and says how many more there are", { skip: skip || without_program }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532" });
+  await page.setInputFiles("#file", { name: "many.csv", mimeType: "text/csv", buffer: Buffer.from(run("simulate", "ptfe-532", "--grid", "random:600")) });
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  const lights = await page.$$eval("#incidence option", (all) => all.map((one) => one.textContent));
+  assert.equal(lights.length, 501);
+  assert.equal(lights[0], "another light, or one of 100 more");
+  assert.equal(await points(page), 16); // the nearest of all lights is shown
+});
+
 test("samples that cannot be read give the program's line, and those that are shown stay", { skip: skip || without_program }, async () => {
   const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
   const good = readFileSync(measured("samples.csv"), "utf8");
@@ -177,6 +188,10 @@ test("two models: both numbers and their difference, from a link that keeps them
     near(Number(row.other_f11), Number(others[i].f11), 1e-12, "f11 of the other");
     near(Number(row.u_other_f11), Number(others[i].u_f11), 1e-9, "its u");
   });
+  const off = rows.map((_, i) => others[i].f11 - ours[i].f11);
+  const [, low, high] = /Δ f11 from (\S+) to (\S+)\.$/.exec(await page.getAttribute("#chart svg", "aria-label"));
+  near(Number(low), Math.min(...off), 1e-7, "the least of the curve of differences"); // six digits are said
+  near(Number(high), Math.max(...off), 1e-7, "the largest");
   assert.match(page.url(), /compare=ptfe-633&.*shown=difference|shown=difference.*compare=ptfe-633/);
   assert.match(await page.textContent("#program"), /\nmmbrdf compare ptfe-532 ptfe-633 -w 532$/);
   assert.deepEqual(complaints, []);
