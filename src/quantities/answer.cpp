@@ -32,9 +32,11 @@ struct PreparedAnswers::Prepared {
 namespace {
 
 std::string why_uncertainty_is_unknown(const Model& model) {
-  if (model.posterior) return "";  // what it takes to ask it is left to the wavelength that is asked
   try {
-    prepare_uncertainty(model, 1);
+    if (model.posterior)
+      model.posterior->data();  // is read; covariances are worked out for wavelengths that are asked
+    else
+      prepare_uncertainty(model, 1);
     return "";
   } catch (const std::invalid_argument& error) {
     return error.what();
