@@ -195,16 +195,14 @@ Sample from_frame(const Sample& sample, Frame frame) {
 }
 
 Sample in_frame(const Sample& sample, Frame frame) {
+  if (own_frame(sample) == frame) return in_own_frame(sample);
   Sample result = sample;
-  if (sample.as_measured && sample.as_measured->frame == frame) {
-    result.normalized = sample.as_measured->normalized;
-    result.uncertainty = sample.as_measured->uncertainty;
-  } else if (frame != Frame::xy) {
-    const FrameAngles angles = angles_to_xy(sample.geometry, frame);
-    result.normalized = rotated(sample.normalized, -angles.scattered, -angles.incident);
-    if (has_uncertainty(sample))
-      result.uncertainty = rotated_uncertainty(sample.uncertainty, -angles.scattered, -angles.incident);
-  }
+  result.as_measured.reset();
+  if (frame == Frame::xy) return result;
+  const FrameAngles angles = angles_to_xy(sample.geometry, frame);
+  result.normalized = rotated(sample.normalized, -angles.scattered, -angles.incident);
+  if (has_uncertainty(sample))
+    result.uncertainty = rotated_uncertainty(sample.uncertainty, -angles.scattered, -angles.incident);
   return result;
 }
 

@@ -300,6 +300,8 @@ TEST(Sample, InTheFrameOfItsMeasurementIsAsItWasMeasured) {
   EXPECT_EQ(not_measured(there), not_measured(measured));
   EXPECT_EQ(there.normalized(0, 1), measured.normalized(0, 1));
   EXPECT_EQ(there.uncertainty, measured.uncertainty);
+  EXPECT_EQ(not_measured(in_frame(in_xy, Frame::xy)), not_measured(in_xy));
+  EXPECT_EQ(in_frame(in_xy, Frame::xy).uncertainty, in_xy.uncertainty);
 }
 
 // Each element in sr⁻¹ is f11 m: a change of one input shows what it gives.

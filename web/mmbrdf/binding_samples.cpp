@@ -60,12 +60,12 @@ EMSCRIPTEN_KEEPALIVE void free_samples(Samples* samples) { delete samples; }
 EMSCRIPTEN_KEEPALIVE const char* describe_samples(const Samples* samples) {
   return guarded([&] {
     ordered_json json = {{"count", samples->all.size()}, {"understood", samples->understood}};
-    json["hasUncertainty"] = !samples->all.empty() && std::ranges::all_of(samples->all, has_uncertainty);
+    json["hasUncertainty"] = std::ranges::all_of(samples->all, has_uncertainty, in_own_frame);
     json["wavelengths"] = json["measured"] = ordered_json::array();
     for (const double wavelength : wavelengths(samples->all)) json["wavelengths"].push_back(in_nanometres(wavelength));
-    const Elements missing = not_measured(samples->all);
+    const Elements measured = measured_elements(samples->all);
     for (std::size_t e = 0; e < 16; ++e)
-      if (!missing[e]) json["measured"].push_back(sample_element(e));
+      if (measured[e]) json["measured"].push_back(sample_element(e));
     return text_of(json);
   });
 }
