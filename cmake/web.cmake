@@ -1,8 +1,9 @@
 # The library as WebAssembly, by emscripten (preset web): what the module of web/mmbrdf calls, and no more.
-# Rooms that read measurements and fit them are left out; so is what includes them.
-list(FILTER sources EXCLUDE REGEX "/src/(fitting|formats|polarimetry)/")
-list(FILTER sources EXCLUDE REGEX "/src/samples/(comparison|inspection|simulation|noise|partition|mirror_pairs)[.]cpp$")
-list(FILTER sources EXCLUDE REGEX "/src/files/(instrument_file|readings_file|samples_file|sample_columns|csv_geometry)[.]cpp$")
+# Rooms that measure and fit are left out, and what writes formats of others; so is what includes them.
+list(FILTER sources EXCLUDE REGEX "/src/(fitting|polarimetry)/")
+list(FILTER sources EXCLUDE REGEX "/src/formats/(angle_table|export|new_netcdf|transfer[a-z_]*|[a-z]+_export)[.]cpp$")
+list(FILTER sources EXCLUDE REGEX "/src/samples/(comparison|inspection|matching|simulation|noise|partition|mirror_pairs)[.]cpp$")
+list(FILTER sources EXCLUDE REGEX "/src/files/(instrument_file|readings_file)[.]cpp$")
 list(FILTER sources EXCLUDE REGEX
   "/src/quantities/(angle_unit|conventions|fit_warnings|fit_warnings_inspect|plan_like|report|report_samples|significance)[.]cpp$")
 

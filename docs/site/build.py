@@ -48,6 +48,7 @@ CONTENTS = {
         "python",
         "cpp",
         "javascript",
+        "explorer",
         "interfaces",
         "uncertainty",
         "polarimeter",

@@ -21,17 +21,22 @@ constexpr std::string_view frame_name = "frame";
 /// The line of a table's names, as it is known to be read.
 void list(std::string& text, const std::string& part) { text += (text.empty() ? "" : ", ") + part; }
 
-/// Throws if these are no samples but a measurement in a format of other programs; a pipe is not looked at.
-std::istream& own_table(std::istream& in, const std::string& name) {
+/// foreign_format() of what comes, which is still to be read after that; a pipe is not looked at.
+std::string format_of(std::istream& in) {
   const std::istream::pos_type begin = in.tellg();
-  if (begin == std::istream::pos_type(-1)) return in;
+  if (begin == std::istream::pos_type(-1)) return "";
   std::string head(foreign_head, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));
   in.clear();
   const auto size = static_cast<std::uint64_t>(in.seekg(0, std::ios::end).tellg() - begin);
   in.seekg(begin);
-  if (const std::string format = foreign_format(head, size); !format.empty())
+  return foreign_format(head, size);
+}
+
+/// Throws if these are no samples but a measurement in a format of other programs.
+std::istream& own_table(std::istream& in, const std::string& name) {
+  if (const std::string format = format_of(in); !format.empty())
     throw std::runtime_error(name + ": is " + format + ", no table of samples; this makes one of it: mmbrdf convert " +
                              shown_name(name) + " OUT.csv");
   return in;
@@ -180,8 +185,12 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name, cons
 }
 
 bool holds_samples(const std::string& path) {
-  if (!foreign_format(path).empty()) return true;  // whoever reads them says what to do
   std::ifstream in = open_input(path);
+  return holds_samples(in);
+}
+
+bool holds_samples(std::istream& in) {
+  if (!format_of(in).empty()) return true;  // whoever reads them says what to do
   std::string comment;
   for (std::string line; std::getline(in, line);) {
     const std::size_t first = line.find_first_not_of(" \t\r\xef\xbb\xbf");

@@ -65,7 +65,7 @@ struct AzimuthalTerm {
 /// The terms of a model at phi_i = 0, where sines of phi_i are 0.
 std::vector<AzimuthalTerm> azimuthal_terms(const PreparedModel& model) {
   const PreparedPattern& pattern = Evaluation::pattern(model);
-  const std::span<const double> coefficients = Evaluation::coefficients(model);
+  const std::span<const double> coefficients = model.coefficients();
   std::vector<AzimuthalTerm> result;
   for (std::size_t q = 0; q < pattern.modes(); ++q)
     for (std::size_t t = pattern.terms_end[q]; t < pattern.terms_end[q + 1]; ++t) {

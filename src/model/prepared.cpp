@@ -97,8 +97,6 @@ KernelModel<double> Evaluation::model(const PreparedModel& prepared) {
 
 const PreparedPattern& Evaluation::pattern(const PreparedModel& prepared) { return *prepared.pattern_; }
 const PreparedPattern& Evaluation::pattern(const PreparedIncidence& prepared) { return *prepared.pattern_; }
-std::span<const double> Evaluation::coefficients(const PreparedModel& prepared) { return prepared.of_modes_; }
-
 Mueller PreparedModel::evaluate(const Geometry& geometry, Frame frame) const {
   Mueller m;
   evaluate(std::span(&geometry, 1), frame, std::span(&m, 1));

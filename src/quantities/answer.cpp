@@ -33,7 +33,10 @@ namespace {
 
 std::string why_uncertainty_is_unknown(const Model& model) {
   try {
-    prepare_uncertainty(model, 1);
+    if (model.posterior)
+      model.posterior->data();  // is read; covariances are worked out for wavelengths that are asked
+    else
+      prepare_uncertainty(model, 1);
     return "";
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -295,6 +298,24 @@ PreparedAnswers Answers::at(double wavelength) const {
   if (asked_->unknown_uncertainty.empty()) p.uncertainty = prepare_uncertainty(asked_->model, wavelength);
   if (asked_->draws) p.draws = asked_->draws->at(wavelength);
   return PreparedAnswers(std::make_shared<const PreparedAnswers::Prepared>(std::move(p)));
+}
+
+std::vector<Answered> quantities_of(const Sample& sample) {
+  const Sample measured = in_frame(sample, Frame::sp);
+  Error error{not_measured(sample).none() ? change_frame(covariance(sample), sample.geometry, Frame::xy, Frame::sp)
+                                          : covariance(measured),
+              {},
+              {}};
+  Elements uncertain;
+  for (std::size_t e = 0; e < 16; ++e) uncertain[e] = std::isnan(error.total(e, e));
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t other = 0; other < 16; ++other)
+      if (uncertain[e] || uncertain[other]) error.total(e, other) = 0;
+  std::vector<Answered> result;
+  for (const Quantity& quantity : quantities(false))
+    result.push_back(in_first_order(quantity, mueller(measured), {1, 0, 0, 0},
+                                    (quantity.needs & uncertain).any() ? nullptr : &error));
+  return result;
 }
 
 Answer PreparedAnswers::at(const Geometry& geometry) const { return std::move(at({&geometry, 1}).front()); }

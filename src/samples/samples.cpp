@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -190,6 +191,40 @@ Sample from_frame(const Sample& sample, Frame frame) {
     result.uncertainty = rotated_uncertainty(sample.uncertainty, angles.scattered, angles.incident);
   if ((not_measured(result) & ~not_measured(sample)).any())
     result.as_measured = std::make_shared<const AsMeasured>(AsMeasured{frame, sample.normalized, sample.uncertainty});
+  return result;
+}
+
+Sample in_frame(const Sample& sample, Frame frame) {
+  if (own_frame(sample) == frame) return in_own_frame(sample);
+  Sample result = sample;
+  result.as_measured.reset();
+  if (frame == Frame::xy) return result;
+  const FrameAngles angles = angles_to_xy(sample.geometry, frame);
+  result.normalized = rotated(sample.normalized, -angles.scattered, -angles.incident);
+  if (has_uncertainty(sample))
+    result.uncertainty = rotated_uncertainty(sample.uncertainty, -angles.scattered, -angles.incident);
+  return result;
+}
+
+Mueller mueller(const Sample& sample) {
+  Mueller result = sample.f11 * sample.normalized;
+  result(0, 0) = sample.f11;
+  return result;
+}
+
+MuellerCovariance covariance(const Sample& sample) {
+  const auto variance = [&](std::size_t e) {
+    const double u = sample.uncertainty.elements[e];
+    return u > 0 ? u * u : std::numeric_limits<double>::quiet_NaN();
+  };
+  Mueller slopes = sample.normalized;  // of F over f11
+  slopes(0, 0) = 1;
+  MuellerCovariance result;
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t other = 0; other < 16; ++other)
+      result(e, other) = slopes.elements[e] * slopes.elements[other] * variance(0);
+  for (std::size_t e = 1; e < 16; ++e) result(e, e) += sample.f11 * sample.f11 * variance(e);
+  set_unknown(result, not_measured(sample));
   return result;
 }
 

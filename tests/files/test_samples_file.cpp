@@ -103,6 +103,8 @@ TEST(Samples, AreToldFromModelsByTheFirstLetter) {
   const Folder folder;
   const auto holds = [&](const std::string& text) {
     std::ofstream(folder / "f") << text;
+    std::istringstream in(text);
+    EXPECT_EQ(holds_samples(in), holds_samples(folder / "f")) << text;
     return holds_samples(folder / "f");
   };
   EXPECT_TRUE(holds("wavelength_nm,theta_i_deg"));

@@ -164,5 +164,40 @@ TEST(Answer, WithoutPartsHasTheSameUncertainties) {
   }
 }
 
+/// As a measurement of a model has it, in the xy frame.
+Sample sample_of(const Model& model) {
+  const Mueller m = prepare(model, 0.532).evaluate(oblique);
+  Sample sample{0.532, oblique, m(0, 0), normalized(m)};
+  for (std::size_t e = 0; e < 16; ++e) sample.uncertainty.elements[e] = 1e-3 * static_cast<double>(1 + e);
+  return sample;
+}
+
+TEST(Answer, OfASampleHasTheQuantitiesOfItsMatrix) {
+  const Model model = least_squares("ptfe-532");
+  const Sample sample = sample_of(model);
+  const Answer of_model = Answers(model).at(0.532).at(oblique);
+  const std::vector<Answered> measured = quantities_of(sample);
+  const MuellerCovariance errors = change_frame(covariance(sample), oblique, Frame::xy, Frame::sp);
+  const Mueller m = change_frame(mueller(sample), oblique, Frame::xy, Frame::sp);
+  ASSERT_EQ(measured.size(), of_model.quantities.size());
+  for (std::size_t q = 0; q < measured.size(); ++q) {
+    const Quantity& quantity = *measured[q].quantity;
+    EXPECT_NEAR(measured[q].value.value(), of_model.quantities[q].value.value(), 1e-9)
+        << quantity.name;  // roots near 0
+    const double u = standard_uncertainty(quantity.gradient(m, {1, 0, 0, 0}), errors);
+    EXPECT_NEAR(measured[q].uncertainty.value(), u, 1e-9 * u) << quantity.name;
+  }
+}
+
+TEST(Answer, OfASampleKnowsNothingOfWhatNeedsAnUnmeasuredElementOrAnUnknownUncertainty) {
+  const Model model = least_squares("ptfe-532");
+  Sample sample = sample_of(model);
+  sample.normalized(3, 3) = std::nan("");
+  for (const Answered& a : quantities_of(sample))
+    EXPECT_EQ(a.value.has_value(), !a.quantity->needs[15]) << a.quantity->name;
+  sample.uncertainty = {};
+  for (const Answered& a : quantities_of(sample)) EXPECT_FALSE(a.uncertainty) << a.quantity->name;
+}
+
 }  // namespace
 }  // namespace mmbrdf

@@ -278,3 +278,57 @@ TEST(Sample, AtZeroAzimuthDoesNotKnowWhatDependsOnAnUnknownUncertainty) {
   sample.uncertainty = {};
   EXPECT_FALSE(has_uncertainty(at_zero_azimuth(sample)));
 }
+
+TEST(Sample, InAFrameHasTheMatrixOfThatFrameAndComesBack) {
+  const Sample sample = with_uncertainty(2.1);
+  for (const Frame frame : {Frame::xy, Frame::sp, Frame::scattering_plane}) {
+    const Sample there = in_frame(sample, frame), back = from_frame(there, frame);
+    const Mueller expected = change_frame(sample.normalized, sample.geometry, Frame::xy, frame);
+    for (std::size_t e = 0; e < 16; ++e) {
+      EXPECT_NEAR(there.normalized.elements[e], expected.elements[e], frame_error);
+      EXPECT_NEAR(back.normalized.elements[e], sample.normalized.elements[e], 2 * frame_error);
+    }
+    EXPECT_EQ(there.uncertainty == sample.uncertainty, frame == Frame::xy);
+  }
+}
+
+TEST(Sample, InTheFrameOfItsMeasurementIsAsItWasMeasured) {
+  Sample measured = with_uncertainty(2.1);
+  measured.normalized(1, 2) = nan_value;
+  const Sample in_xy = from_frame(measured, Frame::sp), there = in_frame(in_xy, Frame::sp);
+  EXPECT_GT(not_measured(in_xy).count(), 1U);
+  EXPECT_EQ(not_measured(there), not_measured(measured));
+  EXPECT_EQ(there.normalized(0, 1), measured.normalized(0, 1));
+  EXPECT_EQ(there.uncertainty, measured.uncertainty);
+  EXPECT_EQ(not_measured(in_frame(in_xy, Frame::xy)), not_measured(in_xy));
+  EXPECT_EQ(in_frame(in_xy, Frame::xy).uncertainty, in_xy.uncertainty);
+}
+
+// Each element in sr⁻¹ is f11 m: a change of one input shows what it gives.
+TEST(Sample, HasTheCovarianceOfUncorrelatedElements) {
+  const Sample sample = with_uncertainty(2.1);
+  MuellerCovariance expected;
+  for (std::size_t from = 0; from < 16; ++from) {
+    Sample changed = sample;
+    (from == 0 ? changed.f11 : changed.normalized.elements[from]) += sample.uncertainty.elements[from];
+    const Mueller part = mueller(changed) - mueller(sample);
+    for (std::size_t e = 0; e < 16; ++e)
+      for (std::size_t other = 0; other < 16; ++other) expected(e, other) += part.elements[e] * part.elements[other];
+  }
+  const MuellerCovariance found = covariance(sample);
+  for (std::size_t e = 0; e < 16; ++e)  // differences of numbers near 1, of 1e-3: a few roundings of 1e-16
+    for (std::size_t other = 0; other < 16; ++other) EXPECT_NEAR(found(e, other), expected(e, other), 1e-18);
+}
+
+TEST(Sample, DoesNotKnowTheCovarianceOfWhatHasNoUncertaintyOrWasNotMeasured) {
+  Sample sample = with_uncertainty(2.1);
+  sample.uncertainty(0, 1) = 0;
+  sample.normalized(3, 3) = nan_value;
+  const MuellerCovariance found = covariance(sample);
+  for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(std::isnan(found(e, e)), e == 1 || e == 15) << e;
+  Sample without_f11 = sample;
+  without_f11.f11 = nan_value;
+  EXPECT_TRUE(std::isnan(covariance(without_f11)(0, 0)));
+  sample.uncertainty(0, 0) = 0;  // all have f11 in them
+  EXPECT_TRUE(std::isnan(covariance(sample)(5, 5)));
+}

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "binding.hpp"
 #include "hemisphere.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
@@ -24,30 +24,10 @@
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 using namespace mmbrdf;
+using namespace mmbrdf::web;
 using nlohmann::ordered_json;
 
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-std::string last_error, last_text;
-
-/// What work() returns, or 0 and the message of what it throws.
-template <class Work>
-auto guarded(Work work) noexcept -> decltype(work()) {
-  try {
-    return work();
-  } catch (const std::exception& e) {
-    last_error = e.what();
-  } catch (...) {
-    last_error = "unknown error";
-  }
-  return {};
-}
-
-const char* text_of(const ordered_json& json) {
-  last_text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  return last_text.c_str();
-}
 
 /// JSON has no word for what is not known but null.
 template <class T>
@@ -65,29 +45,35 @@ std::vector<Geometry> geometries(const double* degrees, std::size_t count) {
   return result;
 }
 
-StokesConvention convention_numbered(int number) { return static_cast<StokesConvention>(number); }
-Frame frame_numbered(int number) { return static_cast<Frame>(number); }
-
 /// Facts about it are asked for often, uncertainties seldom: they take far longer to prepare.
 struct At {
   const Model& model;
   PreparedModel prepared;
   std::optional<PreparedUncertainty> prepared_uncertainty = {};
+  std::map<std::pair<Frame, bool>, PreparedAnswers> prepared_answers = {};  // by frame, and whether with parts
 
   const PreparedUncertainty* uncertainty() {
     if (!prepared_uncertainty && knows_uncertainty(model))
       prepared_uncertainty = prepare_uncertainty(model, prepared.wavelength());
     return prepared_uncertainty ? &*prepared_uncertainty : nullptr;
   }
+
+  const PreparedAnswers& answers(Frame frame, bool parts) {
+    const auto known = prepared_answers.find({frame, parts});
+    if (known != prepared_answers.end()) return known->second;
+    const Answers answers(model, {.frame = frame, .parts = parts});
+    return prepared_answers.emplace(std::pair(frame, parts), answers.at(prepared.wavelength())).first->second;
+  }
 };
 
-ordered_json answered_json(const Answer& answer, const std::vector<std::string>& parts) {
+ordered_json answered_json(const Answer& answer) {
   ordered_json list = ordered_json::array();
   for (const Answered& a : answer.quantities) {
     ordered_json one = {
         {"name", a.quantity->name}, {"value", or_null(a.value)}, {"uncertainty", or_null(a.uncertainty)}};
     one["parts"] = ordered_json::object();
-    for (std::size_t k = 0; k < parts.size() && k < a.parts.size(); ++k) one["parts"][parts[k]] = a.parts[k];
+    for (std::size_t k = 0; answer.budget && k < answer.budget->terms.size() && k < a.parts.size(); ++k)
+      one["parts"][answer.budget->terms[k].name] = a.parts[k];
     list.push_back(one);
   }
   return list;
@@ -209,12 +195,32 @@ EMSCRIPTEN_KEEPALIVE const char* outside_words(const At* at, std::uint32_t reaso
   });
 }
 
+/// The modes of the model, block after block.
+EMSCRIPTEN_KEEPALIVE const char* modes_of(const Model* model) {
+  return guarded([&] {
+    ordered_json json = ordered_json::array();
+    for (const FittedBlock& fitted : model->blocks)
+      for (const Mode& mode : fitted.block.modes)
+        json.push_back({{"block", fitted.block.name},
+                        {"function", to_string(mode.function)},
+                        {"n", mode.n},
+                        {"m", mode.m},
+                        {"k", mode.k},
+                        {"l", mode.l}});
+    return text_of(json);
+  });
+}
+
+/// As many numbers as there are modes.
+EMSCRIPTEN_KEEPALIVE void coefficients_at(const At* at, double* out) {
+  std::ranges::copy(at->prepared.coefficients(), out);
+}
+
 /// Values and standard uncertainties, one list of `count` for each quantity of the table.
-EMSCRIPTEN_KEEPALIVE int quantities_at(const At* at, const double* degrees, std::size_t count, double* values,
+EMSCRIPTEN_KEEPALIVE int quantities_at(At* at, const double* degrees, std::size_t count, double* values,
                                        double* uncertainties) {
   return guarded([&] {
-    const std::vector<Answer> answers =
-        Answers(at->model, {.parts = false}).at(at->prepared.wavelength()).at(geometries(degrees, count));
+    const std::vector<Answer> answers = at->answers(Frame::xy, false).at(geometries(degrees, count));
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t q = 0; q < answers[i].quantities.size(); ++q) {
         values[q * count + i] = answers[i].quantities[q].value.value_or(unknown);
@@ -225,10 +231,9 @@ EMSCRIPTEN_KEEPALIVE int quantities_at(const At* at, const double* degrees, std:
 }
 
 /// All that the model says at one geometry.
-EMSCRIPTEN_KEEPALIVE const char* answer_at(const At* at, const double* degrees, int frame, int convention) {
+EMSCRIPTEN_KEEPALIVE const char* answer_at(At* at, const double* degrees, int frame, int convention) {
   return guarded([&] {
-    const Answers answers(at->model, {.frame = frame_numbered(frame)});
-    const Answer answer = answers.at(at->prepared.wavelength()).at(geometry(degrees));
+    const Answer answer = at->answers(frame_numbered(frame), true).at(geometry(degrees));
     const Mueller m = convert(answer.elements, StokesConvention::germer2017, convention_numbered(convention));
     return text_of(
         {{"elements", m.elements},
@@ -238,7 +243,7 @@ EMSCRIPTEN_KEEPALIVE const char* answer_at(const At* at, const double* degrees, 
          {"estimable", or_null(answer.estimable)},
          {"realizable", or_null(answer.realizable)},
          {"budget", budget_json(answer.budget)},
-         {"quantities", answered_json(answer, answers.names_of_parts())}});
+         {"quantities", answered_json(answer)}});
   });
 }
 
@@ -276,6 +281,13 @@ EMSCRIPTEN_KEEPALIVE int hemisphere_evaluate(web::Hemisphere* hemisphere, const 
   return guarded([&] {
     hemisphere->evaluate(at->prepared, direction_from_degrees(theta, phi), frame_numbered(frame),
                          convention_numbered(convention), divided != 0);
+    return 1;
+  });
+}
+
+EMSCRIPTEN_KEEPALIVE int hemisphere_subtract(web::Hemisphere* hemisphere, const web::Hemisphere* first) {
+  return guarded([&] {
+    hemisphere->subtract(*first);
     return 1;
   });
 }

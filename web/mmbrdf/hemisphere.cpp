@@ -29,7 +29,7 @@ bool direction_of_pixel(double u, double v, bool lambert, Vector3& to) {
 
 }  // namespace
 
-Hemisphere::Hemisphere(int pixels, bool lambert) : pixels_(static_cast<std::size_t>(pixels)) {
+Hemisphere::Hemisphere(int pixels, bool lambert) : pixels_(static_cast<std::size_t>(pixels)), lambert_(lambert) {
   if (pixels < 8 || pixels > 2048)
     throw std::invalid_argument("pixels = " + std::to_string(pixels) + ", must be in 8...2048");
   std::map<std::size_t, std::uint32_t> known;
@@ -72,6 +72,13 @@ void Hemisphere::evaluate(const PreparedModel& model, const Direction& incident,
   }
   for (std::size_t c = 0; c < cells_.size(); ++c)
     outside_[c] = leaves_known_range(model.outside({incident, cells_[c]}));
+}
+
+void Hemisphere::subtract(const Hemisphere& first) {
+  if (pixels_ != first.pixels_ || lambert_ != first.lambert_)
+    throw std::invalid_argument("hemispheres to subtract must have as many pixels, and the same projection");
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] -= first.values_[i];
+  for (std::size_t c = 0; c < outside_.size(); ++c) outside_[c] |= first.outside_[c];
 }
 
 void Hemisphere::extremes(float* out) const {

@@ -23,7 +23,11 @@ class Hemisphere {
   void evaluate(const PreparedModel& model, const Direction& incident, Frame frame, StokesConvention convention,
                 bool divided);
 
-  /// Smallest and largest of each element as evaluated, 32 numbers.
+  /// Makes of what was evaluated its difference from what the first one has: this − first, to the single precision of both.
+  /// Beyond the range is what is so of either. Throws std::invalid_argument unless both have the same directions.
+  void subtract(const Hemisphere& first);
+
+  /// Smallest and largest of each element, 32 numbers.
   void extremes(float* out) const;
 
   /// The image of what was evaluated: colors() from the lower to the upper of limits(), lighter or darker stripes where
@@ -42,6 +46,7 @@ class Hemisphere {
 
  private:
   std::size_t pixels_;
+  bool lambert_;
   std::vector<float> x_, y_, z_, values_;
   std::vector<std::uint32_t> at_;
   std::vector<std::uint32_t> cell_;    // of each direction

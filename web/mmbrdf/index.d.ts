@@ -106,11 +106,24 @@ export interface ModelAt {
   /** Everything at one geometry, with the parts of the uncertainties. */
   answer(geometry: Geometry | readonly number[], options?: Omit<MatrixOptions, "normalized">): Answer;
 
+  /** The coefficients at this wavelength, one for each of {@link Model.modes}: those of f11 in sr^-1, others without unit. */
+  coefficients(): Float64Array;
+
   /** Directional-hemispherical reflectance for unpolarized light from these polar angles. */
   directionalHemisphericalReflectance(theta: number | readonly number[] | Float64Array): WithUncertainties;
 
   /** Gives its memory back; it cannot be used after that. */
   free(): void;
+}
+
+/** A basis function with its indices; which elements it feeds says the block, whose modes were fitted together. */
+export interface Mode {
+  block: string;
+  function: string;
+  n: number;
+  m: number;
+  k: number;
+  l: number;
 }
 
 export interface Model {
@@ -124,11 +137,38 @@ export interface Model {
   readonly thetaRMax: number | null;
   readonly hasUncertainty: boolean;
   readonly provenance: Record<string, string>;
+  /** Block after block, in the order of coefficients. */
+  readonly modes: Mode[];
 
   /** Prepared at a wavelength in nm. Throws for one that is not positive. */
   at(wavelength: number): ModelAt;
 
   /** Gives its memory back, and with it what was prepared of it. */
+  free(): void;
+}
+
+/** Measured matrices, as the program reads them. Samples are counted from 0, in the order of the file. */
+export interface Samples {
+  readonly name: string;
+  readonly count: number;
+  /** nm, rising. */
+  readonly wavelengths: number[];
+  /** Elements that any of them has: "f11", "m12" ... "m44". All others are NaN. */
+  readonly measured: string[];
+  /** Whether all of them have uncertainties. */
+  readonly hasUncertainty: boolean;
+  /** How the table was read, where it is not as the project's own; else empty. */
+  readonly understood: string;
+  /** A copy of five numbers of each: wavelength in nm, thetaI, phiI, thetaR and phiR in degrees. */
+  readonly places: Float64Array;
+
+  /** Sixteen elements of each, and their standard uncertainties; NaN: not measured, or not known. */
+  elements(which: ArrayLike<number>, options?: MatrixOptions): WithUncertainties;
+
+  /** Every quantity of {@link Mmbrdf.quantities}, of the matrix in the frame sp; errors of elements count as uncorrelated. */
+  quantities(which: ArrayLike<number>): Record<string, WithUncertainties>;
+
+  /** Gives the memory back; they cannot be used after that. */
   free(): void;
 }
 
@@ -155,6 +195,11 @@ export interface Hemisphere {
 
   /** All elements, with light from there. Throws, as all here do, after free(), and where `at` or its model was freed. */
   evaluate(at: ModelAt, theta: number, phi?: number, options?: MatrixOptions): void;
+  /**
+   * Makes of `values` their difference: this - first. Beyond the range is what is so of either. Throws unless both have as
+   * many pixels, and one projection.
+   */
+  subtract(first: Hemisphere): void;
   /** Smallest and largest of each element, 32 numbers. */
   extremes(): Float32Array;
   /** Writes `image` from `values`, `limits` and `colors`. */
@@ -178,6 +223,12 @@ export interface Mmbrdf {
    * in messages. Throws for contents of another type.
    */
   model(contents: string | ArrayBuffer | Uint8Array, path: string): Model;
+
+  /** Whether contents begin as a file of samples does, and none of a model. */
+  holdsSamples(contents: string | ArrayBuffer | Uint8Array): boolean;
+
+  /** Samples from the contents of a file, otherwise as {@link model}. */
+  samples(contents: string | ArrayBuffer | Uint8Array, path: string): Samples;
 
   /** Tiles of 8 to 2048 pixels; in direction cosines, or in the projection that keeps solid angles. */
   hemisphere(pixels: number, options?: { projection?: "projected" | "lambert" }): Hemisphere;

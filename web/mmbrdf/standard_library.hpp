@@ -47,6 +47,11 @@ constexpr auto find_if(Range&& range, Is is, Projection of = {}) {
   return std::find_if(std::begin(range), std::end(range),
                       [&](auto&& x) { return std::invoke(is, std::invoke(of, x)); });
 }
+template <class Range, class Is, class Projection = identity>
+constexpr auto find_if_not(Range&& range, Is is, Projection of = {}) {
+  return ranges::find_if(
+      range, [&](auto&& x) { return !std::invoke(is, x); }, of);
+}
 template <class Range, class T, class Projection = identity>
 constexpr auto find(Range&& range, const T& value, Projection of = {}) {
   return ranges::find_if(
@@ -112,6 +117,11 @@ template <class Range, class Less = std::less<>, class Projection = identity>
 constexpr void sort(Range&& range, Less less = {}, Projection of = {}) {
   std::sort(std::begin(range), std::end(range),
             [&](auto&& a, auto&& b) { return less(std::invoke(of, a), std::invoke(of, b)); });
+}
+template <class Range, class Less = std::less<>, class Projection = identity>
+void stable_sort(Range&& range, Less less = {}, Projection of = {}) {
+  std::stable_sort(std::begin(range), std::end(range),
+                   [&](auto&& a, auto&& b) { return less(std::invoke(of, a), std::invoke(of, b)); });
 }
 
 template <class Range, class Iterator>

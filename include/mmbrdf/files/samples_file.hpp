@@ -70,6 +70,7 @@ class SampleReader {
 /// with a letter, a quote or a comma, or with a number behind a comment that names angles. Throws std::runtime_error for a
 /// file that cannot be opened.
 bool holds_samples(const std::string& path);
+bool holds_samples(std::istream& in);
 
 /// Samples in the layout of the published data, with the project's own column names, or as other programs write tables
 /// (docs/formats.md). Throws std::runtime_error, as the classes above do, for a file without rows or with elements that

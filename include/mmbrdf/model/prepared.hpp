@@ -48,6 +48,9 @@ class PreparedModel {
 
   double wavelength() const { return wavelength_; }
 
+  /// Σ_p λ^p a_p of its coefficients of power p, one for each mode, block after block as in the model.
+  std::span<const double> coefficients() const { return of_modes_; }
+
   /// Of the model's table, at this wavelength.
   double reflectance() const { return reflectance_; }
 

@@ -18,6 +18,7 @@
 
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/quantities/quantities.hpp"
+#include "mmbrdf/samples/samples.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 
 namespace mmbrdf {
@@ -41,6 +42,10 @@ struct Answered {
   std::vector<double> parts = {};
   bool known = true;  ///< the elements that it needs were measured
 };
+
+/// The quantities of a measured matrix but for those that take light, with uncertainties from those of its elements, whose
+/// errors count as uncorrelated; none where one that counts is not known.
+std::vector<Answered> quantities_of(const Sample& sample);
 
 struct Answer {
   Mueller elements;                      ///< in sr⁻¹; NaN: not measured

@@ -95,6 +95,18 @@ Sample at_zero_azimuth(const Sample& sample);
 /// kept `as_measured`; uncertainties are turned as at_zero_azimuth() does.
 Sample from_frame(const Sample& sample, Frame frame);
 
+/// The other way: a sample, whose matrix is in the xy frame, with matrix and uncertainties in another, turned likewise. As it was
+/// measured, if that was in this frame.
+Sample in_frame(const Sample& sample, Frame frame);
+
+/// Its matrix in sr⁻¹, in the frame of the sample. NaN: not measured.
+Mueller mueller(const Sample& sample);
+
+/// Of the elements of mueller(), as if the errors of f11 and of the normalised elements were uncorrelated: with F = f11 m,
+///   u²(F) = m² u²(f11) + f11² u²(m),   all correlated through f11.
+/// NaN where u of f11 or of an element is not known, or it was not measured.
+MuellerCovariance covariance(const Sample& sample);
+
 /// The group of each value, counted from 0 in rising order: values belong together if no gap between them exceeds the
 /// tolerance. For angles and wavelengths that a file has rounded. The values must be finite.
 std::vector<std::size_t> grouped(std::span<const double> values, double tolerance);

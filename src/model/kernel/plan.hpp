@@ -88,7 +88,6 @@ struct Evaluation {
   static KernelModel<double> model(const PreparedIncidence& prepared);
   static const PreparedPattern& pattern(const PreparedModel& prepared);
   static const PreparedPattern& pattern(const PreparedIncidence& prepared);
-  static std::span<const double> coefficients(const PreparedModel& prepared);  ///< of the modes
 };
 
 }  // namespace mmbrdf

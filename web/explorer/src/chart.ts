@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A chart of curves with bands, as SVG: what is shown is what is exported.
+// A chart of curves with bands, and points with bars, as SVG: what is shown is what is exported.
 import { scaleLinear } from "d3-scale";
 import { area, line } from "d3-shape";
 
@@ -9,81 +9,138 @@ export interface Curve {
   y: ArrayLike<number>;
   /** Half widths of its band; empty: none. */
   half: ArrayLike<number>;
+  /** Those of one colour belong together; counted from 0. */
+  color: number;
+  /** Of another model. */
+  thin?: boolean;
+}
+
+/** Measured, beside the curves of one colour. */
+export interface Point {
+  x: number;
+  y: number;
+  /** Half of its bar; NaN: none. */
+  half: number;
+  color: number;
+  /** For the panel of residuals. */
+  residual: number;
 }
 
 export interface Chart {
   curves: Curve[];
+  points: Point[];
   xLabel: string;
   yLabel: string;
+  residualLabel: string;
   /** Where the model extrapolates, in x. */
   beyond: [number, number][];
   /** A vertical line, where the direction of the matrix is. */
   at?: number;
 }
 
-const [width, height, left, right, top, bottom] = [640, 380, 62, 12, 14, 66];
+type Scale = ReturnType<typeof scaleLinear<number, number>>;
+
+const [width, left, right, top, bottom, plot, panel] = [640, 62, 12, 14, 66, 300, 96];
 const colors = ["var(--s1)", "var(--s2)", "var(--s3)", "var(--s4)"];
 const dashes = ["", "7 3", "2 3", "9 3 2 3"];
 
 const escaped = (text: string) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
 
-export function drawn(chart: Chart, description: string): string {
-  const xs = chart.curves.flatMap((curve) => curve.x);
-  const ends = chart.curves.flatMap(({ y, half }) =>
-    Array.from(y).flatMap((value, i) => [value - (half[i] || 0), value + (half[i] || 0)]).filter(Number.isFinite),
-  );
-  const [low, high] = ends.length ? [Math.min(...ends), Math.max(...ends)] : [0, 1];
-  const x = scaleLinear([Math.min(...xs), Math.max(...xs)], [left, width - right]);
-  const y = scaleLinear([low, high === low ? low + 1 : high], [height - bottom, top]).nice();
-  const parts: string[] = [];
-  const text = (px: number, py: number, words: string, more = "") =>
-    parts.push(`<text x="${px}" y="${py}" fill="currentColor" font-size="13" ${more}>${escaped(words)}</text>`);
+const words = (x: number, y: number, text: string, more = "") =>
+  `<text x="${x}" y="${y}" fill="currentColor" font-size="13" ${more}>${escaped(text)}</text>`;
 
-  parts.push(
+function ends(values: number[]): [number, number] {
+  const known = values.filter(Number.isFinite);
+  if (!known.length) return [0, 1];
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  return [low, high === low ? low + 1 : high];
+}
+
+export function drawn(chart: Chart, description: string): string {
+  const withPanel = chart.points.some(({ residual }) => Number.isFinite(residual));
+  const below = top + plot + (withPanel ? panel : 0);
+  const x = scaleLinear(ends(chart.curves.flatMap((curve) => curve.x)), [left, width - right]);
+  const around = (y: number, half: number) => [y - (half || 0), y + (half || 0)];
+  const all = [
+    ...chart.curves.flatMap(({ y, half }) => Array.from(y).flatMap((value, i) => around(value, half[i]))),
+    ...chart.points.flatMap(({ y, half }) => around(y, half)),
+  ];
+  const y = scaleLinear(ends(all), [top + plot, top]).nice();
+  const parts = [
     `<defs><pattern id="hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">` +
       `<rect width="2" height="7" fill="currentColor" opacity="0.28"/></pattern></defs>`,
-  );
-  for (const [from, to] of chart.beyond)
-    parts.push(
-      `<rect x="${x(from)}" y="${top}" width="${x(to) - x(from)}" height="${height - top - bottom}" fill="url(#hatch)"/>`,
-    );
-  for (const tick of y.ticks(6)) {
-    parts.push(`<path d="M${left} ${y(tick)}H${width - right}" stroke="currentColor" opacity="0.2"/>`);
-    text(left - 6, y(tick) + 4, String(tick), 'text-anchor="end"');
-  }
-  for (const tick of x.ticks(9)) {
-    parts.push(`<path d="M${x(tick)} ${height - bottom}v5" stroke="currentColor"/>`);
-    text(x(tick), height - bottom + 19, String(tick), 'text-anchor="middle"');
-  }
-  chart.curves.forEach((curve, i) => {
-    const points = curve.x.map((value, p) => ({ x: value, y: curve.y[p], half: curve.half[p] ?? NaN }));
-    const color = colors[i % colors.length];
-    const band = area<(typeof points)[0]>()
-      .defined((p) => Number.isFinite(p.y) && Number.isFinite(p.half))
-      .x((p) => x(p.x))
-      .y0((p) => y(p.y - p.half))
-      .y1((p) => y(p.y + p.half))(points);
-    const path = line<(typeof points)[0]>().defined((p) => Number.isFinite(p.y)).x((p) => x(p.x)).y((p) => y(p.y))(points);
-    if (band) parts.push(`<path d="${band}" fill="${color}" opacity="0.22"/>`);
-    if (path)
-      parts.push(`<path d="${path}" fill="none" stroke="${color}" stroke-width="2" stroke-dasharray="${dashes[i % 4]}"/>`);
-    const key = left + 8 + 140 * i;
-    parts.push(
-      `<path d="M${key} ${height - 9}h26" stroke="${color}" stroke-width="2" stroke-dasharray="${dashes[i % 4]}"/>`,
-    );
-    text(key + 32, height - 5, curve.name);
-  });
-  if (chart.at !== undefined)
-    parts.push(`<path d="M${x(chart.at)} ${top}V${height - bottom}" stroke="currentColor" stroke-dasharray="3 3"/>`);
-  parts.push(`<path d="M${left} ${top}V${height - bottom}H${width - right}" fill="none" stroke="currentColor"/>`);
-  text((left + width - right) / 2, height - bottom + 37, chart.xLabel, 'text-anchor="middle"');
-  parts.push(
-    `<text transform="translate(14 ${(top + height - bottom) / 2}) rotate(-90)" fill="currentColor" font-size="13" text-anchor="middle">${escaped(chart.yLabel)}</text>`,
-  );
+    ...chart.beyond.map(([from, to]) => `<rect x="${x(from)}" y="${top}" width="${x(to) - x(from)}" height="${plot}" fill="url(#hatch)"/>`),
+    ...rows(y, 6),
+    ...chart.curves.map((curve) => curvePath(curve, x, y)),
+    ...chart.points.map((point) => pointMark(point, x, y)),
+    ...legend(chart.curves, below),
+    ...(withPanel ? residuals(chart, x) : []),
+    ...x.ticks(9).map((tick) => `<path d="M${x(tick)} ${below}v5" stroke="currentColor"/>` + words(x(tick), below + 19, String(tick), 'text-anchor="middle"')),
+    chart.at === undefined ? "" : `<path d="M${x(chart.at)} ${top}V${below}" stroke="currentColor" stroke-dasharray="3 3"/>`,
+    `<path d="M${left} ${top}V${below}H${width - right}" fill="none" stroke="currentColor"/>`,
+    words((left + width - right) / 2, below + 37, chart.xLabel, 'text-anchor="middle"'),
+    sideways(top + plot / 2, chart.yLabel),
+  ];
   return (
-    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" font-family="system-ui, sans-serif" role="img" ` +
+    `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${below + bottom}" font-family="system-ui, sans-serif" role="img" ` +
     `aria-label="${escaped(description)}">${parts.join("")}</svg>`
   );
+}
+
+/** Lines across, with their numbers. */
+function rows(y: Scale, count: number): string[] {
+  return y
+    .ticks(count)
+    .map((tick) => `<path d="M${left} ${y(tick)}H${width - right}" stroke="currentColor" opacity="0.2"/>` + words(left - 6, y(tick) + 4, String(tick), 'text-anchor="end"'));
+}
+
+const sideways = (y: number, text: string) =>
+  `<text transform="translate(14 ${y}) rotate(-90)" fill="currentColor" font-size="13" text-anchor="middle">${escaped(text)}</text>`;
+
+const stroke = ({ color, thin }: Curve) =>
+  `stroke="${colors[color % 4]}" stroke-width="${thin ? 1 : 2}" stroke-dasharray="${thin ? "1 2" : dashes[color % 4]}"`;
+
+function curvePath(curve: Curve, x: Scale, y: Scale): string {
+  const points = curve.x.map((value, p) => ({ x: value, y: curve.y[p], half: curve.half[p] ?? NaN }));
+  type P = (typeof points)[0];
+  const band = area<P>()
+    .defined((p) => Number.isFinite(p.y) && Number.isFinite(p.half))
+    .x((p) => x(p.x))
+    .y0((p) => y(p.y - p.half))
+    .y1((p) => y(p.y + p.half))(points);
+  const path = line<P>().defined((p) => Number.isFinite(p.y)).x((p) => x(p.x)).y((p) => y(p.y))(points);
+  return (
+    (band ? `<path d="${band}" fill="${colors[curve.color % 4]}" opacity="${curve.thin ? 0.12 : 0.22}"/>` : "") +
+    (path ? `<path d="${path}" class="${curve.thin ? "other" : "curve"}" fill="none" ${stroke(curve)}/>` : "")
+  );
+}
+
+function pointMark({ x: px, y: py, half, color }: Point, x: Scale, y: Scale): string {
+  const bar = Number.isFinite(half) ? `<path d="M${x(px)} ${y(py - half)}V${y(py + half)}" stroke="${colors[color % 4]}"/>` : "";
+  return `${bar}<circle class="sample" cx="${x(px)}" cy="${y(py)}" r="3" fill="${colors[color % 4]}"/>`;
+}
+
+/** One entry for each colour: those of another model are thin. */
+function legend(curves: Curve[], below: number): string[] {
+  return curves
+    .filter(({ thin }) => !thin)
+    .map((curve, i) => {
+      const key = left + 8 + 140 * i;
+      return `<path d="M${key} ${below + bottom - 9}h26" ${stroke(curve)}/>` + words(key + 32, below + bottom - 5, curve.name);
+    });
+}
+
+/** A panel below: points about 0. */
+function residuals({ points, residualLabel }: Chart, x: Scale): string[] {
+  const largest = Math.max(...points.map(({ residual }) => Math.abs(residual)).filter(Number.isFinite));
+  const y = scaleLinear([-largest || -1, largest || 1], [top + plot + panel - 4, top + plot + 22]).nice(3);
+  return [
+    ...rows(y, 3),
+    ...points
+      .filter(({ residual }) => Number.isFinite(residual))
+      .map(({ x: px, residual, color }) => `<circle class="residual" cx="${x(px)}" cy="${y(residual)}" r="2.5" fill="${colors[color % 4]}"/>`),
+    words(left + 6, top + plot + 14, residualLabel),
+  ];
 }
 
 /** For a file, which has no style sheet: dark on white. */

@@ -32,6 +32,15 @@ for (let i = 0; i < 256; ++i) {
 }
 palette[1024] = packed([150, 150, 150]);
 
+/** Where f11 has a sign, too: of differences. */
+export const signedPalette = palette.slice();
+for (const first of [0, 512]) signedPalette.copyWithin(first, first + 256, first + 512);
+
+/** The colour at a place from 0 to 1 of a scale. */
+export function colorAt(of: "f11" | "signed", t: number): string {
+  return `rgb(${(of === "f11" ? f11 : signed)(Math.min(1, Math.max(0, t))).join(",")})`;
+}
+
 function gradient(of: (t: number) => Rgb): string {
   const stops = [...Array(11).keys()].map((i) => `rgb(${of(i / 10).join(",")})`);
   return `linear-gradient(to right, ${stops.join(",")})`;

@@ -2,9 +2,11 @@
 // The sixteen pictures: a canvas that the module paints, with names, limits and marks over it.
 import type { Hemisphere, Mmbrdf, ModelAt } from "mmbrdf";
 
-import { f11Gradient, palette, signedGradient } from "./colors";
+import { f11Gradient, palette, signedGradient, signedPalette } from "./colors";
 import { short } from "./numbers";
-import { folded, type State } from "./state";
+import { pictureOf } from "./picture";
+import { draw, type Points, takenBy } from "./points";
+import { areOfPaper, folded, type State } from "./state";
 
 export const pixels = 192;
 const grasp = 14; // px around a mark
@@ -12,8 +14,16 @@ const grasp = 14; // px around a mark
 type Angles = [number, number];
 type Moved = (what: "source" | "detector", to: Angles) => void;
 
+/** What is to be seen: a model, and if there is one another beside it, and points over the pictures. */
+export interface View {
+  at: ModelAt;
+  other?: ModelAt;
+  points?: Points;
+}
+
 export class Hemispheres {
   #grid?: Hemisphere;
+  #first?: Hemisphere; // of which the other is subtracted
   #projection = "";
   readonly #box = document.querySelector<HTMLElement>("#hemispheres")!;
   readonly #canvas = document.querySelector<HTMLCanvasElement>("#canvas")!;
@@ -37,34 +47,49 @@ export class Hemispheres {
   }
 
   /** The limits that were used; times go to the performance timeline as "frame". */
-  show(at: ModelAt, state: State): number[] {
+  show({ at, other, points }: View, state: State): number[] {
     const begun = performance.now();
-    if (!this.#grid || this.#projection !== state.projection) {
-      this.#grid?.free();
-      this.#projection = state.projection;
-      this.#grid = this.mmbrdf.hemisphere(pixels, { projection: state.projection });
-      this.#grid.colors.set(palette);
+    const difference = other !== undefined && state.shown === "difference";
+    const grid = this.#evaluated(other && state.shown !== "model" ? other : at, state);
+    if (difference) {
+      this.#first ??= this.mmbrdf.hemisphere(pixels, { projection: state.projection });
+      this.#first.evaluate(at, state.thetaI, state.phiI, state);
+      grid.subtract(this.#first);
     }
-    const grid = this.#grid;
-    grid.evaluate(at, state.thetaI, state.phiI, state);
-    const limits = state.limits.length ? state.limits : automatic(grid.extremes());
+    const limits = state.limits.length ? state.limits : automatic(grid.extremes(), difference);
+    grid.colors.set(difference ? signedPalette : palette);
     grid.limits.set(limits);
     grid.paint();
     const painted = performance.now();
     this.#context.putImageData(new ImageData(grid.image as Uint8ClampedArray<ArrayBuffer>, 4 * pixels, 4 * pixels), 0, 0);
     performance.measure("module", { start: begun, end: painted });
+    const place = (theta: number, phi: number) => placed(state, theta, phi);
+    if (points) draw(this.#context, pixels, points, limits, place);
     performance.measure("frame", { start: begun, end: performance.now() });
-    this.#label(state, limits);
+    this.#canvas.dataset.points = String(points ? takenBy(points) : 0);
+    this.#label(state, limits, difference);
     return limits;
   }
 
-  #label(state: State, limits: number[]) {
-    const [source, detector] = [place(state, state.thetaI, state.phiI), place(state, state.thetaR, state.phiR)];
+  #evaluated(at: ModelAt, state: State): Hemisphere {
+    if (!this.#grid || this.#projection !== state.projection) {
+      this.#grid?.free();
+      this.#first?.free();
+      this.#first = undefined;
+      this.#projection = state.projection;
+      this.#grid = this.mmbrdf.hemisphere(pixels, { projection: state.projection });
+    }
+    this.#grid.evaluate(at, state.thetaI, state.phiI, state);
+    return this.#grid;
+  }
+
+  #label(state: State, limits: number[], difference: boolean) {
+    const [source, detector] = [placed(state, state.thetaI, state.phiI), placed(state, state.thetaR, state.phiR)];
     this.#tiles.forEach((tile, e) => {
       const letter = state.normalized && e ? "m" : "f";
       const [name, limit, sun, eye] = tile.children as unknown as HTMLElement[];
-      name.textContent = `${letter}${1 + (e >> 2)}${1 + (e & 3)}`;
-      limit.textContent = e ? `± ${short(limits[2 * e + 1])}` : `${short(limits[0])} … ${short(limits[1])}`;
+      name.textContent = `${difference ? "Δ" : ""}${letter}${1 + (e >> 2)}${1 + (e & 3)}`;
+      limit.textContent = e || difference ? `± ${short(limits[2 * e + 1])}` : `${short(limits[0])} … ${short(limits[1])}`;
       for (const [mark, [x, y]] of [[sun, source], [eye, detector]] as const) {
         mark.style.left = `${50 + 50 * x}%`;
         mark.style.top = `${50 - 50 * y}%`;
@@ -72,9 +97,9 @@ export class Hemispheres {
     });
     const ramp = (gradient: string) => `<i class="ramp" style="background:${gradient}"></i>`;
     const unit = state.normalized ? "" : " sr<sup>-1</sup>";
-    const lock = state.limits.length ? ", locked" : "";
+    const lock = areOfPaper(state) ? ", as in the paper" : state.limits.length ? ", locked" : "";
     document.querySelector("#legend-f11")!.innerHTML =
-      `f11: ${short(limits[0])}${ramp(f11Gradient)}${short(limits[1])} sr<sup>-1</sup>${lock}`;
+      `${difference ? "Δ" : ""}f11: ${short(limits[0])}${ramp(difference ? signedGradient : f11Gradient)}${short(limits[1])} sr<sup>-1</sup>${lock}`;
     document.querySelector("#legend-others")!.innerHTML =
       `others: −${ramp(signedGradient)}+ of the limit in each picture${unit}${lock}`;
   }
@@ -95,7 +120,7 @@ export class Hemispheres {
       if (!state || event.button !== 0) return;
       const { x, y, size } = at(event);
       const near = (theta: number, phi: number) => {
-        const [mx, my] = place(state!, theta, phi);
+        const [mx, my] = placed(state!, theta, phi);
         return (Math.hypot(mx - x, my - y) * size) / 2 <= grasp;
       };
       held = near(state.thetaI, state.phiI) ? "source" : "detector";
@@ -121,20 +146,24 @@ export class Hemispheres {
   /** Tells what is shown to who drags. */
   current: (state: State) => void = () => {};
 
-  async png(): Promise<Blob> {
-    return new Promise((done, failed) =>
-      this.#canvas.toBlob((blob) => (blob ? done(blob) : failed(new Error("no picture"))), "image/png"),
-    );
+  /** With the name and the limits of each, marks and scales, and lines that say what it is. */
+  async png(title: string[]): Promise<Blob> {
+    const tiles = this.#tiles.map((tile) => {
+      const [name, limit, ...marks] = tile.children as unknown as HTMLElement[];
+      const at = marks.map(({ style }) => [parseFloat(style.left) / 100, parseFloat(style.top) / 100] as Angles);
+      return { name: name.textContent!, limit: limit.textContent!, source: at[0], detector: at[1] };
+    });
+    return pictureOf(this.#canvas, tiles, title);
   }
 }
 
-/** f11 from its smallest to its largest; the others as far to both sides. */
-function automatic(extremes: Float32Array): number[] {
+/** f11 from its smallest to its largest; the others, and differences, as far to both sides. */
+function automatic(extremes: Float32Array, difference: boolean): number[] {
   const limits = Array.from(extremes);
   for (let e = 0; e < 16; ++e) {
     const size = Math.max(Math.abs(limits[2 * e]), Math.abs(limits[2 * e + 1]));
     if (!Number.isFinite(size)) limits.splice(2 * e, 2, 0, 1);
-    else if (e) limits.splice(2 * e, 2, -(size || 1), size || 1);
+    else if (e || difference) limits.splice(2 * e, 2, -(size || 1), size || 1);
     else if (limits[0] === limits[1]) limits[1] = limits[0] + 1;
   }
   return limits;
@@ -143,7 +172,7 @@ function automatic(extremes: Float32Array): number[] {
 const radians = Math.PI / 180;
 
 /** In the disc of a tile: -1 ... 1 to the right and upwards. */
-function place(state: State, theta: number, phi: number): Angles {
+function placed(state: State, theta: number, phi: number): Angles {
   const r = state.projection === "lambert" ? Math.SQRT2 * Math.sin((theta * radians) / 2) : Math.sin(theta * radians);
   return [r * Math.cos(phi * radians), r * Math.sin(phi * radians)];
 }

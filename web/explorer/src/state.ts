@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is shown, and the link that says it.
-import type { Frame, StokesConvention } from "mmbrdf";
+import type { Frame, Geometry, StokesConvention } from "mmbrdf";
 
 export interface State {
   model: string;
@@ -15,6 +15,16 @@ export interface State {
   normalized: boolean;
   digits: boolean;
   curve: string;
+  /** What runs along a curve of directions: θr in the plane of incidence, or the azimuth at fixed polar angles. */
+  scan: "plane" | "azimuth";
+  /** Elements that are fed by the modes of a curve of coefficients. */
+  block: string;
+  /** Another model; empty: none. */
+  compare: string;
+  /** Which of both the hemispheres show. */
+  shown: "model" | "other" | "difference";
+  /** What points of samples show. */
+  points: "values" | "residuals" | "over_u";
   /** Of the colour scales, 32 numbers: empty where they follow the picture. */
   limits: number[];
 }
@@ -32,6 +42,11 @@ export const start: State = {
   normalized: false,
   digits: false,
   curve: "polarized",
+  scan: "plane",
+  block: "11",
+  compare: "",
+  shown: "model",
+  points: "values",
   limits: [],
 };
 
@@ -90,7 +105,7 @@ export function folded(theta: number, phi: number): [number, number] {
 }
 
 /** What of a link is not among these words is as at the start; a line says which numbers are. */
-export function understood(asked: State, known: Record<"frame" | "convention" | "projection" | "curve", string[]>): { state: State; line: string } {
+export function understood(asked: State, known: Record<(typeof choices)[number], string[]>): { state: State; line: string } {
   const state = { ...asked };
   const lines: string[] = [];
   for (const [name, values] of Object.entries(known))
@@ -110,4 +125,17 @@ export function understood(asked: State, known: Record<"frame" | "convention" | 
     state.limits = [];
   }
   return { state, line: lines.map((one) => `${one}.`).join(" ") };
+}
+
+/** Germer (2017): f11 from 0.25 to 0.45 sr^-1, the others, divided by it, 0.1 to both sides of 0. */
+export const paperLimits = [...Array(16).keys()].flatMap((e) => (e ? [-0.1, 0.1] : [0.25, 0.45]));
+
+export const areOfPaper = ({ limits, normalized }: State) => normalized && String(limits) === String(paperLimits);
+
+/** What is chosen from a list that is the same for all models. */
+export const choices = ["frame", "convention", "projection", "curve", "scan", "shown", "points"] as const;
+
+/** Where the matrix is. */
+export function chosen({ thetaI, phiI, thetaR, phiR }: State): Geometry {
+  return { thetaI, phiI, thetaR, phiR };
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is taken along: files, and the lines that give the same numbers elsewhere.
-import type { Mmbrdf, ModelAt } from "mmbrdf";
-
-import { dhrAngles, inPlane } from "./scan";
+import type { Drawing } from "./curves";
+import { short } from "./numbers";
+import type { Along } from "./scan";
 import type { State } from "./state";
-import type { Band } from "./worker";
+import type { Bands } from "./worker";
 
 export function save(name: string, contents: Blob | string, type = "text/plain") {
   const link = document.createElement("a");
@@ -17,17 +17,32 @@ export function save(name: string, contents: Blob | string, type = "text/plain")
 /** A name for a shell, in quotes if it needs them. */
 const shell = (text: string) => (/^[\w./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`);
 
-export function programLines(state: State, curve: string, ownFile: boolean): string {
+/** What a command calls it: a file without a folder or an ending is not the built-in model of that name. */
+const fileName = (name: string, ownFile: boolean) => shell(ownFile && !/[./]/.test(name) ? `./${name}` : name);
+
+export interface Named {
+  name: string;
+  ownFile: boolean;
+}
+
+/** `others`: a model or samples beside it. */
+export function programLines(state: State, { kind, x }: Along, ownFile: boolean, others: Named[]): string {
   const light = `-w ${state.wavelength} -i ${state.thetaI},${state.phiI}`;
-  const model = shell(ownFile && !/[./]/.test(state.model) ? `./${state.model}` : state.model); // not the built-in one
+  const model = fileName(state.model, ownFile);
   const where = `${model} ${light}`;
   const frame = state.frame === "xy" ? "" : ` --frame ${state.frame}`;
+  const curve = {
+    plane: `mmbrdf analyze ${where} --scan theta_r=-85:85:1${frame} -o curve.csv`,
+    azimuth: `mmbrdf analyze ${where} -r ${state.thetaR},0 --scan phi_r=${state.phiI - 180}:${state.phiI + 180}:3${frame} -o curve.csv`,
+    dhr: `mmbrdf integrate ${model} -q dhr -w ${state.wavelength} --theta ${x.join(",")} --format csv`,
+    dhr_wavelength: `mmbrdf integrate ${model} -q dhr -w ${x.join(",")} --theta ${state.thetaI} --format csv`,
+    coefficients: `# Coefficients are in the file of the model: mmbrdf convert ${model} model.json`,
+  };
   const lines = [
     `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}`,
     `mmbrdf analyze ${where} -r ${state.thetaR},${state.phiR}${frame}`,
-    curve === "dhr"
-      ? `mmbrdf integrate ${model} -q dhr -w ${state.wavelength} --theta ${dhrAngles.join(",")} --format csv`
-      : `mmbrdf analyze ${where} --scan theta_r=-85:85:1${frame} -o curve.csv`,
+    curve[kind],
+    ...others.map((other) => `mmbrdf compare ${model} ${fileName(other.name, other.ownFile)} -w ${state.wavelength}`),
   ];
   if (state.convention !== "germer2017")
     lines.push(`# The program's signs are those of germer2017; Python converts to ${state.convention}.`);
@@ -48,19 +63,48 @@ export function pythonLines(state: State, ownFile: boolean): string {
   return lines.join("\n");
 }
 
-/** The curve that is shown, or all quantities over its directions. */
-export function csv(state: State, curves: Record<string, Band>, mmbrdf: Mmbrdf, at: ModelAt): string {
-  if (state.curve === "dhr") {
-    const model = /[",\n]/.test(state.model) ? `"${state.model.replaceAll('"', '""')}"` : state.model;
-    const rows = dhrAngles.map((theta, i) => [model, state.wavelength, theta, curves.dhr.values[i], curves.dhr.uncertainties[i]].join(","));
-    return ["model,wavelength_nm,theta_i_deg,dhr,u_dhr", ...rows, ""].join("\n").replaceAll(/(?<=,)NaN(?=,|$)/gm, "");
+/** The lines over a picture of the hemispheres. */
+export function pictureWords(state: State, limits: number[]): string[] {
+  const other = state.compare && state.shown !== "model";
+  const model = !other ? state.model : state.shown === "other" ? state.compare : `${state.compare} − ${state.model}`;
+  const projection = state.projection === "lambert" ? "equal solid angles" : "direction cosines";
+  return [
+    `${model} at ${state.wavelength} nm, light from θi = ${state.thetaI}°, φi = ${state.phiI}°; ring: θr = ${state.thetaR}°, φr = ${state.phiR}°`,
+    `Frame ${state.frame}, signs of ${state.convention}, ${projection}; striped: extrapolated`,
+    `f11 from ${short(limits[0])} to ${short(limits[1])} sr⁻¹; ${state.normalized ? "others are divided by f11" : "others in sr⁻¹"}`,
+  ];
+}
+
+/** A number that is not known has no digits. */
+const table = (head: string[], rows: (string | number)[][]) =>
+  [head, ...rows].map((row) => row.map((one) => (Number.isNaN(one) ? "" : String(one))).join(",") + "\n").join("");
+
+const quoted = (name: string) => (/[",\n]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
+
+/** The curve that is shown: all quantities over its directions, all modes over its wavelengths. */
+export function csv({ state, along, curves, mmbrdf, at, other }: Drawing): string {
+  const { x, kind } = along;
+  const [bands, beside] = [curves[0].bands, other && curves[1]?.bands];
+  if (kind === "dhr" || kind === "dhr_wavelength") {
+    const rows = (name: string, { dhr }: Bands) =>
+      x.map((value, i) => [quoted(name), ...(kind === "dhr" ? [state.wavelength, value] : [value, state.thetaI]), dhr.values[i], dhr.uncertainties[i]]);
+    const of = beside ? rows(state.compare, beside) : [];
+    return table(["model", "wavelength_nm", "theta_i_deg", "dhr", "u_dhr"], [...rows(state.model, bands), ...of]);
+  }
+  if (kind === "coefficients") {
+    const names = at.model.modes.map(({ block, function: name, n, m, k, l }) => `${block.replaceAll(",", " ")}: ${name} (${[n, m, k, l].join(" ")})`);
+    return table(["wavelength_nm", ...names], x.map((value, i) => [value, ...names.map((_, mode) => bands[String(mode)].values[i])]));
   }
   const names = ["f11", ...mmbrdf.quantities.map(({ name }) => name)];
-  const where = inPlane(state);
-  const validity = at.outside(where);
-  const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", ...names.flatMap((name) => [name, `u_${name}`]), "validity"];
-  const rows = where.map((one, i) =>
-    [state.wavelength, one.thetaI, one.phiI, one.thetaR, one.phiR, ...names.flatMap((name) => [curves[name].values[i], curves[name].uncertainties[i]]), validity[i].validity].join(","),
-  );
-  return [head.join(","), ...rows, ""].join("\n").replaceAll("NaN", "");
+  const validity = at.outside(along.geometries);
+  const signed = kind === "plane" ? "theta_r_signed_deg" : "phi_r_from_light_deg";
+  const group = (name: string) => [name, `u_${name}`, ...(beside ? [`other_${name}`, `u_other_${name}`] : [])];
+  const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", signed, ...names.flatMap(group), "validity"];
+  const numbers = (of: Bands | undefined, name: string, i: number) => (of ? [of[name].values[i], of[name].uncertainties[i]] : []);
+  const rows = along.geometries.map((one, i) => [
+    state.wavelength, one.thetaI, one.phiI!, one.thetaR, one.phiR!, x[i],
+    ...names.flatMap((name) => [...numbers(bands, name, i), ...numbers(beside, name, i)]),
+    validity[i].validity,
+  ]);
+  return table(head, rows);
 }

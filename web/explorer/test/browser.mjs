@@ -25,12 +25,12 @@ export async function opened(from, { hash = "", viewport = { width: 1280, height
   page.on("request", (request) => requests.push(request.url()));
   page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(error.message));
-  await page.goto(page_file.href + hash);
+  await page.goto(page_file.href + hash, { timeout: 120000 });
   await page.waitForSelector("body[data-ready]");
   return { page, requests, complaints };
 }
 
-/** When uncertainties are there, too. */
+/** When uncertainties are there, too; long enough for a machine that does much else. */
 export async function answered(page) {
-  await page.waitForFunction(() => document.body.dataset.ready && !document.body.dataset.busy, null, { timeout: 90000 });
+  await page.waitForFunction(() => document.body.dataset.ready && !document.body.dataset.busy, null, { timeout: 240000 });
 }

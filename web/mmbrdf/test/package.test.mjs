@@ -15,7 +15,8 @@ test("the packed package is installed without a network, and the first lines of 
   const [{ filename, files }] = JSON.parse(npm("pack", here, "--json"));
   const names = files.map(({ path }) => path).sort();
   assert.deepEqual(names, [
-    "LICENSE", "README.md", "dist/mmbrdf_module.mjs", "dist/mmbrdf_module.wasm", "index.d.ts", "index.js", "package.json",
+    "LICENSE", "README.md", "calls.js", "dist/mmbrdf_module.mjs", "dist/mmbrdf_module.wasm", "index.d.ts", "index.js", "package.json",
+    "samples.js",
   ]);
   const project = join(folder, "project");
   mkdirSync(project);

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Samples of a file, and those of them that belong to what is shown.
+import type { Geometry, Samples } from "mmbrdf";
+
+import { type Along, fromLight } from "./scan";
+import type { State } from "./state";
+
+/** How far samples may be from what is shown. */
+export const near = { wavelength: 0.05, degrees: 1 };
+
+const radians = Math.PI / 180;
+
+/** The angle between two directions, degrees. */
+function between(thetaA: number, phiA: number, thetaB: number, phiB: number): number {
+  const cosine =
+    Math.cos(thetaA * radians) * Math.cos(thetaB * radians) +
+    Math.sin(thetaA * radians) * Math.sin(thetaB * radians) * Math.cos((phiA - phiB) * radians);
+  return Math.acos(Math.min(1, Math.max(-1, cosine))) / radians;
+}
+
+/** Samples at the light that is shown, with numbers of the file. */
+export interface Near {
+  which: number[];
+  geometries: Geometry[];
+  /** As the worker takes them. */
+  places: Float64Array;
+}
+
+export const nothing: Near = { which: [], geometries: [], places: new Float64Array() };
+
+/** An incident direction and a wavelength of which there are samples. */
+export interface Incidence {
+  wavelength: number;
+  thetaI: number;
+  phiI: number;
+  count: number;
+}
+
+export class Measured {
+  readonly #places: Float64Array;
+  readonly incidences: Incidence[];
+
+  constructor(readonly samples: Samples) {
+    this.#places = samples.places;
+    const found = new Map<string, Incidence>();
+    for (let i = 0; i < samples.count; ++i) {
+      const { wavelength, geometry } = this.place(i);
+      const [thetaI, phiI] = [geometry.thetaI, geometry.phiI!].map((angle) => Number(angle.toFixed(6)));
+      const key = [wavelength.toFixed(3), thetaI, phiI].join();
+      const known = found.get(key) ?? { wavelength: Number(wavelength.toFixed(4)), thetaI, phiI, count: 0 };
+      known.count += 1;
+      found.set(key, known);
+    }
+    this.incidences = [...found.values()].sort((a, b) => a.wavelength - b.wavelength || a.thetaI - b.thetaI || a.phiI - b.phiI);
+  }
+
+  place(i: number): { wavelength: number; geometry: Geometry } {
+    const [wavelength, thetaI, phiI, thetaR, phiR] = this.#places.subarray(5 * i, 5 * i + 5);
+    return { wavelength, geometry: { thetaI, phiI, thetaR, phiR } };
+  }
+
+  near(state: State): Near {
+    const which: number[] = [];
+    const geometries: Geometry[] = [];
+    for (let i = 0; i < this.samples.count; ++i) {
+      const { wavelength, geometry } = this.place(i);
+      if (Math.abs(wavelength - state.wavelength) > near.wavelength) continue;
+      if (between(geometry.thetaI, geometry.phiI!, state.thetaI, state.phiI) > near.degrees) continue;
+      which.push(i);
+      geometries.push(geometry);
+    }
+    return { which, geometries, places: Float64Array.from(geometries.flatMap((g) => [g.thetaI, g.phiI!, g.thetaR, g.phiR!])) };
+  }
+
+  /** The incidence that is nearest to what is shown: of the nearest wavelength and polar angle the nearest azimuth. */
+  nearest({ wavelength, thetaI, phiI }: State): Incidence {
+    const off = (one: Incidence) =>
+      1e6 * Math.abs(one.wavelength - wavelength) + 1e3 * Math.abs(one.thetaI - thetaI) + Math.abs(fromLight(one.phiI, phiI));
+    return this.incidences.reduce((best, one) => (off(one) < off(best) ? one : best));
+  }
+}
+
+/** Where samples are along a curve; undefined where they are beside it. */
+export function alongCurve(state: State, { kind }: Along, geometry: Geometry): number | undefined {
+  const turn = fromLight(geometry.phiR!, geometry.phiI!);
+  const off = Math.asin(Math.min(1, Math.abs(Math.sin(geometry.thetaR * radians) * Math.sin(turn * radians)))) / radians;
+  if (kind === "plane") return off > near.degrees ? undefined : Math.abs(turn) < 90 ? -geometry.thetaR : geometry.thetaR;
+  if (kind === "azimuth") return Math.abs(geometry.thetaR - state.thetaR) > near.degrees ? undefined : turn;
+  return undefined;
+}
+
+/** The nearest sample to the chosen direction, if one is near. */
+export function atCursor(state: State, { geometries }: Near): number | undefined {
+  const off = geometries.map(({ thetaR, phiR }) => between(thetaR, phiR!, state.thetaR, state.phiR));
+  const least = off.indexOf(Math.min(...off));
+  return least >= 0 && off[least] <= near.degrees ? least : undefined;
+}

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page: one state, which controls, pictures, words and the link show.
+import type { Mmbrdf } from "mmbrdf";
+
+import { showMatrix, showTables } from "./answer";
+import { standalone } from "./chart";
+import { Controls } from "./controls";
+import { showCurve } from "./curves";
+import { element } from "./dom";
+import { Hemispheres } from "./hemispheres";
+import { type Incidence, Measured, type Near, nothing } from "./measured";
+import { Shelf, Shown } from "./models";
+import { Residuals } from "./residuals";
+import { type Along, along } from "./scan";
+import { choices, fromLink, start, type State, toLink, understood } from "./state";
+import { csv, type Named, pictureWords, programLines, pythonLines, save } from "./take";
+import type { Curves, Numbers, Question, Reply } from "./worker";
+import Beside from "./worker?worker&inline";
+
+const noIncidences: Incidence[] = [];
+
+export class Page {
+  state: State;
+  limits: number[] = [];
+  readonly #shelf: Shelf;
+  readonly #hemispheres: Hemispheres;
+  readonly #controls: Controls;
+  readonly #beside = new Beside();
+  #shown!: Shown;
+  #other?: Shown;
+  #measured?: Measured;
+  #near: Near = nothing;
+  #residuals?: Residuals;
+  #along!: Along;
+  #numbers?: Numbers[]; // of the state that is shown, as the worker answers
+  #curves?: Curves[];
+  #asked = 0; // number of the last question to the worker
+  #busy = true; // the worker answers one question at a time
+  #drawing = false;
+  #failed = false; // to show the state
+  #chart = "";
+
+  constructor(
+    readonly mmbrdf: Mmbrdf,
+    wasm: Uint8Array,
+  ) {
+    this.state = fromLink(location.hash);
+    this.#shelf = new Shelf(mmbrdf);
+    this.#hemispheres = new Hemispheres(mmbrdf, (what, [theta, phi]) =>
+      this.change(what === "source" ? { thetaI: theta, phiI: phi } : { thetaR: theta, phiR: phi }),
+    );
+    this.#controls = new Controls(mmbrdf, this);
+    this.#listen();
+    this.open(this.state.model, this.state, true);
+    this.#beside.onmessage = ({ data }: MessageEvent<Reply>) => this.#answered(data);
+    this.#beside.onerror = () => this.#trouble("Uncertainties cannot be computed: this browser starts no worker");
+    this.#beside.postMessage({ wasm });
+  }
+
+  #listen() {
+    const ofCurve = (id: "csv" | "svg" | "samples-csv", contents: () => string, name: () => string, type: string) =>
+      element(id).addEventListener("click", () => {
+        if (this.#curves && !this.#drawing) return save(name(), contents(), type);
+        const why = this.#busy || this.#drawing ? "not there yet: its uncertainties are being computed" : "not known";
+        element("take-state").textContent = `The curve is ${why}.`;
+      });
+    ofCurve("csv", () => csv(this.#drawn(this.#curves!)), () => `${this.#fileName()}.csv`, "text/csv");
+    ofCurve("svg", () => standalone(this.#chart), () => `${this.#fileName()}.svg`, "image/svg+xml");
+    ofCurve("samples-csv", () => this.#residuals!.csv(), () => "samples.csv", "text/csv");
+    element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits))));
+    element("link").addEventListener("click", async () => {
+      await navigator.clipboard?.writeText(location.href).catch(() => undefined);
+      element("link").textContent = "The link is in the address bar, and copied";
+    });
+    addEventListener("hashchange", () => {
+      if (location.hash === toLink(this.state)) return;
+      const asked = fromLink(location.hash);
+      this.open(asked.model, asked);
+    });
+  }
+
+  // ---- files and models ----------------------------------------------------------------------------------------------
+
+  async read(file: File) {
+    const contents = new Uint8Array(await file.arrayBuffer());
+    try {
+      if (this.mmbrdf.holdsSamples(contents)) return this.#measure(contents, file.name);
+      const name = this.#shelf.add(contents, file.name);
+      this.#controls.offer(name);
+      this.open(name);
+    } catch (error) {
+      this.#trouble((error as Error).message);
+    }
+  }
+
+  /** Samples, and the nearest light at which there are some. */
+  #measure(contents: Uint8Array, name: string) {
+    const samples = this.mmbrdf.samples(contents, name);
+    this.#measured?.samples.free();
+    this.#measured = new Measured(samples);
+    this.#trouble("");
+    const { wavelength, thetaI, phiI } = this.#measured.nearest(this.state);
+    this.change({ wavelength, thetaI, phiI });
+  }
+
+  forget() {
+    this.#measured?.samples.free();
+    this.#measured = undefined;
+    this.change({ points: start.points });
+  }
+
+  /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
+  open(name: string, asked?: State, first = false) {
+    let line = "";
+    try {
+      const shown = this.#opened(name);
+      this.#shown?.free();
+      this.#shown = shown;
+    } catch (error) {
+      line = `${(error as Error).message}. A link does not hold files: open it again.`;
+      if (!first) {
+        this.#trouble(line);
+        return this.#show();
+      }
+      this.#shown = this.#opened((name = start.model));
+    }
+    if (asked) {
+      const known = Object.fromEntries(choices.map((id) => [id, this.#controls.values(id)])) as Record<(typeof choices)[number], string[]>;
+      const { state, line: more } = understood(asked, known);
+      this.state = state;
+      line = [line, more, this.#comparable(state)].filter((one) => one).join(" ");
+    }
+    this.#trouble(line);
+    const known = this.#shown.model.wavelengths;
+    const inside = known.length && this.state.wavelength >= known[0] && this.state.wavelength <= known[known.length - 1];
+    const wavelength = first || inside || !known.length ? this.state.wavelength : known[0];
+    this.change({ model: name, wavelength });
+  }
+
+  #opened(name: string): Shown {
+    return new Shown(name, this.#shelf.model(name), this.#shelf.source(name));
+  }
+
+  /** Takes what is not here out of the state, and says so. */
+  #comparable(state: State): string {
+    const { compare } = state;
+    if (!compare || this.#shelf.has(compare)) return "";
+    state.compare = "";
+    return `compare = ${compare} of the link is not here. A link does not hold files: open it again.`;
+  }
+
+  /** The other model is that of the state. */
+  #compare() {
+    const { compare } = this.state;
+    if (compare === (this.#other?.name ?? "") && (!compare || this.#other!.source.opened === this.#shelf.source(compare).opened)) return;
+    const next = compare ? this.#opened(compare) : undefined;
+    this.#other?.free();
+    this.#other = next;
+  }
+
+  #trouble(words: string) {
+    element("trouble").textContent = words;
+  }
+
+  // ---- showing -------------------------------------------------------------------------------------------------------
+
+  change(some: Partial<State>, typed?: HTMLInputElement) {
+    Object.assign(this.state, some);
+    if (this.#drawing) return;
+    this.#drawing = true;
+    requestAnimationFrame(() => {
+      this.#drawing = false;
+      this.#show(typed);
+    });
+  }
+
+  #show(typed?: HTMLInputElement) {
+    const { state } = this;
+    this.#numbers = this.#curves = undefined; // they were of another question
+    try {
+      this.#compare();
+      this.#near = this.#measured?.near(state) ?? nothing;
+      this.#along = along(state, this.#shown.model);
+      this.#picture();
+      this.#hemispheres.current(state);
+    } catch (error) {
+      this.#failed = true;
+      return this.#trouble((error as Error).message);
+    }
+    if (this.#failed) this.#trouble("");
+    this.#failed = false;
+    this.#controls.show(typed);
+    this.#controls.showIncidences(this.#measured?.incidences ?? noIncidences, state);
+    const { model } = this.#shown;
+    const blocks = [...new Set(model.modes.map(({ block }) => block))];
+    if (!blocks.includes(state.block)) state.block = blocks[0];
+    this.#controls.showBlocks(blocks, state.block);
+    element("facts").textContent = `${model.basis}. Fitted: ${model.fittedRange}.`;
+    history.replaceState(null, "", toLink(state));
+    const file = this.#shelf.files.get(state.model);
+    const named = file ? { ...state, model: file.path } : state; // what the program calls it
+    element("program").textContent = programLines(named, this.#along, Boolean(file), this.#compared());
+    element("python").textContent = pythonLines(named, Boolean(file));
+    this.#ask();
+    this.#matrix();
+  }
+
+  get #ats() {
+    return { at: this.#shown.at(this.state.wavelength), other: this.#other?.at(this.state.wavelength) };
+  }
+
+  /** Hemispheres, with samples over them unless they show a difference of models. */
+  #picture() {
+    const { state } = this;
+    const { at, other } = this.#ats;
+    this.#residuals = this.#measured && new Residuals(state, this.#measured, this.#near, at, this.#curves?.[0].elements);
+    const points = other && state.shown !== "model" ? undefined : this.#residuals?.points();
+    this.limits = this.#hemispheres.show({ at, other, points }, state);
+    element("samples-words").textContent = this.#residuals?.words() ?? "";
+  }
+
+  #matrix() {
+    showMatrix(this.state, { ...this.#ats, numbers: this.#numbers, sample: this.#residuals?.atCursor() });
+  }
+
+  // ---- the worker ----------------------------------------------------------------------------------------------------
+
+  #ask() {
+    this.#asked += 1;
+    document.body.dataset.busy = "true";
+    this.#waiting(["quantities", "parts", "chart"], true);
+    if (!this.#busy) this.#send("numbers");
+  }
+
+  /** Whether what is computed beside is of an earlier question. */
+  #waiting(ids: string[], is: boolean) {
+    for (const id of ids) element(id).setAttribute("aria-busy", String(is));
+    if (!ids.includes("chart")) return;
+    for (const id of ["csv", "svg", "samples-csv"]) element(id).setAttribute("aria-disabled", String(is));
+    if (!is) element("take-state").textContent = "";
+  }
+
+  #send(what: Question["what"]) {
+    this.#busy = true;
+    const sources = [this.#shown, ...(this.#other ? [this.#other] : [])].map(({ source }) => source);
+    const question: Question = { id: this.#asked, what, state: { ...this.state }, sources, along: this.#along, places: this.#near.places };
+    this.#beside.postMessage(question);
+  }
+
+  #answered({ id, error, numbers, curves }: Reply) {
+    this.#busy = false;
+    if (id === 0 && error !== undefined) return this.#trouble(`Uncertainties cannot be computed: ${error}`);
+    if (this.#asked === 0) return; // the worker was faster than the first picture
+    if (id !== this.#asked) return this.#send("numbers");
+    if (error !== undefined) {
+      delete document.body.dataset.busy;
+      return this.#trouble(error);
+    }
+    if (numbers) {
+      this.#numbers = numbers;
+      this.#waiting(["quantities", "parts"], false);
+      showTables(this.state, this.mmbrdf, numbers[0].answer);
+      this.#matrix();
+      return this.#send("curves");
+    }
+    delete document.body.dataset.busy;
+    this.#curves = curves!;
+    this.#waiting(["chart"], false);
+    this.#chart = showCurve(this.#drawn(curves!));
+    if (!this.#measured) return;
+    this.#picture(); // now with uncertainties of the model
+    this.#matrix();
+  }
+
+  #drawn(curves: Curves[]) {
+    return { ...this.#ats, state: this.state, mmbrdf: this.mmbrdf, along: this.#along, curves, samples: this.#measured?.samples, near: this.#near };
+  }
+
+  /** What the program calls what is compared. */
+  #compared(): Named[] {
+    const { compare } = this.state;
+    const file = this.#shelf.files.get(compare);
+    const samples = this.#measured?.samples.name;
+    return [
+      ...(compare ? [{ name: file?.path ?? compare, ownFile: Boolean(file) }] : []),
+      ...(samples ? [{ name: samples, ownFile: true }] : []),
+    ];
+  }
+
+  #fileName() {
+    return `${this.state.model.replace(/\.\w+$/, "")}-${this.state.wavelength}nm-${this.state.curve}`;
+  }
+}
