@@ -101,6 +101,17 @@ std::vector<NoiseEstimate> noise_for(std::span<const Sample> samples, const Basi
   return fit(samples, basis, options, weights).noise;
 }
 
+/// At each wavelength; nothing without noise.
+std::map<double, ReadingLaw> laws_of(const Series& series, const std::vector<NoiseEstimate>& noise) {
+  std::map<double, ReadingLaw> result;
+  for (std::size_t at = 0; const auto& [wavelength, list] : series) {
+    if (noise.empty()) break;
+    const NoiseLaw& law = noise[at++].law;
+    result[wavelength] = {law.incident_exponent, law.reflected_exponent, true};
+  }
+  return result;
+}
+
 /// Lists by wavelength as one, in the order of the samples.
 std::vector<Mueller> in_order_of(std::span<const Sample> samples, const std::map<double, std::vector<Mueller>>& lists) {
   std::vector<double> nodes;
@@ -197,13 +208,7 @@ FitResult sample_fit(std::span<const Sample> samples, const Basis& basis, const 
   kinds.add(series);
   if (const std::string reason = no_mixed_model(kinds, basis); !reason.empty()) throw MixedFailure(reason);
   const std::vector<NoiseEstimate> noise = noise_for(samples, basis, options, weights);
-  std::map<double, ReadingLaw> laws;
-  for (std::size_t at = 0; const auto& [wavelength, list] : series)
-    if (!noise.empty()) {
-      const NoiseLaw& law = noise[at++].law;
-      laws[wavelength] = {law.incident_exponent, law.reflected_exponent, true};
-    }
-  MixedRounds rounds(basis, law_of(weights), laws);
+  MixedRounds rounds(basis, law_of(weights), laws_of(series, noise));
   tried([&] {
     do rounds.add(series);
     while (rounds.next() && rounds.round() < 4);

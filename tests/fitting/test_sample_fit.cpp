@@ -16,6 +16,7 @@
 #include "given/published_samples.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
@@ -82,7 +83,12 @@ void expect_same(const FitResult& found, const FitResult& expected) {
     EXPECT_EQ(found.elements[e].rows, expected.elements[e].rows);
     EXPECT_NEAR(found.elements[e].chi_squared, expected.elements[e].chi_squared,
                 sample_fit_tolerance * expected.elements[e].chi_squared);
+    EXPECT_NEAR(found.elements[e].weight, expected.elements[e].weight,
+                sample_fit_tolerance * expected.elements[e].weight);
   }
+  double weight = 0;  // of f11 / reflectance
+  for (const Mueller& one : expected.sample_weights) weight += one(0, 0);
+  if (!expected.sample_weights.empty()) EXPECT_NEAR(found.elements[0].weight / weight, 1, sample_fit_tolerance);
   EXPECT_EQ(found.sides, expected.sides);
   EXPECT_EQ(found.weights, expected.weights);
   EXPECT_EQ(found.warnings, expected.warnings);
@@ -148,6 +154,45 @@ TEST(SampleFit, IsSoOfWhatIsDarkerThanItsNoise) {
   for (Sample& sample : samples) sample.f11 = 3e-4 * (sample.f11 + normal(engine));
   expect_same_fit(samples);
   EXPECT_FALSE(in_parts(samples).solve().model.posterior->data().wavelengths[0].law.relative);
+}
+
+TEST(SampleFit, KnowsOfDarkSamplesThatAnotherHas) {
+  std::vector<Sample> samples = simulated(300);
+  std::erase_if(samples, [](const Sample& sample) {  // the fit of f11 is bright where the bright ones are
+    return sample.geometry.reflected.theta > radians(45) && sample.geometry.reflected.theta < radians(65);
+  });
+  for (Sample& sample : samples)
+    if (sample.geometry.reflected.theta > radians(60)) sample.f11 *= -1;
+  const auto dark = std::ranges::stable_partition(samples, [](const Sample& sample) { return sample.f11 > 0; });
+  SampleFitAccumulator sums;
+  do {
+    SampleFitAccumulator other = sums;
+    other.add(dark);
+    sums.add(std::span(samples.begin(), dark.begin()));
+    sums.merge(other);
+  } while (sums.next_round());
+  const FitResult found = sums.solve(), expected = in_memory(samples);
+  expect_same(found, expected);
+  EXPECT_FALSE(found.model.posterior->data().wavelengths[0].law.relative);
+}
+
+/// Of the scale at a geometry, in parts of f11.
+double declared_scale(const Model& model, const Geometry& g) {
+  const PreparedModel prepared = prepare(model, 0.532);
+  for (const BudgetTerm& term : budget(prepared, prepare_uncertainty(model, 0.532), {}, g).terms)
+    if (term.name == "declared scale") return std::sqrt(term.covariance(0, 0)) / prepared.f11(g);
+  return 0;
+}
+
+TEST(SampleFit, OfADeclaredScaleIsUncertainByItWhateverTheReflectance) {
+  for (const double reflectance : {1.0, 0.5})
+    for (const Weights weights : {Weights::speckle, Weights::none}) {
+      FitOptions options;
+      options.declared = {0.01, 0, 0};
+      options.reflectance = ReflectanceTable{{0.532}, {reflectance}};
+      const Model model = in_memory(simulated(150), {{}, options, weights}).model;
+      EXPECT_NEAR(declared_scale(model, {{0.5, 0.2}, {0.4, 2}}), 0.01, 2e-4);  // what the prior holds back
+    }
 }
 
 TEST(SampleFit, IsSoOfSamplesOfWhichABlockWasNotMeasured) {
