@@ -27,7 +27,7 @@ class SizeCounts {
  public:
   void add(double part) {
     const double steps = std::floor(per_octave * (std::log2(std::abs(part)) - lowest));
-    ++counts_[static_cast<std::size_t>(std::clamp(steps, 0.0, counts_.size() - 1.0))];
+    ++counts_[static_cast<std::size_t>(std::clamp(steps, 0.0, highest))];
   }
   void merge(const SizeCounts& other) {
     for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
@@ -46,6 +46,7 @@ class SizeCounts {
   Counts& counts() { return counts_; }
 
  private:
+  static constexpr double highest = 511;  // of the steps
   Counts counts_{};
 };
 

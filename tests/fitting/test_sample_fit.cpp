@@ -163,12 +163,14 @@ TEST(SampleFit, KnowsOfDarkSamplesThatAnotherHas) {
   });
   for (Sample& sample : samples)
     if (sample.geometry.reflected.theta > radians(60)) sample.f11 *= -1;
-  const auto dark = std::ranges::stable_partition(samples, [](const Sample& sample) { return sample.f11 > 0; });
+  const auto dark =
+      std::stable_partition(samples.begin(), samples.end(), [](const Sample& one) { return one.f11 > 0; });
+  const auto bright = static_cast<std::size_t>(dark - samples.begin());
   SampleFitAccumulator sums;
   do {
     SampleFitAccumulator other = sums;
-    other.add(dark);
-    sums.add(std::span(samples.begin(), dark.begin()));
+    other.add(std::span(samples).subspan(bright));
+    sums.add(std::span(samples).first(bright));
     sums.merge(other);
   } while (sums.next_round());
   const FitResult found = sums.solve(), expected = in_memory(samples);
