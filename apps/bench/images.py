@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What images, pixel fits and archives cost: the numbers of docs/scale.md.
 
-    PYTHONPATH=build/release/python python3 apps/bench/images.py [--pixels N] [--only NAME]
+    PYTHONPATH=build/release/python python3 apps/bench/images.py [--pixels N] [--rows N] [--only NAME]
 
 Each line is the best of some runs, by the clock and by processor time: on a machine that has other work to do the latter
 is what a core can. Dask is asked where it is installed.
@@ -171,10 +171,33 @@ def archives():
         print(f"a state: {one.state().nbytes / 1024:.0f} KiB a wavelength")
 
 
+def rounds(rows):
+    """A fit of a sample, the rows 10 000 at a time as files would bring them; adding alone counts."""
+    sums, more = mmbrdf.SampleFitAccumulator(), True
+    in_all = 0.0
+    while more:
+        used = 0.0
+        for part in range(-(-rows // 10_000)):
+            geometry = mmbrdf.random_geometries(min(10_000, rows - 10_000 * part), seed=part)
+            data = mmbrdf.simulate(mmbrdf.material("ptfe"), 532, geometry, speckle=0.006, seed=part)
+            before = cpu()
+            sums.add(data, threads=1)
+            used += cpu() - before
+        in_all += used
+        state = sums.state().nbytes / 1024
+        number = sums.round
+        more = sums.next_round()
+        print(f"round {number}: {rows / used / 1e3:8.3g} krow/s of a processor, a state {state:.0f} KiB", flush=True)
+    before = cpu()
+    sums.solve()
+    print(f"all rounds: {rows / in_all / 1e3:.3g} krow/s; to solve {cpu() - before:.3g} s of a processor", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--pixels", type=int, default=1 << 22)
-    parser.add_argument("--only", choices=["reductions", "files", "calibrations", "fits", "archives"])
+    parser.add_argument("--only", choices=["reductions", "files", "calibrations", "fits", "archives", "rounds"])
+    parser.add_argument("--rows", type=int, default=100_000)
     asked = parser.parse_args()
     if asked.only in (None, "reductions"):
         reductions(asked.pixels)
@@ -186,6 +209,8 @@ def main():
         fits()
     if asked.only in (None, "archives"):
         archives()
+    if asked.only in (None, "rounds"):
+        rounds(asked.rows)
     print(f"largest memory: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")
 
 

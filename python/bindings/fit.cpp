@@ -21,14 +21,6 @@ namespace mmbrdf::python {
 
 namespace {
 
-struct Request {
-  Basis basis;
-  FitOptions options;
-  Weights weights = Weights::none;
-  InstrumentPointer instrument;
-  std::string name, attribution;
-};
-
 /// Says from what and how the model was made.
 void sign(FitResult& result, const Request& request, std::size_t rows, const Dataset* data) {
   Model& model = result.model;
@@ -49,8 +41,9 @@ void sign(FitResult& result, const Request& request, std::size_t rows, const Dat
   if (!request.attribution.empty()) model.provenance["attribution"] = request.attribution;
 }
 
-/// As Python holds it.
-FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows, const Dataset* data = nullptr) {
+}  // namespace
+
+FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows, const Dataset* data) {
   sign(result, request, rows, data);
   auto model = std::make_shared<ModelObject>(result.model);
   return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
@@ -70,6 +63,8 @@ DeclaredErrors declared_from(const std::map<std::string, double>& named) {
   }
   return declared;
 }
+
+namespace {
 
 FittedPointer fitted(const Dataset& data, const Request& request) {
   return without_gil([&] {
@@ -217,67 +212,6 @@ constexpr const char* fit_doc =
     "provenance\n\n"
     "Raises ValueError for data that do not determine the model: the message says what is free.";
 
-/// A FitAccumulator, and what it was made of. It changes: all of it happens under the interpreter's lock.
-struct Accumulator {
-  Basis basis;
-  FitAccumulator fit{basis};
-
-  FittedPointer solve(std::optional<int> powers, const std::optional<std::map<double, double>>& reflectance,
-                      bool minimum_norm, const std::string& name, const std::string& attribution) const {
-    Request request{basis, {}, Weights::none, nullptr, name, attribution};
-    request.options.powers = powers;
-    request.options.minimum_norm = minimum_norm;
-    if (reflectance) request.options.reflectance = reflectance_table(*reflectance);
-    return signed_result(fit.solve(request.options), request, static_cast<std::size_t>(fit.samples()));
-  }
-  py::array_t<double> state() const {
-    const std::vector<double> numbers = fit.state();
-    return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-  }
-};
-
-Accumulator from_state(const Basis& basis, const Given& state) {
-  return {basis, FitAccumulator::from_state(basis, numbers("state", state))};
-}
-
-py::tuple pickled_accumulator(const Accumulator& a) {
-  return py::make_tuple(to_string(a.basis.family), std::pair(a.basis.orders.f11, a.basis.orders.other),
-                        to_string(a.basis.mapping), a.basis.rotation == Rotation::as_printed, a.state());
-}
-
-Accumulator unpickled_accumulator(const py::tuple& t) {
-  return from_state(basis_from(t[0].cast<std::string>(), t[1].cast<std::pair<int, int>>(), t[2].cast<std::string>(),
-                               t[3].cast<bool>()),
-                    t[4].cast<Given>());
-}
-
-void bind_accumulator(py::module_& m) {
-  py::class_<Accumulator>(m, "FitAccumulator",
-                          "A fit that samples are added to in any order and number, and in any number of processes:\n"
-                          "memory does not grow with the samples. To send it, pickle it; to save its numbers, state().")
-      .def(py::init([](const std::string& family, std::pair<int, int> orders, const std::string& mapping,
-                       bool as_printed) { return Accumulator{basis_from(family, orders, mapping, as_printed)}; }),
-           py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
-           py::arg("mapping") = "lambert", py::arg("as_printed") = false)
-      .def(
-          "add", [](Accumulator& a, const Dataset& data) { a.fit.add(data.samples); }, py::arg("data"))
-      .def(
-          "merge", [](Accumulator& a, const Accumulator& other) { a.fit.merge(other.fit); }, py::arg("other"),
-          "As if all samples of the other, which has the same basis, had been added here.")
-      .def("solve", &Accumulator::solve, py::kw_only(), py::arg("powers") = py::none(),
-           py::arg("reflectance") = py::none(), py::arg("minimum_norm") = false, py::arg("name") = "",
-           py::arg("attribution") = "", "FitResult of all samples so far, as fit() without weights, but for residuals.")
-      .def_property_readonly("samples", [](const Accumulator& a) { return a.fit.samples(); })
-      .def("state", &Accumulator::state, "Everything there is but for the basis: an array of numbers.")
-      .def_static(
-          "from_state",
-          [](const Given& state, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
-             bool as_printed) { return from_state(basis_from(family, orders, mapping, as_printed), state); },
-          py::arg("state"), py::arg("basis") = "isotropic", py::arg("orders") = std::pair(7, 4), py::kw_only(),
-          py::arg("mapping") = "lambert", py::arg("as_printed") = false)
-      .def(py::pickle(&pickled_accumulator, &unpickled_accumulator));
-}
-
 }  // namespace
 
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed) {
@@ -289,9 +223,13 @@ Basis basis_from(const std::string& family, std::pair<int, int> orders, const st
   return basis;
 }
 
+Weights weights_or_default(const std::optional<std::string>& name, const Basis& basis, Uncertainty uncertainty) {
+  if (name) return weights_from(*name);
+  return uncertainty == Uncertainty::sample && basis.family == Family::isotropic ? Weights::speckle : Weights::none;
+}
+
 void bind_fit(py::module_& m) {
   bind_result(m);
-  bind_accumulator(m);
   m.def(
       "fit",
       [](const Dataset& data, const std::string& family, std::pair<int, int> orders, const std::string& mapping,
@@ -303,9 +241,7 @@ void bind_fit(py::module_& m) {
             basis_from(family, orders, mapping, as_printed), {}, Weights::none, instrument, name, attribution};
         request.options.uncertainty = uncertainty_from(uncertainty);
         request.options.declared = declared_from(declared);
-        const bool of_sample =
-            request.options.uncertainty == Uncertainty::sample && request.basis.family == Family::isotropic;
-        request.weights = weights ? weights_from(*weights) : of_sample ? Weights::speckle : Weights::none;
+        request.weights = weights_or_default(weights, request.basis, request.options.uncertainty);
         request.options.powers = powers;
         if (reflectance) request.options.reflectance = reflectance_table(*reflectance);
         request.options.minimum_norm = minimum_norm;

@@ -3,11 +3,14 @@
 
 #include "mmbrdf/fitting/fit.hpp"
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "dataset.hpp"
+#include "instrument.hpp"
 
 namespace mmbrdf::python {
 
@@ -21,6 +24,23 @@ struct Fitted : std::enable_shared_from_this<Fitted> {
   Weights weights;
 };
 using FittedPointer = std::shared_ptr<Fitted>;
+
+struct Request {
+  Basis basis;
+  FitOptions options;
+  Weights weights = Weights::none;
+  InstrumentPointer instrument;
+  std::string name, attribution;
+};
+
+/// As Python holds it, with a model that says from what and how it was made.
+FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows, const Dataset* data = nullptr);
+
+/// Of names in degrees. Throws ValueError for a name that there is not, and for what is negative.
+DeclaredErrors declared_from(const std::map<std::string, double>& named);
+
+/// Of a name; nothing: speckle where the uncertainty is that of an isotropic sample, else none.
+Weights weights_or_default(const std::optional<std::string>& name, const Basis& basis, Uncertainty uncertainty);
 
 /// Throws std::invalid_argument for names that there are not, and as_printed of another basis than germer2017.
 Basis basis_from(const std::string& family, std::pair<int, int> orders, const std::string& mapping, bool as_printed);

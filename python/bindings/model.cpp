@@ -15,7 +15,7 @@
 #include "bindings.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
-#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/formats/projection.hpp"
 #include "mmbrdf/text/rounding.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 

@@ -46,6 +46,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_measuring(m);
   bind_goniometer(m);
   bind_fit(m);
+  bind_accumulators(m);
   bind_selection(m);
   bind_plan(m);
   bind_diagnostics(m);

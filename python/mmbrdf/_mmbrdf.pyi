@@ -736,6 +736,47 @@ class FitAccumulator:
         as_printed: bool = ...,
     ) -> FitAccumulator: ...
 
+class SampleFitAccumulator:
+    def __init__(
+        self,
+        basis: str = ...,
+        orders: tuple[int, int] = ...,
+        *,
+        mapping: str = ...,
+        as_printed: bool = ...,
+        weights: str | None = ...,
+    ) -> None: ...
+    def add(self, data: Dataset, *, threads: int = ...) -> None: ...
+    def merge(self, other: SampleFitAccumulator) -> None: ...
+    def next_round(self) -> bool: ...
+    def solve(
+        self,
+        *,
+        powers: int | None = ...,
+        reflectance: dict[float, float] | None = ...,
+        declared: dict[str, float] = ...,
+        minimum_norm: bool = ...,
+        name: str = ...,
+        attribution: str = ...,
+    ) -> FitResult: ...
+    @property
+    def round(self) -> int: ...
+    @property
+    def finished(self) -> bool: ...
+    @property
+    def samples(self) -> int: ...
+    def state(self) -> NDArray[np.float64]: ...
+    @staticmethod
+    def from_state(
+        state: ArrayLike,
+        basis: str = ...,
+        orders: tuple[int, int] = ...,
+        *,
+        mapping: str = ...,
+        as_printed: bool = ...,
+        weights: str | None = ...,
+    ) -> SampleFitAccumulator: ...
+
 class Aperture:
     @staticmethod
     def direction(theta_deg: float, phi_deg: float = 0.0) -> Aperture: ...

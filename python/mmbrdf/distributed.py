@@ -4,8 +4,9 @@
     archive = mmbrdf.distributed.fit(sorted(folder.glob("*.csv")), client, orders=(7, 4))
     archive.result.model.save("archive.json")
 
-Each file becomes the state of a FitAccumulator, and states merge in a binary tree over the order of the files, which does
-not depend on who computes what or when: the result has the same bits with any number of workers, and without Dask.
+Each file becomes the state of an accumulator, and states merge in a binary tree over the order of the files, which does
+not depend on who computes what or when: the result has the same bits with any number of workers, and without Dask. A fit
+of the sample goes over all files in up to four rounds.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ import numpy as np
 from ._arguments import two_orders
 from ._calls import told_in_a_line
 from ._files import replacing
-from ._mmbrdf import FitAccumulator, FitResult, __version__, read_samples
+from ._mmbrdf import FitAccumulator, FitResult, SampleFitAccumulator, __version__, read_samples
 
 if TYPE_CHECKING:
     import distributed
@@ -35,10 +36,13 @@ class ArchiveFit(NamedTuple):
     """What fit() gives."""
 
     result: FitResult
-    """Of all samples, as FitAccumulator.solve() gives it."""
+    """Of all samples, as solve() of a SampleFitAccumulator gives it, or of a FitAccumulator."""
     samples: int
     skipped: dict[str, str]
     """Files that could not be read, and why: with skip_broken=True alone."""
+
+
+_Accumulator = FitAccumulator | SampleFitAccumulator
 
 
 class _Kind(NamedTuple):
@@ -48,21 +52,47 @@ class _Kind(NamedTuple):
     orders: tuple[int, int]
     mapping: str
     as_printed: bool
+    uncertainty: str
+    weights: str | None
 
-    def empty(self) -> FitAccumulator:
-        return FitAccumulator(self.basis, self.orders, mapping=self.mapping, as_printed=self.as_printed)
+    def _options(self) -> dict[str, Any]:
+        options: dict[str, Any] = {"mapping": self.mapping, "as_printed": self.as_printed}
+        return options if self.uncertainty == "noise" else {**options, "weights": self.weights}
 
-    def of(self, state: Any) -> FitAccumulator:
-        return FitAccumulator.from_state(
-            state, self.basis, self.orders, mapping=self.mapping, as_printed=self.as_printed
-        )
+    def empty(self) -> _Accumulator:
+        one = FitAccumulator if self.uncertainty == "noise" else SampleFitAccumulator
+        return one(self.basis, self.orders, **self._options())
+
+    def of(self, state: Any) -> _Accumulator:
+        one = FitAccumulator if self.uncertainty == "noise" else SampleFitAccumulator
+        return one.from_state(state, self.basis, self.orders, **self._options())
+
+
+class _Mark(NamedTuple):
+    """Of a file, so that it is known again."""
+
+    size: int
+    changed_ns: int
 
 
 class _Part(NamedTuple):
     """Of some of the files, in their order."""
 
-    accumulator: FitAccumulator | None
+    accumulator: _Accumulator | None
+    read: dict[str, _Mark]
     skipped: dict[str, str]
+
+
+class _Round(NamedTuple):
+    """What is the same for all files."""
+
+    kind: _Kind
+    begun: str
+    """What the rounds before have found: nothing in the first."""
+    skip_broken: bool
+    checkpoint: str | None
+    options: dict[str, Any]
+    threads: int
 
 
 _READ = ("columns", "convention", "frame", "skip_incomplete")  # options of read_samples()
@@ -90,13 +120,12 @@ def _require_once(paths: Sequence[str]) -> None:
             raise ValueError(f"files: number {k} ({path}) is number {first} ({paths[first]}) again: leave one out")
 
 
-def _saved_as(path: str, kind: _Kind, checkpoint: str | None, read: dict[str, Any]) -> Path | None:
-    """Another file for what was changed, or is read or fitted otherwise. None: nothing is kept."""
-    if checkpoint is None:
+def _saved_as(path: str, mark: _Mark, this: _Round) -> Path | None:
+    """Another file for what was changed, or is read or fitted otherwise."""
+    if this.checkpoint is None:
         return None
-    at = os.stat(path)
-    key = repr((os.path.abspath(path), at.st_size, at.st_mtime_ns, tuple(kind), _canonical(read), __version__))
-    return Path(checkpoint) / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.npy"
+    key = repr((os.path.abspath(path), *mark, tuple(this.kind), this.begun, _canonical(this.options), __version__))
+    return Path(this.checkpoint) / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.npy"
 
 
 def _save(state: Any, path: Path) -> None:
@@ -106,7 +135,7 @@ def _save(state: Any, path: Path) -> None:
         beside.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
 
 
-def _kept(path: Path | None, kind: _Kind) -> FitAccumulator | None:
+def _kept(path: Path | None, kind: _Kind) -> _Accumulator | None:
     """What _save() has written; None if there is nothing, or something else."""
     if path is None:
         return None
@@ -119,32 +148,49 @@ def _kept(path: Path | None, kind: _Kind) -> FitAccumulator | None:
         return None
 
 
-def _leaf(path: str, kind: _Kind, skip_broken: bool, checkpoint: str | None, options: dict[str, Any]) -> _Part:
+def _mark(path: str) -> _Mark:
+    at = os.stat(path)
+    return _Mark(at.st_size, at.st_mtime_ns)
+
+
+def _added(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> _Accumulator:
+    saved = _saved_as(path, mark, this)
+    kept = _kept(saved, this.kind)
+    if kept is not None:
+        return kept
+    accumulator = copy.deepcopy(begun)
+    samples = read_samples(path, **this.options)
+    if isinstance(accumulator, SampleFitAccumulator):
+        accumulator.add(samples, threads=this.threads)
+    else:
+        accumulator.add(samples)
+    if saved is not None and _mark(path) == mark:  # else the samples may be of two files
+        _save(accumulator.state(), saved)
+    return accumulator
+
+
+def _leaf(path: str, before: _Mark | None, begun: _Accumulator, this: _Round) -> _Part:
+    """Of one file. `before`: as it was in the first round, after which none is left out."""
     try:
-        saved = _saved_as(path, kind, checkpoint, options)
-        kept = _kept(saved, kind)
-        if kept is not None:
-            return _Part(kept, {})
-        accumulator = kind.empty()
-        accumulator.add(read_samples(path, **options))
-        unchanged = saved == _saved_as(path, kind, checkpoint, options)
+        mark = _mark(path)
+        if before is not None and mark != before:
+            raise ValueError(f"{path}: changed since the first round over the files; fit again")
+        accumulator = _added(path, mark, begun, this)
     except (OSError, ValueError) as error:
         text = str(error) if os.path.basename(path) in str(error) else f"{path}: {error}"
-        if skip_broken:
-            return _Part(None, {path: text})
+        if this.skip_broken and before is None:
+            return _Part(None, {}, {path: text})
         raise OSError(text) from None
-    if saved is not None and unchanged:
-        _save(accumulator.state(), saved)
-    return _Part(accumulator, {})
+    return _Part(accumulator, {path: mark}, {})
 
 
 def _merged(first: _Part, second: _Part) -> _Part:
-    skipped = {**first.skipped, **second.skipped}
+    read, skipped = {**first.read, **second.read}, {**first.skipped, **second.skipped}
     if first.accumulator is None or second.accumulator is None:
-        return _Part(first.accumulator or second.accumulator, skipped)
-    result: FitAccumulator = copy.deepcopy(first.accumulator)  # what workers hold must not change
+        return _Part(first.accumulator or second.accumulator, read, skipped)
+    result: Any = copy.deepcopy(first.accumulator)  # what workers hold must not change
     result.merge(second.accumulator)
-    return _Part(result, skipped)
+    return _Part(result, read, skipped)
 
 
 def _here(parts: Iterable[_Part]) -> _Part:
@@ -177,6 +223,46 @@ def _there(client: distributed.Client, leaves: Sequence[Any], progress: Callable
     return result
 
 
+def _of_all(
+    files: dict[str, _Mark | None],
+    begun: _Accumulator,
+    this: _Round,
+    client: distributed.Client | None,
+    progress: Callable[[Any], Any] | None,
+) -> _Part:
+    """One round."""
+    if client is None:
+        each: Iterable[str] = files if progress is None else progress(list(files))
+        return _here(_leaf(path, files[path], begun, this) for path in each)
+    there = client.submit(this.kind.of, begun.state(), pure=False)  # of a worker that dies it is made again
+    return _there(
+        client, [client.submit(_leaf, path, mark, there, this, pure=False) for path, mark in files.items()], progress
+    )
+
+
+def _rounds(
+    paths: Sequence[str], this: _Round, client: distributed.Client | None, progress: Callable[[Any], Any] | None
+) -> _Part:
+    part = _of_all(dict.fromkeys(paths), this.kind.empty(), this, client, progress)
+    if part.accumulator is None:
+        raise ValueError(f"files: none of {len(paths)} can be read; the first: {next(iter(part.skipped.values()))}")
+    skipped = part.skipped
+    while isinstance(part.accumulator, SampleFitAccumulator) and part.accumulator.next_round():
+        begun = part.accumulator
+        this = this._replace(begun=hashlib.sha256(begun.state().tobytes()).hexdigest())
+        part = _of_all(dict(part.read), begun, this, client, progress)
+    return part._replace(skipped=skipped)
+
+
+def _require_fitting(uncertainty: str, weights: str | None, declared: dict[str, float] | None) -> None:
+    if uncertainty not in ("sample", "noise"):
+        raise ValueError(f"uncertainty {uncertainty!r}: must be 'sample' or 'noise'")
+    if uncertainty == "noise" and weights not in (None, "none"):
+        raise ValueError(f"weights {weights!r}: with uncertainty='noise' files are fitted with weights='none' alone")
+    if uncertainty == "noise" and declared:
+        raise ValueError("declared: errors are declared of a sample, with uncertainty='sample'")
+
+
 @told_in_a_line("distributed.fit")
 def fit(
     files: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
@@ -188,6 +274,9 @@ def fit(
     as_printed: bool = False,
     powers: int | None = None,
     reflectance: dict[float, float] | None = None,
+    uncertainty: str = "sample",
+    declared: dict[str, float] | None = None,
+    weights: str | None = None,
     minimum_norm: bool = False,
     name: str = "",
     attribution: str = "",
@@ -196,28 +285,34 @@ def fit(
     progress: Callable[[Any], Any] | None = None,
     **read: Any,
 ) -> ArchiveFit:
-    """Least squares of the samples of all files, as one FitAccumulator would fit them.
+    """The fit of the samples of all files, as mmbrdf.fit() of all of them in memory.
 
     files        of samples, as read_samples() takes them, each once, or one of them; its options (columns, frame, ...) may be given, too. Workers
                  must find them by the same names
     client       a distributed.Client; None: in this process, one file after the other
-    skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError
-    checkpoint   a folder in which the state of each file is kept, whole or not at all: another call continues with what
-                 is there, unless the file was changed, or is read or fitted with other options; a state that is
-                 damaged is made again. Workers must find it, too
-    progress     such as tqdm.tqdm, which is given what is gone through
-    Other options are those of FitAccumulator and its solve().
+    uncertainty  'sample': that of a real sample, as a SampleFitAccumulator has it, in up to four rounds over the files;
+                 where it cannot be had it is that of the noise, and FitResult.warnings says why. 'noise': of the noise
+                 alone, as a FitAccumulator has it, in one round and with weights of 1
+    declared     as mmbrdf.fit() takes it
+    weights      with 'sample' 'none' or 'speckle'; None: 'speckle' with the isotropic basis, else 'none'
+    skip_broken  files that cannot be read are left out, and named in the result; otherwise the first of them is an OSError.
+                 A file that was read in the first round and is changed or gone in a later one is an OSError
+    checkpoint   a folder in which the state of each file is kept for each round, whole or not at all: another call
+                 continues with what is there, unless the file was changed, or is read or fitted with other options; a
+                 state that is damaged is made again. Workers must find it, too
+    progress     such as tqdm.tqdm, which is given what is gone through in each round
+    Other options are those of the accumulator and its solve().
 
-    In memory are the samples of one file for each worker, and some states. Weights are 1, and uncertainties those of the
-    noise. Raises OSError, naming the file, for one that is broken; ValueError for no files, one that is there twice, and as
-    solve() does;
-    TypeError for an option that there is not.
+    In memory are the samples of one file for each worker, and some states. Raises OSError, naming the file, for one that
+    is broken; ValueError for no files, one that is there twice, and as solve() does; TypeError for an option that there is
+    not.
     """
     paths = [os.fspath(file) for file in ([files] if isinstance(files, str | os.PathLike) else files)]
     if not paths:
         raise ValueError("files: none")
     _require_once(paths)
-    kind = _Kind(basis, two_orders(orders), mapping, as_printed)
+    _require_fitting(uncertainty, weights, declared)
+    kind = _Kind(basis, two_orders(orders), mapping, as_printed, uncertainty, weights)
     _require_known(read)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise TypeError(f"client: expected a distributed.Client, not {type(client).__name__}")
@@ -225,15 +320,11 @@ def fit(
     folder = None if checkpoint is None else os.path.abspath(os.fspath(checkpoint))
     if folder is not None:
         os.makedirs(folder, exist_ok=True)
-    if client is None:
-        each: Iterable[str] = paths if progress is None else progress(paths)
-        part = _here(_leaf(path, kind, skip_broken, folder, read) for path in each)
-    else:
-        leaves = [client.submit(_leaf, path, kind, skip_broken, folder, read, pure=False) for path in paths]
-        part = _there(client, leaves, progress)
-    if part.accumulator is None:
-        raise ValueError(f"files: none of {len(paths)} can be read; the first: {next(iter(part.skipped.values()))}")
-    result = part.accumulator.solve(
-        powers=powers, reflectance=reflectance, minimum_norm=minimum_norm, name=name, attribution=attribution
-    )
-    return ArchiveFit(result, part.accumulator.samples, part.skipped)
+    this = _Round(kind, "", skip_broken, folder, read, threads=0 if client is None else 1)
+    accumulator, _, skipped = _rounds(paths, this, client, progress)
+    assert accumulator is not None
+    options: dict[str, Any] = {"powers": powers, "reflectance": reflectance, "minimum_norm": minimum_norm}
+    if isinstance(accumulator, SampleFitAccumulator):
+        options["declared"] = declared or {}
+    result = accumulator.solve(**options, name=name, attribution=attribution)
+    return ArchiveFit(result, accumulator.samples, skipped)

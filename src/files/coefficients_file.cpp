@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "mmbrdf/files/csv.hpp"
-#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/formats/projection.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {

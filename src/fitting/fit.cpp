@@ -12,6 +12,7 @@
 #include "fitting/mixed_fit.hpp"
 #include "fitting/row_variance.hpp"
 #include "fitting/undetermined.hpp"
+#include "fitting/wavelength_slot.hpp"
 #include "mmbrdf/fitting/weights.hpp"
 #include "mmbrdf/model/at_wavelengths.hpp"
 #include "mmbrdf/model/prepared.hpp"
@@ -108,12 +109,10 @@ FitAccumulator::FitAccumulator(const Basis& basis)
 }
 
 FitAccumulator::AtWavelength& FitAccumulator::slot(double wavelength) {
-  const auto near = wavelengths_.lower_bound(wavelength - wavelength_resolution);
-  if (near != wavelengths_.end() && near->first <= wavelength + wavelength_resolution) return near->second;
-  AtWavelength& fresh = wavelengths_[wavelength];
-  for (const int block : block_of_)
-    fresh.elements.emplace_back(block < 0 ? 1 : static_cast<int>(blocks_[size(block)].modes.size()));
-  return fresh;
+  AtWavelength& at = wavelength_slot(wavelengths_, wavelength);
+  for (std::size_t e = at.elements.size(); e < 16; ++e)
+    at.elements.emplace_back(block_of_[e] < 0 ? 1 : static_cast<int>(blocks_[size(block_of_[e])].modes.size()));
+  return at;
 }
 
 void FitAccumulator::merge(const FitAccumulator& other) {
@@ -363,16 +362,18 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
   if (!samples.empty() && not_measured(samples)[0]) throw std::invalid_argument("f11 is not measured in any sample");
   if (options.uncertainty == Uncertainty::noise) return FitAccumulator::of_noise(samples, basis, options, weights);
   std::string reason;
-  if (const std::string without = no_mixed_model(samples, basis, options.covariance, weights); !without.empty())
-    reason = without;
+  if (options.covariance != Covariance::residuals)
+    reason = only_residuals(options.covariance);
+  else if (weights == Weights::data)
+    reason = "weights of the data have no law";
   else
     try {
-      return FitAccumulator::of_sample(samples, basis, options, weights);
+      return sample_fit(samples, basis, options, weights);
     } catch (const MixedFailure& failure) {
       reason = failure.what();
     }
   FitResult result = FitAccumulator::of_noise(samples, basis, options, weights);
-  result.warnings.push_back("uncertainties are those of the noise alone: " + reason);
+  result.warnings.push_back(only_noise(reason));
   return result;
 }
 

@@ -2,6 +2,7 @@
 // The same samples at other orders, and under another model: what cross-validation is made of.
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -29,6 +30,14 @@ std::array<ElementFit, 16> FitAccumulator::misfit(const Model& model) const {
         element_fit(e, fed != model.blocks.end() ? fed->coefficients : std::vector<double>{0}, model.reflectance);
   }
   return result;
+}
+
+/// As if each weight of f11 had been multiplied by the square of a factor.
+void FitAccumulator::weigh_f11(double factor) {
+  for (auto& [wavelength, at] : wavelengths_) {
+    at.elements[0] = at.elements[0].repeated(std::array{factor}, factor);
+    at.weight[0] *= factor * factor;
+  }
 }
 
 FitAccumulator FitAccumulator::at_orders(const Orders& orders) const {

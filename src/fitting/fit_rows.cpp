@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "basis/rows.hpp"
+#include "fitting/moderate.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "numerics/fold.hpp"
 #include "text/numbers.hpp"
@@ -37,19 +38,6 @@ void require_weights(std::span<const Mueller> weights, std::size_t samples) {
 
 /// Squares of rows are added up: what is larger than this would leave no finite sum of a million of them.
 constexpr double largest_value = 1e150;
-
-/// Nothing is added if this throws.
-void require_moderate(std::span<const Sample> samples, std::span<const Mueller> weights) {
-  for (std::size_t s = 0; s < samples.size(); ++s)
-    for (std::size_t e = 0; e < 16; ++e) {
-      const Mueller& m = samples[s].as_measured ? samples[s].as_measured->normalized : samples[s].normalized;
-      const double value = std::abs(e == 0 ? samples[s].f11 : m.elements[e]);
-      const double weight = weights.empty() ? 1 : weights[s].elements[e];
-      if (std::sqrt(weight) * std::max(value, 1.0) > largest_value)
-        throw std::invalid_argument("sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
-                                    shortest(value) + " with weight " + shortest(weight) + " is too large");
-    }
-}
 
 /// What of each sample has no row in xy, as it is turned; nothing if all has. What is as_measured has rows of its own.
 std::vector<Elements> unknown_of(std::span<const Sample> samples, const Basis& basis) {
@@ -95,6 +83,18 @@ void clear_rounding(RowColumns& rows, std::size_t modes, std::size_t count) {
 }
 
 }  // namespace
+
+void require_moderate(std::span<const Sample> samples, std::span<const Mueller> weights) {
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    for (std::size_t e = 0; e < 16; ++e) {
+      const Mueller& m = samples[s].as_measured ? samples[s].as_measured->normalized : samples[s].normalized;
+      const double value = std::abs(e == 0 ? samples[s].f11 : m.elements[e]);
+      const double weight = weights.empty() ? 1 : weights[s].elements[e];
+      if (std::sqrt(weight) * std::max(value, 1.0) > largest_value)
+        throw std::invalid_argument("sample " + std::to_string(s + 1) + ": " + sample_element(e) + " = " +
+                                    shortest(value) + " with weight " + shortest(weight) + " is too large");
+    }
+}
 
 /// Elements whose rows are the same at the same geometry.
 struct FitAccumulator::Design {

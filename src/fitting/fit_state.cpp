@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mmbrdf/fitting/fit.hpp"
+#include "fitting/state_reader.hpp"
 #include "text/numbers.hpp"
 
 //   the basis: family, both orders, mapping, rotation
@@ -18,36 +18,6 @@
 
 namespace mmbrdf {
 namespace {
-
-/// Reads numbers one after another, or several.
-class Reader {
- public:
-  explicit Reader(std::span<const double> numbers) : rest_(numbers) {}
-
-  bool at_end() const { return rest_.empty(); }
-  std::span<const double> next(std::size_t count) {
-    if (count > rest_.size()) throw std::invalid_argument("a state of a fit that ends too soon");
-    const std::span<const double> result = rest_.first(count);
-    rest_ = rest_.subspan(count);
-    return result;
-  }
-  /// In [0, highest].
-  double next(const char* what, double highest) {
-    const double number = next(1).front();
-    if (!(number >= 0 && number <= highest))
-      throw std::invalid_argument("a state of a fit with " + std::string(what) + " " + shortest(number));
-    return number;
-  }
-
- private:
-  std::span<const double> rest_;
-};
-
-std::vector<double> numbers_of(const Basis& basis) {
-  return {static_cast<double>(basis.family), static_cast<double>(basis.orders.f11),
-          static_cast<double>(basis.orders.other), static_cast<double>(basis.mapping),
-          static_cast<double>(basis.rotation)};
-}
 
 constexpr double turned_rows = 8;  // added to the sides, which are up to 7
 
@@ -61,7 +31,7 @@ std::vector<double> numbers_of(const DirectionPairs& pairs) {
 }
 
 /// As many as `like` has, of the same grid.
-DirectionPairs pairs_from(Reader& reader, const DirectionPairs& like) {
+DirectionPairs pairs_from(StateReader& reader, const DirectionPairs& like) {
   std::vector<std::uint8_t> bytes(like.bytes().size());
   for (std::size_t first = 0; first < bytes.size(); first += bytes_in_number) {
     double rest = reader.next("directions", std::ldexp(1.0, 8 * bytes_in_number) - 1);
@@ -94,17 +64,13 @@ std::vector<double> FitAccumulator::state() const {
 }
 
 FitAccumulator FitAccumulator::from_state(const Basis& basis, std::span<const double> state) {
-  constexpr double most = 9e15;  // whole numbers up to here are exact
   FitAccumulator result(basis);
-  Reader reader(state);
-  const std::vector<double> ours = numbers_of(basis);
-  if (!std::ranges::equal(reader.next(ours.size()), ours))
-    throw std::invalid_argument("a state of a fit with another basis");
-  const double samples = reader.next("a number of samples", most);
-  if (samples != std::floor(samples) || (samples == 0) != (state.size() == ours.size() + 2))
-    throw std::invalid_argument("a state of a fit with a number of samples " + shortest(samples));
-  result.samples_ = static_cast<long>(samples);
+  StateReader reader(state);
+  require_next(reader, basis);
+  result.samples_ = reader.whole("a number of samples");
   const double sides = reader.next("sides of the plane of incidence", 2 * turned_rows - 1);
+  if ((result.samples_ == 0) != reader.at_end())
+    throw std::invalid_argument("a state of a fit with a number of samples " + std::to_string(result.samples_));
   result.has_turned_rows_ = sides >= turned_rows;
   result.sides_ = static_cast<Sides>(sides - (result.has_turned_rows_ ? turned_rows : 0));
   while (!reader.at_end()) {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The mixed model of the published measurements against an independent implementation in numpy (tests/data).
-#include "fitting/mixed_fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "given/first_pass.hpp"
 #include "given/published_samples.hpp"
+#include "mixed/block_fit.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -91,14 +91,13 @@ std::vector<Sample> samples_of(const char* file) {
 
 std::vector<OfBlock> sums(const std::vector<Sample>& samples) {
   const Basis basis;
-  const ReadingLaw law;
-  const FirstPass first = first_pass(samples, basis, law, 1);
+  const FirstPass first = first_pass(samples, basis, {});
   const std::vector<Block> evaluated = blocks(basis.family, basis.orders),
                            behind = blocks(Family::isotropic, generous(basis.orders));
   std::vector<OfBlock> result;
   for (std::size_t b = 0; b < behind.size(); ++b) {
     const MixedColumns columns(behind[b], basis.mapping);
-    result.push_back({columns, sums_of(columns, samples, first, law), evaluated[b]});
+    result.push_back({columns, sums_of(columns, samples, first), evaluated[b]});
   }
   return result;
 }
@@ -202,19 +201,45 @@ TEST(MixedFit, SumsOfPartsOfASeriesAddUp) {
   if (published(grid).empty()) GTEST_SKIP() << absent(grid);
   const std::vector<Sample> samples = samples_of(grid);
   const Basis basis;
-  const ReadingLaw law;
-  const FirstPass first = first_pass(samples, basis, law, 1);
+  const FirstPass first = first_pass(samples, basis, {});
   const MixedColumns columns(blocks(Family::isotropic, generous_orders).front(), basis.mapping);
   const std::span<const Sample> all(samples);
-  const Gram whole = sums_of(columns, all, first, law);
-  Gram merged = sums_of(columns, all.first(700), first, law);
-  merged.merge(sums_of(columns, all.subspan(700), first, law));
+  const Gram whole = sums_of(columns, all, first);
+  Gram merged = sums_of(columns, all.first(700), first);
+  merged.merge(sums_of(columns, all.subspan(700), first));
   const Block evaluated = blocks(basis.family, basis.orders).front();
   const BlockPosterior a = fit_block(columns, whole, evaluated).posterior,
                        b = fit_block(columns, merged, evaluated).posterior;
   EXPECT_NEAR(a.evidence, b.evidence, 1e-4);  // the top is flat: rounding ends the search elsewhere
   for (std::size_t h = 0; h < a.hyperparameters.size(); ++h)
     EXPECT_NEAR(a.hyperparameters[h], b.hyperparameters[h], 1e-3);
+}
+
+/// At some azimuth of the receiver each, from one on.
+std::vector<Sample> directions(std::size_t from, std::size_t count) {
+  std::vector<Sample> result(count);
+  for (Sample& sample : result) sample.geometry = {{0.5, 0}, {0.5, 1e-4 * static_cast<double>(from++)}};
+  return result;
+}
+
+TEST(MixedFit, CountsDirectionsUntilThereAreTooMany) {
+  DirectionCounts all, first, second, third;
+  first.add(directions(0, 5000));
+  second.add(directions(4000, 5000));
+  all.add(directions(0, 5000));
+  all.add(directions(4000, 5000));
+  first.merge(second);
+  EXPECT_EQ(first.rising(), all.rising());
+  ASSERT_EQ(all.rising().size(), 9000);
+  EXPECT_EQ(all.rising()[4500].count, 2);
+  EXPECT_FALSE(all.too_many());
+  third.add(directions(9000, 1));
+  third.merge(all);
+  all.add(directions(9000, 1));
+  for (const DirectionCounts& one : {third, all}) {
+    EXPECT_TRUE(one.too_many());
+    EXPECT_TRUE(one.rising().empty());
+  }
 }
 
 TEST(MixedFit, OfWhatIsNoNumberIsRefused) {

@@ -23,7 +23,7 @@
 #include "given/cases.hpp"
 #include "given/random_model.hpp"
 #include "given/reference_sum.hpp"
-#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/formats/projection.hpp"
 
 // Every allocation of this program is counted. Not inlined: gcc would take the pair for a mismatch of new and free().
 namespace {

@@ -12,7 +12,7 @@ import pytest
 import mmbrdf
 from mmbrdf import distributed as archive
 
-OPTIONS = {"orders": (2, 1)}
+OPTIONS = {"orders": (2, 1), "uncertainty": "noise"}
 
 
 @pytest.fixture(scope="module")
@@ -198,6 +198,149 @@ def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, m
     with pytest.raises(OSError, match="No space left"):
         archive.fit(files[:1], checkpoint=tmp_path, **OPTIONS)
     assert list(tmp_path.iterdir()) == []
+
+
+# ---- fits of the sample, in rounds ----
+
+
+@pytest.fixture(scope="module")
+def few(files, tmp_path_factory):
+    """Three, at two wavelengths, of which each has enough samples."""
+    folder = tmp_path_factory.mktemp("few")
+    paths = [folder / f"run{k}.csv" for k in range(3)]
+    for k, path in enumerate(paths):
+        mmbrdf.read_samples(files[k])[::3].save(path)
+    return paths
+
+
+@pytest.fixture(scope="module")
+def sampled(few):
+    return archive.fit(few, declared={"scale": 0.003})
+
+
+def test_files_are_by_default_fitted_as_samples_in_memory_are(few, sampled, tmp_path):
+    table = tmp_path / "all.csv"
+    lines = [path.read_text().splitlines(keepends=True) for path in few]
+    table.write_text("".join(lines[0] + [line for one in lines[1:] for line in one if line[0] not in "w#"]))
+    expected = mmbrdf.fit(mmbrdf.read_samples(table), declared={"scale": 0.003})
+    assert sampled.samples == len(mmbrdf.read_samples(table))
+    assert sampled.result.model.provenance["uncertainty"] == "sample"
+    assert sampled.result.model.provenance["weights"] == "speckle"
+    for a, b in zip(sampled.result.model.blocks, expected.model.blocks, strict=True):
+        np.testing.assert_allclose(a.coefficients, b.coefficients, rtol=0, atol=1e-7 * np.abs(b.coefficients).max())
+    for wavelength in (532, 633):
+        u, v = (fit.model.evaluate_uncertainty(wavelength, 30, 0, [0, 50], 120) for fit in (sampled.result, expected))
+        np.testing.assert_allclose(u, v, rtol=1e-6)
+
+
+def test_where_there_is_no_mixed_model_files_are_fitted_with_a_warning(few):
+    fitted = archive.fit(few[:1], basis="germer2017", orders=(2, 1))
+    assert fitted.result.model.provenance["uncertainty"] == "noise"
+    assert fitted.result.warnings[0] == (
+        "uncertainties are those of the noise alone: the germer2017 basis has no mixed model"
+    )
+
+
+def test_rounds_continue_with_what_was_finished(few, sampled, tmp_path, monkeypatch):
+    read, asked = archive.read_samples, []
+
+    def failing(path, **options):
+        asked.append(os.fspath(path))
+        if len(asked) == 8:
+            raise KeyboardInterrupt
+        return read(path, **options)
+
+    monkeypatch.setattr(archive, "read_samples", failing)
+    with pytest.raises(KeyboardInterrupt):
+        archive.fit(few, declared={"scale": 0.003}, checkpoint=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 7  # of the third round one
+    fitted = archive.fit(few, declared={"scale": 0.003}, checkpoint=tmp_path)
+    assert asked[8:] == [os.fspath(path) for path in [*few[1:], *few]]
+    np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
+    archive.fit(few, weights="none", checkpoint=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 12 + 9  # no second round without weights
+
+
+def test_a_file_that_was_left_out_stays_so_and_one_that_changes_is_refused(few, sampled, tmp_path, monkeypatch):
+    broken = tmp_path / "broken.csv"
+    broken.write_text("wavelength_nm,theta_i_deg\n532,x\n")
+    some = [broken, *few]
+    read = archive.read_samples
+
+    def mending(path, **options):
+        result = read(path, **options)
+        broken.write_text(few[0].read_text())
+        return result
+
+    monkeypatch.setattr(archive, "read_samples", mending)
+    fitted = archive.fit(some, declared={"scale": 0.003}, skip_broken=True)
+    assert list(fitted.skipped) == [str(broken)]
+    np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
+
+    copies = [tmp_path / path.name for path in few]
+    for path, copy in zip(few, copies):
+        copy.write_bytes(path.read_bytes())
+
+    def changing(path, **options):
+        result = read(path, **options)
+        if path == str(copies[2]):
+            copies[0].write_text(few[1].read_text())
+        return result
+
+    monkeypatch.setattr(archive, "read_samples", changing)
+    with pytest.raises(OSError, match=r"run0.csv: changed since the first round over the files; fit again$"):
+        archive.fit(copies, skip_broken=True)
+
+
+def test_a_file_with_other_samples_under_the_same_mark_is_refused_too(few, monkeypatch):
+    read, asked = archive.read_samples, []
+
+    def other(path, **options):
+        asked.append(path)
+        return read(few[1] if len(asked) > 3 and path == str(few[0]) else path, **options)
+
+    monkeypatch.setattr(archive, "read_samples", other)
+    with pytest.raises(ValueError, match=r"^round 2 was of other samples than round 1, \d+ of them in place of \d+$"):
+        archive.fit(few)
+
+
+def test_progress_sees_each_round(few):
+    seen = []
+
+    def progress(paths):
+        seen.append(len(paths))
+        return paths
+
+    archive.fit(few, weights="none", progress=progress)
+    assert seen == [3, 3, 3]
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"uncertainty": "both"}, "uncertainty 'both': must be 'sample' or 'noise'"),
+        ({"uncertainty": "noise", "weights": "speckle"}, "weights 'speckle': with uncertainty='noise' files are "),
+        ({"uncertainty": "noise", "declared": {"scale": 0.1}}, "declared: errors are declared of a sample"),
+        ({"weights": "estimated"}, "weights estimated need all samples at once: take none or speckle"),
+    ],
+)
+def test_what_files_cannot_be_fitted_with_is_refused(few, options, message):
+    with pytest.raises(ValueError, match="^" + message):
+        archive.fit(few, **options)
+
+
+def test_one_worker_and_two_give_the_bits_of_this_process_in_all_rounds(few, sampled, tmp_path):
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    for workers in (1, 2):
+        with (
+            cluster_of.LocalCluster(
+                n_workers=workers, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+            ) as cluster,
+            cluster_of.Client(cluster) as client,
+        ):
+            fitted = archive.fit(few, client, declared={"scale": 0.003})
+        np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
+        assert fitted.result.model.to_json() == sampled.result.model.to_json()
 
 
 def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):

@@ -14,7 +14,7 @@
 #include "given/random_model.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
-#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/formats/projection.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/numerics/quadrature.hpp"
 #include "mmbrdf/polarization/analysis.hpp"

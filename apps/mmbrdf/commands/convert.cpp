@@ -7,7 +7,7 @@
 
 #include "command.hpp"
 #include "mmbrdf/files/model_file.hpp"
-#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/formats/projection.hpp"
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/samples/samples.hpp"

@@ -182,7 +182,8 @@ class FitAccumulator {
   friend FitResult fit_to_predict(const FitAccumulator&, const FitOptions&, SvdCache&);  // for selection
   static FitResult of_noise(std::span<const Sample> samples, const Basis& basis, const FitOptions& options,
                             Weights weights);
-  static FitResult of_sample(std::span<const Sample> samples, const Basis& basis, FitOptions options, Weights weights);
+  friend class MixedRounds;  // whose weights are known up to a reflectance
+  void weigh_f11(double factor);
   FitResult solved(const FitOptions& options, SvdCache& known, bool covariances) const;
   FitResult solved(const FitOptions& options) const;
   DirectionPairs::Grid grid() const;

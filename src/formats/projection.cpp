@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mmbrdf/fitting/projection.hpp"
+#include "mmbrdf/formats/projection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -95,12 +95,12 @@ Model in_published_form(const Model& model) {
 
 namespace {
 
-constexpr double horizon = std::numbers::pi / 2;
+constexpr double right_angle = std::numbers::pi / 2;
 
 /// Geometries at phi_i = 0 and weights that integrate over the range of a model in solid angle, dΩ = d(1 − cos θ) dφ.
 std::vector<std::pair<Geometry, double>> quadrature(const Validity& validity, int order) {
-  const double height_i = 1 - std::cos(validity.theta_i_max.value_or(horizon)),
-               height_r = 1 - std::cos(validity.theta_r_max.value_or(horizon));
+  const double height_i = 1 - std::cos(validity.theta_i_max.value_or(right_angle)),
+               height_r = 1 - std::cos(validity.theta_r_max.value_or(right_angle));
   const int azimuths = 4 * order + 8;
   std::vector<std::pair<Geometry, double>> result;
   for (const Node& i : gauss_legendre(order + 6))
