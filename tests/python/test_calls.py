@@ -122,6 +122,10 @@ def test_signatures_are_those_of_help():
         (lambda p: mmbrdf.report(p, None, "r.md", name=5), "report: name: expected text, not int 5"),
         (lambda p: mmbrdf.report(p, None, "r.md", model_file=5), "report: model_file: expected a path, not int 5"),
         (lambda p: mmbrdf.plot.hemisphere(p), "plot.hemisphere: wavelength_nm and theta_i_deg missing"),
+        (
+            lambda p: mmbrdf.plot.reflectance_against_angle(p, 532, theta_i_deg=45),
+            "plot.reflectance_against_angle: theta_i_deg: expected a sequence, not int 45",
+        ),
         (lambda p: mmbrdf.images.reduce(), "images.reduce: stack and instrument missing"),
         (lambda p: mmbrdf.images.PixelFit(532), "PixelFit: geometry missing: expected a sequence"),
         (lambda p: p.summary(1), "Model.summary: takes no arguments without a name, not 1"),

@@ -218,7 +218,7 @@ def test_what_a_fit_of_low_order_leaves_is_in_percent(samples):
 
 def test_other_things_than_samples_are_refused_in_a_line(ptfe, samples):
     for draw in (mmbrdf.plot.directions, mmbrdf.plot.suspicious, mmbrdf.plot.low_order_residuals):
-        with pytest.raises(TypeError, match="^data: expected mmbrdf.Dataset, not Model$"):
+        with pytest.raises(TypeError, match=r"^plot\.\w+: data: expected mmbrdf.Dataset, not Model$"):
             draw(ptfe)
         with pytest.raises(TypeError, match="^inspection: expected mmbrdf.Inspection, not tuple$"):
             draw(samples, inspection=())

@@ -587,8 +587,8 @@ def test_what_makes_no_curve_and_no_band_is_refused(ptfe):
     plot = mmbrdf.plot
     for wrong, match in [
         (lambda: plot.reflectance_factor(ptfe, 532, theta_i_deg=[45]), "two values"),
-        (lambda: plot.reflectance_against_angle(ptfe, 532, theta_i_deg=45), "two values"),
-        (lambda: plot.reflectance_against_wavelength(ptfe, 532), "two values"),
+        (lambda: plot.reflectance_against_angle(ptfe, 532, theta_i_deg=[45]), "two values"),
+        (lambda: plot.reflectance_against_wavelength(ptfe, [532]), "two values"),
         (lambda: plot.reflectance_factor(ptfe, 532, coverage=float("nan")), "coverage"),
         (lambda: plot.in_plane_curves(ptfe, 532, coverage=-1), "coverage"),
         (lambda: plot.map(ptfe, "11", 532, 45, terms={"scale": 0.003}), "terms"),

@@ -91,9 +91,9 @@ def test_residuals_of_f11_alone_have_one_row(ptfe, random_data):
 
 
 def test_wrong_things_are_refused_in_a_line(ptfe, random_data):
-    with pytest.raises(TypeError, match="^data: expected mmbrdf.Dataset, not Model$"):
+    with pytest.raises(TypeError, match="^plot.residuals: data: expected mmbrdf.Dataset, not Model$"):
         plot.residuals(ptfe, ptfe)
-    with pytest.raises(TypeError, match="^model: expected mmbrdf.Model, not Dataset$"):
+    with pytest.raises(TypeError, match="^plot.by_wavelength: model: expected mmbrdf.Model, not Dataset$"):
         plot.by_wavelength(random_data)
     with pytest.raises(ValueError, match="^no samples at 633 nm$"):
         plot.residuals(ptfe, random_data, 633)
