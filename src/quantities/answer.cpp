@@ -313,7 +313,7 @@ std::vector<Answered> quantities_of(const Sample& sample) {
       if (uncertain[e] || uncertain[other]) error.total(e, other) = 0;
   std::vector<Answered> result;
   for (const Quantity& quantity : quantities(false))
-    result.push_back(in_first_order(quantity, mueller(measured), {1, 0, 0, 0},
+    result.push_back(in_first_order(quantity, measured_matrix(measured), {1, 0, 0, 0},
                                     (quantity.needs & uncertain).any() ? nullptr : &error));
   return result;
 }

@@ -206,7 +206,7 @@ Sample in_frame(const Sample& sample, Frame frame) {
   return result;
 }
 
-Mueller mueller(const Sample& sample) {
+Mueller measured_matrix(const Sample& sample) {
   Mueller result = sample.f11 * sample.normalized;
   result(0, 0) = sample.f11;
   return result;

@@ -178,7 +178,7 @@ TEST(Answer, OfASampleHasTheQuantitiesOfItsMatrix) {
   const Answer of_model = Answers(model).at(0.532).at(oblique);
   const std::vector<Answered> measured = quantities_of(sample);
   const MuellerCovariance errors = change_frame(covariance(sample), oblique, Frame::xy, Frame::sp);
-  const Mueller m = change_frame(mueller(sample), oblique, Frame::xy, Frame::sp);
+  const Mueller m = change_frame(measured_matrix(sample), oblique, Frame::xy, Frame::sp);
   ASSERT_EQ(measured.size(), of_model.quantities.size());
   for (std::size_t q = 0; q < measured.size(); ++q) {
     const Quantity& quantity = *measured[q].quantity;

@@ -311,7 +311,7 @@ TEST(Sample, HasTheCovarianceOfUncorrelatedElements) {
   for (std::size_t from = 0; from < 16; ++from) {
     Sample changed = sample;
     (from == 0 ? changed.f11 : changed.normalized.elements[from]) += sample.uncertainty.elements[from];
-    const Mueller part = mueller(changed) - mueller(sample);
+    const Mueller part = measured_matrix(changed) - measured_matrix(sample);
     for (std::size_t e = 0; e < 16; ++e)
       for (std::size_t other = 0; other < 16; ++other) expected(e, other) += part.elements[e] * part.elements[other];
   }

@@ -87,7 +87,7 @@ EMSCRIPTEN_KEEPALIVE int elements_of_samples(const Samples* samples, const std::
   return guarded([&] {
     for (std::size_t i = 0; i < count; ++i) {
       const Sample sample = in_frame(samples->all.at(which[i]), frame_numbered(frame));
-      Mueller m = divided ? sample.normalized : mueller(sample);
+      Mueller m = divided ? sample.normalized : measured_matrix(sample);
       m(0, 0) = sample.f11;
       values[i] = convert(m, StokesConvention::germer2017, convention_numbered(convention));
       uncertainties[i] = uncertainty_of(sample, divided != 0);

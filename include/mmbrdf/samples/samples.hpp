@@ -100,9 +100,9 @@ Sample from_frame(const Sample& sample, Frame frame);
 Sample in_frame(const Sample& sample, Frame frame);
 
 /// Its matrix in sr⁻¹, in the frame of the sample. NaN: not measured.
-Mueller mueller(const Sample& sample);
+Mueller measured_matrix(const Sample& sample);
 
-/// Of the elements of mueller(), as if the errors of f11 and of the normalised elements were uncorrelated: with F = f11 m,
+/// Of the elements of measured_matrix(), as if the errors of f11 and of the normalised elements were uncorrelated: with F = f11 m,
 ///   u²(F) = m² u²(f11) + f11² u²(m),   all correlated through f11.
 /// NaN where u of f11 or of an element is not known, or it was not measured.
 MuellerCovariance covariance(const Sample& sample);
