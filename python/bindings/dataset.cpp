@@ -86,7 +86,7 @@ py::array_t<double> mueller(const Dataset& data) {
 }
 
 bool has_uncertainty(const Dataset& data) {
-  return std::any_of(data.samples.begin(), data.samples.end(), [](const Sample& s) { return has_uncertainty(s); });
+  return std::ranges::any_of(data.samples, [](const Sample& s) { return has_uncertainty(in_own_frame(s)); });
 }
 
 /// What data[which] keeps: numpy decides, on the numbers of the samples.

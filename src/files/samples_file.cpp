@@ -66,7 +66,7 @@ SampleReader::SampleReader(std::istream& in, const std::string& name, const Samp
       geometry_(reader_),
       elements_(std::make_unique<ElementColumns>(reader_)),
       rotation_(reader_.find(rotation_name)),
-      frame_(reader_.find(frame_name)) {
+      frame_(table.frame ? -1 : reader_.find(frame_name)) {
   needed_ = geometry_.columns();
   for (const int column : {rotation_, frame_})
     if (column >= 0) needed_.push_back(column);
@@ -83,9 +83,6 @@ SampleReader::SampleReader(std::istream& in, const std::string& name, const Samp
   }
   if (elements_->polarized() && table.frame == Frame::xy)
     throw reader_.error("f_ss ... f_pp are of s and p, not of the frame xy");
-  if (table_.frame && frame_ >= 0)
-    throw reader_.error("column " + shown_name(reader_.columns()[static_cast<std::size_t>(frame_)]) +
-                        " says the frame of each row: leave out that it is " + to_string(*table_.frame));
   if (!table_.frame) table_.frame = elements_->polarized() ? Frame::sp : Frame::xy;
 }
 
@@ -133,7 +130,7 @@ Frame SampleReader::frame_of_row() const {
       return frame_from(name);
     } catch (const std::invalid_argument& error) {
       throw reader_.error("column " + shown_name(reader_.columns()[static_cast<std::size_t>(frame_)]) + ": " +
-                          error.what());
+                          error.what() + "; if it is of something else, say the frame of all rows (--frame)");
     }
   }();
   if (frame == Frame::xy && elements_->polarized())
@@ -164,7 +161,7 @@ std::string SampleReader::understood() const {
   }
   if (!capital.empty()) list(text, capital + " ... are divided by f11");
   if (!elements_->f11_is().empty()) list(text, elements_->f11_is());
-  if (table_.frame != Frame::xy) list(text, "frame " + to_string(*table_.frame));
+  if (frame_ < 0 && table_.frame != Frame::xy) list(text, "frame " + to_string(*table_.frame));
   if (table_.convention != StokesConvention::germer2017) list(text, "convention " + to_string(table_.convention));
   if (!unread.empty()) list(text, "not read: " + unread);
   if (lost_ > 0)
@@ -231,6 +228,8 @@ SampleWriter::SampleWriter(std::ostream& out, const Elements& measured, bool wit
 
 void SampleWriter::write(std::span<const Sample> samples) {
   for (const Sample& one : samples) {
+    if (one.as_measured && !with_frames_)
+      throw std::invalid_argument("a sample in another frame than xy, without a column for it");
     const Sample sample = in_own_frame(one);
     const Elements unknown = not_measured(sample);
     out_ << shortest(in_micrometres_ ? sample.wavelength : in_nanometres(sample.wavelength));

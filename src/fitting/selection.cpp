@@ -361,7 +361,7 @@ Selection select_model(std::span<const Sample> samples, std::span<const Partitio
   Selection result;
   const Deciding by = deciding(partitions);
   result.powers = options.powers->first;
-  const bool f11_alone = (rows_turn(options.family) ? measured_elements(samples) : ~not_measured(samples)).count() == 1;
+  const bool f11_alone = (~not_measured(samples)).count() == 1;
   for (const bool is_f11 : {true, false}) {
     if (!is_f11 && f11_alone) break;
     PartSelection& part = is_f11 ? result.f11 : result.other;

@@ -228,6 +228,7 @@ class BirdReader : public ForeignFile::Reader {
       throw data_.error("polarization_i", "the states determine f11 nowhere: it takes u, or s and p, on each side");
     uncertainties = std::ranges::any_of(samples_, has_uncertainty, in_own_frame);
     understood += "f11 in sr^-1";
+    if (frames) understood += ", samples that would lose elements in xy left in the frame sp";
     if (polarized_)
       understood += ", elements by least squares of " + std::to_string(rows_) +
                     " values between polarization states, from the frame sp with right-handed S4 > 0";

@@ -68,7 +68,8 @@ class NetcdfReader : public ForeignFile::Reader {
     if (matrix_)
       understood +=
           ", frame " + to_string(frame_) + ", convention " + to_string(convention_) +
-          (frame_ == Frame::xy && convention_ == StokesConvention::germer2017 ? "" : ", made into xy, germer2017");
+          (frame_ == Frame::xy && convention_ == StokesConvention::germer2017 ? "" : ", made into xy, germer2017") +
+          (frame_ == Frame::xy ? "" : " (but for matrices that would lose elements)");
     if (u_ && matrix_) understood += "; u of f_ij made into that of f_ij / f11 as if they were uncorrelated";
   }
 

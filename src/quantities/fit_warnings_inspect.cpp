@@ -244,6 +244,18 @@ Angles angles(std::span<const Sample> samples, Direction Geometry::*direction) {
   return result;
 }
 
+/// "11, 12, 21 and 22 in the frame sp (140 samples), all sixteen in the frame xy (60 samples)"
+std::string elements_line(std::span<const Sample> samples) {
+  const std::vector<SamplesInFrame> frames = by_own_frame(samples);
+  std::string text;
+  for (const auto& [own, count, measured] : frames) {
+    text += (text.empty() ? "" : ", ") + (measured.all() ? "all sixteen" : element_names(measured));
+    if (frames.size() > 1 || own != Frame::xy) text += " in the frame " + to_string(own);
+    if (frames.size() > 1) text += " (" + counted(static_cast<long>(count), "sample") + ")";
+  }
+  return text;
+}
+
 std::string span_line(const Angles& a) { return rounded(a.smallest, 4) + " ... " + rounded(a.largest, 4) + " degrees"; }
 
 }  // namespace
@@ -294,13 +306,9 @@ std::string sides_line(Sides sides) {
 }
 
 std::vector<InspectionRow> inspection_rows(const Inspection& seen, std::span<const Sample> samples) {
-  const Elements measured = measured_elements(samples);
   const bool uncertain = std::ranges::all_of(samples, has_uncertainty, in_own_frame);
-  const auto turning = std::ranges::find_if(samples, [](const Sample& s) { return s.as_measured != nullptr; });
   std::vector<InspectionRow> rows = {
-      {"elements", (measured.all() ? "all sixteen" : element_names(measured)) +
-                       (turning == samples.end() ? "" : " in the frame " + to_string(own_frame(*turning))) +
-                       (uncertain ? ", with their uncertainties" : ", without uncertainties")},
+      {"elements", elements_line(samples) + (uncertain ? ", with their uncertainties" : ", without uncertainties")},
       {"theta_i", span_line(angles(samples, &Geometry::incident))},
       {"theta_r", span_line(angles(samples, &Geometry::reflected)) + ", " + sides_line(seen.sides)},
       {"covered",

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "mmbrdf/fitting/fit.hpp"
@@ -97,8 +99,26 @@ ReportField noise(const Model& model, std::span<const Sample> samples) {
   return field;
 }
 
+/// Of each element what the model knows: blocks are known or not as a whole, so in any frame.
+std::vector<Sample> known_to(const Model& model, std::span<const Sample> samples) {
+  std::vector<Sample> result(samples.begin(), samples.end());
+  const auto forget = [&](Mueller& m) {
+    for (std::size_t e = 1; e < 16; ++e)
+      if (model.not_measured[e]) m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  };
+  for (Sample& sample : result) {
+    forget(sample.normalized);
+    if (!sample.as_measured) continue;
+    AsMeasured as_measured = *sample.as_measured;
+    forget(as_measured.normalized);
+    sample.as_measured = std::make_shared<const AsMeasured>(as_measured);
+  }
+  return result;
+}
+
 /// A fit of the same basis to these samples.
-FitResult refitted(const Model& model, std::span<const Sample> samples, Weights weights) {
+FitResult refitted(const Model& model, std::span<const Sample> given, Weights weights) {
+  const std::vector<Sample> samples = known_to(model, given);
   FitOptions options;
   options.minimum_norm = true;
   if (!model.reflectance.values.empty() && wavelengths(samples).size() > 1)

@@ -78,12 +78,14 @@ std::string zeros(std::span<const Sample> samples) {
 }
 
 /// All numbers of a sample; NaN, which no order has, as what no measurement is.
-std::array<double, 37> numbers_of(const Sample& s) {
-  std::array<double, 37> result{s.wavelength, s.geometry.incident.theta, s.geometry.incident.phi,
+std::array<double, 38> numbers_of(const Sample& given) {
+  const Sample s = in_own_frame(given);
+  std::array<double, 38> result{s.wavelength, s.geometry.incident.theta, s.geometry.incident.phi,
                                 s.geometry.reflected.theta, s.geometry.reflected.phi};
   std::ranges::copy(s.normalized.elements, result.begin() + 5);
   result[5] = s.f11;  // in place of element 11, which is 1
   std::ranges::copy(s.uncertainty.elements, result.begin() + 21);
+  result[37] = static_cast<double>(own_frame(given));
   for (double& number : result)
     if (std::isnan(number)) number = 1e300;
   return result;
@@ -91,7 +93,7 @@ std::array<double, 37> numbers_of(const Sample& s) {
 
 std::vector<std::size_t> repeated(std::span<const Sample> samples) {
   std::vector<std::size_t> result;
-  std::map<std::array<double, 37>, std::size_t> seen;
+  std::map<std::array<double, 38>, std::size_t> seen;
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (!seen.emplace(numbers_of(samples[i]), i).second) result.push_back(i);
   return result;
@@ -167,7 +169,7 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
                       "exactly 0 in all samples: " + list,
                       "leave out the columns of what was not measured, so that it is unknown and not 0",
                       {}});
-  if (const auto again = repeated(samples); !again.empty())
+  if (const auto again = repeated(given); !again.empty())
     result.push_back({"repeated rows", "the same in every number as an earlier one: " + named(again),
                       "leave them out: a reading counts once", again});
   const auto far = which_are(

@@ -144,9 +144,20 @@ Elements not_measured(std::span<const Sample> samples) {
   return result;
 }
 
+std::vector<SamplesInFrame> by_own_frame(std::span<const Sample> samples) {
+  std::vector<SamplesInFrame> result;
+  for (const Frame frame : {Frame::xy, Frame::sp, Frame::scattering_plane}) {
+    SamplesInFrame here{frame, 0, {}};
+    for (const Sample& sample : samples)
+      if (own_frame(sample) == frame) ++here.samples, here.measured |= ~not_measured(in_own_frame(sample));
+    if (here.samples > 0) result.push_back(here);
+  }
+  return result;
+}
+
 Elements measured_elements(std::span<const Sample> samples) {
   Elements result;
-  for (const Sample& sample : samples) result |= ~not_measured(in_own_frame(sample));
+  for (const SamplesInFrame& here : by_own_frame(samples)) result |= here.measured;
   return result;
 }
 

@@ -166,15 +166,35 @@ TEST(Samples, ThatLoseElementsOnTheWayToXyAreWrittenAndReadAsTheyWereMeasured) {
   }
 }
 
-TEST(Samples, WithAColumnOfFramesTakeNoOtherFrameAndNoOtherNames) {
-  const std::string text = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11\n532,15,10,30,70,";
-  EXPECT_EQ(complaint([&] { samples_in(text + "tilted,0.3\n"); }),
-            "d.csv:2: column frame: frame 'tilted' is not one of xy, sp, scattering_plane");
-  EXPECT_EQ(complaint([&] { samples_in(text + ",0.3\n"); }),
-            "d.csv:2: column frame: frame '' is not one of xy, sp, scattering_plane");
-  std::istringstream in(text + "sp,0.3\n");
-  EXPECT_EQ(complaint([&] { read_samples(in, "d.csv", {.frame = Frame::sp}); }),
-            "d.csv:1: column frame says the frame of each row: leave out that it is sp");
+TEST(Samples, WithAColumnOfFramesTakeNoOtherNamesUnlessTheFrameIsSaid) {
+  const std::string text = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11,m12\n532,15,10,30,70,";
+  const std::string remedy = "; if it is of something else, say the frame of all rows (--frame)";
+  EXPECT_EQ(complaint([&] { samples_in(text + "17,0.3,0.1\n"); }),
+            "d.csv:2: column frame: frame '17' is not one of xy, sp, scattering_plane" + remedy);
+  EXPECT_EQ(complaint([&] { samples_in(text + ",0.3,0.1\n"); }),
+            "d.csv:2: column frame: frame '' is not one of xy, sp, scattering_plane" + remedy);
+  std::istringstream in(text + "17,0.3,0.1\n");
+  SampleReader reader(in, "d.csv", {.frame = Frame::sp});
+  Sample sample;
+  ASSERT_TRUE(reader.next(sample));
+  EXPECT_EQ(own_frame(sample), Frame::sp);
+  EXPECT_TRUE(reader.understood().find("not read: frame") != std::string::npos) << reader.understood();
+}
+
+TEST(Samples, OfSAndPMayBeInTheFrameThatAColumnSays) {
+  const auto samples = samples_in(
+      "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f_ss,f_sp,f_ps,f_pp\n"
+      "532,15,10,30,70,scattering_plane,0.2,0.1,0.12,0.18\n532,15,10,30,70,sp,0.2,0.1,0.12,0.18\n");
+  EXPECT_EQ(own_frame(samples[0]), Frame::scattering_plane);
+  EXPECT_EQ(own_frame(samples[1]), Frame::sp);
+  EXPECT_EQ(in_own_frame(samples[0]).normalized(0, 1), in_own_frame(samples[1]).normalized(0, 1));
+}
+
+TEST(SampleWriter, WritesNoElementsOfAnotherFrameAsThoseOfXy) {
+  const auto samples = samples_in(
+      "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,frame,f11,m12\n532,15,10,30,70,sp,0.3,0.1\n");
+  std::ostringstream out;
+  EXPECT_THROW(SampleWriter(out, measured_elements(samples), false, false).write(samples), std::invalid_argument);
 }
 
 TEST(Samples, OfRoundAnglesAreWrittenRound) {

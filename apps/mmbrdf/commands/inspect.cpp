@@ -63,15 +63,21 @@ std::string next_command(const Options& options, const CommandLine& line) {
   return text + " -o model.json";
 }
 
+std::vector<std::string> names_of(const Elements& elements) {
+  std::vector<std::string> names;
+  for (std::size_t e = 0; e < 16; ++e)
+    if (elements[e]) names.push_back(element_name(e));
+  return names;
+}
+
 nlohmann::ordered_json facts(const Inspection& seen, const std::vector<Sample>& samples, const std::string& name) {
-  const Elements measured = measured_elements(samples);
   const Angles incident = angles(samples, &Geometry::incident), reflected = angles(samples, &Geometry::reflected);
   nlohmann::ordered_json json{{"data", name}, {"samples", samples.size()}};
   for (const double wavelength : wavelengths(samples)) json["wavelengths_nm"].push_back(in_nanometres(wavelength));
-  for (std::size_t e = 0; e < 16; ++e)
-    if (measured[e]) json["elements"].push_back(element_name(e));
-  const auto turning = std::ranges::find_if(samples, [](const Sample& s) { return s.as_measured != nullptr; });
-  json["frame"] = to_string(turning == samples.end() ? Frame::xy : own_frame(*turning));
+  json["elements"] = names_of(measured_elements(samples));
+  for (const SamplesInFrame& here : by_own_frame(samples))
+    json["frames"].push_back(
+        {{"frame", to_string(here.frame)}, {"samples", here.samples}, {"elements", names_of(here.measured)}});
   json["uncertainties"] = std::ranges::all_of(samples, has_uncertainty, in_own_frame);
   json["theta_i_deg"] = {incident.smallest, incident.largest};
   json["theta_r_deg"] = {reflected.smallest, reflected.largest};

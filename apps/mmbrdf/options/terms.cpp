@@ -23,11 +23,11 @@ double freedom_from(const std::string& text) {
   return freedom;
 }
 
-/// k, which nobody has at 20 or more: who types 95 means per cent.
+/// k, which nobody has below 1, nor at 20 or more: who types 0.95 or 95 means a probability.
 double coverage_from(const std::string& text) {
-  constexpr double per_cent = 20;
-  const double factor = positive_number(text);
-  if (factor >= per_cent)
+  constexpr double least = 1, per_cent = 20;
+  const double factor = number(text);
+  if (factor < least || factor >= per_cent)
     throw std::invalid_argument("\"" + text +
                                 "\": expected a coverage factor k, as 2; U of 95 % coverage is in the budget anyway");
   return factor;

@@ -2,6 +2,7 @@
 #include "streams/evaluate_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -30,11 +31,19 @@ double own_wavelength(const Model& model) {
   }
 }
 
+/// Whether a column says in which frame samples are, as their reader takes it: not that of matrices that are written.
+bool is_frame(std::string column) {
+  std::ranges::transform(column, column.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return column == "frame";
+}
+
 std::string header(const GeometrySource& source, const std::string& added) {
+  const bool matrices = added.find(",f11") != std::string::npos;
   const std::vector<std::string>& columns = source.columns;
   std::string text;
   for (const std::string& column : columns) {
-    const bool taken = !column.empty() && (added + ",").find("," + column + ",") != std::string::npos;
+    const bool taken = (!column.empty() && (added + ",").find("," + column + ",") != std::string::npos) ||
+                       (matrices && is_frame(column));
     const std::string name = (taken ? "input_" : "") + column;
     if (taken && std::find(columns.begin(), columns.end(), name) != columns.end()) {
       throw source.error(0, "columns " + shown_name(column) + " and " + shown_name(name) +

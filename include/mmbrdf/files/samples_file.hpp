@@ -88,7 +88,8 @@ std::vector<Sample> read_samples(std::istream& in, const std::string& name, cons
 void write_samples(const std::string& path, std::span<const Sample> samples, const std::string& reduction = "");
 void write_samples(std::ostream& out, std::span<const Sample> samples, const std::string& reduction = "");
 
-/// The same, some samples at a time, in constant memory. Not checked: they must be valid.
+/// The same, some samples at a time, in constant memory. Not checked: they must be valid. Throws std::invalid_argument for
+/// one known as_measured without a column of frames.
 class SampleWriter {
  public:
   /// Writes the header line: columns of these elements, and of f11; of the frame of each row, without which none may be

@@ -46,6 +46,14 @@ Elements not_measured(std::span<const Sample> samples);
 /// What is measured in any of several, each in its own frame.
 Elements measured_elements(std::span<const Sample> samples);
 
+/// Those of several samples that are in a frame of their own.
+struct SamplesInFrame {
+  Frame frame = Frame::xy;
+  std::size_t samples = 0;
+  Elements measured;  ///< in any of them
+};
+std::vector<SamplesInFrame> by_own_frame(std::span<const Sample> samples);
+
 /// Whether the uncertainty of any of its elements is known.
 bool has_uncertainty(const Sample& sample);
 
