@@ -88,9 +88,7 @@ void expect_same(const FitResult& found, const FitResult& expected) {
   }
   double weight = 0;  // of f11 / reflectance
   for (const Mueller& one : expected.sample_weights) weight += one(0, 0);
-  if (!expected.sample_weights.empty()) {
-    EXPECT_NEAR(found.elements[0].weight / weight, 1, sample_fit_tolerance);
-  }
+  EXPECT_NEAR(expected.sample_weights.empty() ? 1 : found.elements[0].weight / weight, 1, sample_fit_tolerance);
   EXPECT_EQ(found.sides, expected.sides);
   EXPECT_EQ(found.weights, expected.weights);
   EXPECT_EQ(found.warnings, expected.warnings);
