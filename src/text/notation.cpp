@@ -109,6 +109,8 @@ std::string in_print(double value, const std::optional<double>& uncertainty, Not
   const std::string number = to_place_of(value, u), its_u = to_place_of(u, u);
   if (number.find('e') != std::string::npos || its_u.find('e') != std::string::npos) {
     const int power = first_place(std::max(std::abs(value), u), 2);
+    constexpr double least = 1e-7;  // below, two digits of u are beyond the decimals that to_place_of() writes
+    if (u < least * std::pow(10, power)) return signed_text(number) + std::string(thin_plus_minus) + significant(u, 2);
     const std::string scaled = in_print(value / std::pow(10, power), u / std::pow(10, power), notation);
     const bool alone = notation == Notation::brackets;
     return (alone ? scaled : "(" + scaled + ")") + std::string(times_ten) + superscript(power);

@@ -14,6 +14,8 @@ TEST(Notation, HasTwoDigitsOfTheUncertaintyInBracketsOrBehindASign) {
   EXPECT_EQ(in_print(0.98412345, 0.00032, Notation::plus_minus), "0.98412 ± 0.00032");
   EXPECT_EQ(in_print(0.984, 0.0996), "0.98(10)");
   EXPECT_EQ(in_print(98765, 123), "98770(120)");
+  EXPECT_EQ(in_print(0.983242887953118, 9.2e-17), "0.983242887953118 ± 9.2 × 10⁻¹⁷");  // of data without noise
+  EXPECT_EQ(in_print(1234.5, 1e-10, Notation::plus_minus), "1234.5 ± 1.0 × 10⁻¹⁰");
   EXPECT_EQ(in_print(12.34, 1.23), "12.3(1.2)");
 }
 
