@@ -117,8 +117,7 @@ std::vector<Sample> known_to(const Model& model, std::span<const Sample> samples
 }
 
 /// A fit of the same basis to these samples.
-FitResult refitted(const Model& model, std::span<const Sample> given, Weights weights) {
-  const std::vector<Sample> samples = known_to(model, given);
+FitResult refitted(const Model& model, std::span<const Sample> samples, Weights weights) {
   FitOptions options;
   options.minimum_norm = true;
   if (!model.reflectance.values.empty() && wavelengths(samples).size() > 1)
@@ -259,22 +258,23 @@ void add_samples(Json& report, const Model& model, const ReportedSamples& data) 
   ReportField differences{residuals_json(compared)};
   if (compared.dark > 0) differences.warnings.push_back(dark_line(compared));
   add(report, "residuals", std::move(differences));
-  const FitResult unweighted = refitted(model, data.samples, Weights::none);
-  const bool weighs = std::ranges::all_of(data.samples, knows_all_uncertainties);
-  add(report, "chi_squared", chi_squared(weighs ? refitted(model, data.samples, Weights::data) : unweighted));
+  const std::vector<Sample> known = known_to(model, data.samples);
+  const FitResult unweighted = refitted(model, known, Weights::none);
+  const bool weighs = std::ranges::all_of(known, knows_all_uncertainties, in_own_frame);
+  add(report, "chi_squared", chi_squared(weighs ? refitted(model, known, Weights::data) : unweighted));
   add(report, "conventions", conventions_field(model, data.samples));
-  const SymmetryTests tests = symmetry_tests(data.samples, orders(model), model.mapping);
+  const SymmetryTests tests = symmetry_tests(known, orders(model), model.mapping);
   add(report, "reciprocity", symmetry(tests.reciprocity, "reciprocity"));
   add(report, "mirror_symmetry", symmetry(tests.mirror, "mirror symmetry"));
   add(report, "dependence_on_phi_i", symmetry(tests.azimuth, "isotropy"));
   if (tests.one_azimuth)
     report["dependence_on_phi_i"] =
         "the source has one azimuth in these data: whether the sample is isotropic cannot be told";
-  add(report, "noise", noise(model, data.samples));
-  add(report, "repeats", repeats(data.samples, unweighted));
-  const SampleDiagnostics diagnostics = sample_diagnostics(data.samples, unweighted);
-  add(report, "leverage", leverage(diagnostics, data.samples));
-  add(report, "outliers", outlier_field(diagnostics, data.samples));
+  add(report, "noise", noise(model, known));
+  add(report, "repeats", repeats(known, unweighted));
+  const SampleDiagnostics diagnostics = sample_diagnostics(known, unweighted);
+  add(report, "leverage", leverage(diagnostics, known));
+  add(report, "outliers", outlier_field(diagnostics, known));
 }
 
 }  // namespace mmbrdf
