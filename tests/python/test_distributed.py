@@ -193,6 +193,25 @@ def test_the_state_of_a_file_that_changes_while_it_is_read_is_not_kept(files, tm
     assert list(folder.iterdir()) == []
 
 
+def test_nor_is_that_of_a_file_that_is_replaced_by_one_of_the_same_size_and_time(files, tmp_path, monkeypatch):
+    changing, other, folder = tmp_path / "changing.csv", tmp_path / "other.csv", tmp_path / "states"
+    changing.write_bytes(files[0].read_bytes())
+    at = changing.stat()
+    read = archive.read_samples
+
+    def replaced_after(path, **options):
+        samples = read(path, **options)
+        other.write_bytes(changing.read_bytes().replace(b"1", b"2"))
+        os.utime(other, ns=(at.st_atime_ns, at.st_mtime_ns))
+        os.replace(other, changing)
+        return samples
+
+    monkeypatch.setattr(archive, "read_samples", replaced_after)
+    archive.fit(changing, checkpoint=folder, **OPTIONS)
+    assert (changing.stat().st_size, changing.stat().st_mtime_ns) == (at.st_size, at.st_mtime_ns)
+    assert list(folder.iterdir()) == []
+
+
 def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
     with pytest.raises(OSError, match="No space left"):
