@@ -102,7 +102,7 @@ def _require_known(read: dict[str, Any]) -> None:
     for name in read:
         if name not in _READ:
             raise TypeError(
-                f"fit() got {name!r}: not an option of it, nor of read_samples(): {', '.join(_READ)}"
+                f"distributed.fit: {name!r}: not an option of it, nor of read_samples(): {', '.join(_READ)}"
             )
 
 

@@ -117,7 +117,7 @@ def test_files_that_are_read_otherwise_are_not_those_of_the_checkpoints(files, t
 def test_unknown_options_are_refused_whatever_the_checkpoints(files, tmp_path):
     archive.fit(files[:2], checkpoint=tmp_path, **OPTIONS)
     with pytest.raises(
-        TypeError, match=r"fit\(\) got 'colums': not an option of it, nor of read_samples\(\): columns, "
+        TypeError, match=r"^distributed.fit: 'colums': not an option of it, nor of read_samples\(\): columns, "
     ):
         archive.fit(files[:2], checkpoint=tmp_path, colums={"f11": "f22"}, skip_broken=True, **OPTIONS)
 
