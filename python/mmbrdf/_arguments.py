@@ -20,15 +20,29 @@ def require(name: str, value: Any, *kinds: type) -> None:
         raise TypeError(f"{name}: expected {expected}, not {type(value).__name__}{hint}")
 
 
+def joined_masks(value: Any) -> Any:
+    """Of a list that holds masked arrays one such array: numpy's own functions forget those masks. Anything else as it is."""
+    if not isinstance(value, list | tuple):
+        return value
+    parts = [joined_masks(one) if isinstance(one, list | tuple) else one for one in value]
+    if not any(isinstance(one, np.ma.MaskedArray) for one in parts):
+        return value
+    try:
+        return np.ma.stack([np.ma.asanyarray(one) for one in parts])
+    except ValueError:
+        return value  # of other lengths, which is refused
+
+
 def unmasked(name: str, value: Any) -> Any:
     """The argument called ``name``. Raises ValueError where something of it is masked: it would count."""
-    if np.ma.is_masked(value):
+    if np.ma.is_masked(joined_masks(value)):
         raise ValueError(f"{name}: a part of it is masked; leave it out")
     return value
 
 
-def nan_where_masked(value: Any, dtype: Any = np.float32) -> np.ndarray:
+def nan_where_masked(value: Any, dtype: Any) -> np.ndarray:
     """As an array, with nan for what is masked: of integers as one of this type."""
+    value = joined_masks(value)
     if not np.ma.is_masked(value):
         return np.asarray(value)
     array = np.ma.asanyarray(value)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _calls
-from ._arguments import nan_where_masked
+from ._arguments import joined_masks, nan_where_masked
 from ._results import Evaluation, Outside
 from ._warnings import ExtrapolationWarning
 
@@ -103,12 +103,13 @@ def _is_valid(name: str, array: np.ndarray) -> np.ndarray:
 
 def _question(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """What of the arguments broadcasts. The directions of a geometry stand one behind the other."""
-    question = {name: arguments[name] for name in (*_QUESTION, *_CORES, "pdf") if arguments.get(name) is not None}
+    names = (*_QUESTION, *_CORES, "pdf")
+    question = {name: joined_masks(arguments[name]) for name in names if arguments.get(name) is not None}
     if "source" in arguments:  # of apertures: where they reach
         question["theta_i_deg"] = arguments["source"].largest_theta_deg
         question["theta_r_deg"] = arguments["receiver"].largest_theta_deg
     if "geometry" in arguments:
-        angles = [np.ma.asanyarray(one) for one in arguments["geometry"]]
+        angles = [np.ma.asanyarray(joined_masks(one)) for one in arguments["geometry"]]
         shape = np.broadcast_shapes(*(one.shape for one in angles))
         question.update(zip(_ANGLES, (np.ma.masked_array(*_whole(one, shape)).ravel() for one in angles)))
     return question
@@ -271,7 +272,7 @@ def _taking_masks(function: Callable[..., Any], name: str) -> Callable[..., Any]
 
 
 def _filled(value: Any) -> Any:
-    return nan_where_masked(value) if np.ma.is_masked(value) else value
+    return nan_where_masked(value, float) if np.ma.is_masked(joined_masks(value)) else value
 
 
 def answering(compiled: Any) -> Callable[[Callable[..., Any], str], Callable[..., Any]]:

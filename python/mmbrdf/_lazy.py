@@ -18,7 +18,7 @@ import numpy as np
 from . import _mmbrdf
 from ._chunks import FUNCTIONS, SIGNATURES, SIZES, Call, core_of, is_lazy, of_dask, of_named
 from ._signatures import DIRECTIONS, MATRIX, Signature, signatures
-from ._stand_ins import shortened, stand_in, tried
+from ._stand_ins import fewest_draws, shape_alone, shapes_fit, shortened, stand_in, tried
 
 
 def _bound(signature: Signature, args: Sequence[Any], kwargs: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -122,10 +122,13 @@ def _tried(function: str, signature: Signature, given: Mapping[str, Any]) -> Any
     known: Mapping[str, int] = {}
     if function.startswith("Polarimeter."):
         signature, known = _shaped(function, signature, given)
+    sizes = {**SIZES, **known}
+    if not shapes_fit({name: given.get(name) for name in signature.arrays}, signature.arrays, sizes):
+        tried(FUNCTIONS[function], {name: shape_alone(v) if is_lazy(v) else v for name, v in given.items()})
     asked = {}
     for name, value in given.items():
         core = signature.arrays.get(name, ())
-        sizes = {**SIZES, **known}
+        value = fewest_draws(value) if name in ("count", "draws") else value
         asked[name] = stand_in(name, value, core, sizes, given) if is_lazy(value) else value
         if name in signature.arrays and not is_lazy(value):
             asked[name] = shortened(value, core)
@@ -282,7 +285,11 @@ def _of_geometry(function: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(function)
     def call(**arguments: Any) -> Any:
-        directions = np.broadcast_arrays(*(arguments.pop(name) for name in DIRECTIONS), subok=True)
+        given = [arguments.pop(name) for name in DIRECTIONS]
+        try:
+            directions = np.broadcast_arrays(*given, subok=True)
+        except ValueError:
+            return function(geometry=given, **arguments)  # which says what is wrong
         found = function(geometry=[one.ravel() for one in directions], **arguments)
         return _reshaped(found, directions[0].shape)
 

@@ -52,8 +52,49 @@ def stand_in(name: str, value: Any, core: Sequence[str], sizes: Mapping[str, int
     return like if dtype.kind in "biuf" else np.zeros(like.shape, dtype)
 
 
+def _shape(value: Any) -> tuple[int, ...] | None:
+    """None of rows of other lengths, which are refused as such."""
+    try:
+        return np.shape(value)
+    except ValueError:
+        return None
+
+
+def shapes_fit(arrays: Mapping[str, Any], cores: Mapping[str, Sequence[str]], sizes: Mapping[str, int]) -> bool:
+    """Whether the last axes are as long as they must be, and the others broadcast. True of DataArrays, of whose names and sizes
+    xarray says that, and of chunks of unknown sizes."""
+    if any(hasattr(value, "dims") for value in arrays.values()):
+        return True
+    outer = []
+    for name, value in arrays.items():
+        shape = _shape(value)
+        if shape is None or np.isnan(shape).any():
+            return True
+        place = max(len(shape) - len(cores[name]), 0)
+        if value is not None and shape[place:] != tuple(sizes[axis] for axis in cores[name]):
+            return False
+        outer.append(shape[:place])
+    try:
+        np.broadcast_shapes(*outer)
+    except ValueError:
+        return False
+    return True
+
+
+def shape_alone(value: Any) -> np.ndarray:
+    """For a lazy array whose shape is refused: as large, of one number in memory."""
+    return np.broadcast_to(0.0, value.shape)
+
+
+def fewest_draws(count: Any) -> Any:
+    """In the place of many that there may be."""
+    return 2 if isinstance(count, int | np.integer) and 2 < count <= 1_000_000 else count
+
+
 def shortened(value: Any, core: Sequence[str]) -> Any:
     """An array that is not lazy: the first part of a large one."""
+    if _shape(value) is None:
+        return value
     while np.size(value) > _MOST and np.ndim(value) > len(core):
         axis = int(np.argmax(np.shape(value)[: np.ndim(value) - len(core)]))
         if np.shape(value)[axis] == 1:

@@ -192,4 +192,6 @@ def install(compiled: Any) -> None:
     _told_of_a_fit[:] = [compiled.FitResult.summary]
     for name in _KINDS:
         kind = getattr(compiled, name)
-        kind.summary, kind._repr_html_ = _calls.told_in_a_line(f"{name}.summary")(summary), in_html
+        kind.summary = _calls.told_in_a_line(f"{name}.summary", "mmbrdf._mmbrdf")(summary)
+        kind.summary.__qualname__ = f"{name}.summary"  # where pickles look for it
+        kind._repr_html_ = in_html

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from ._arguments import joined_masks
+
 _STATES = ("generator_state", "analyzer_state")
 _READINGS = ("number", *_STATES, "intensity")
 _MORE = ("dark", "monitor", "gain")
@@ -88,7 +90,7 @@ def _chosen(table: dict[str, Any], columns: Mapping[str, str], argument: str) ->
         values = np.asarray(table[theirs])
         if values.ndim > 1:
             raise ValueError(f"{argument}: {theirs} has the shape {values.shape}, expected a number for each row")
-        if np.ma.is_masked(table[theirs]):
+        if np.ma.is_masked(joined_masks(table[theirs])):
             raise ValueError(f"{argument}: {theirs} is masked in part: leave these rows out")
         yield name, values
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from ._arguments import two_orders
 from ._calls import told_in_a_line
-from ._files import replacing
+from ._files import identity, replacing
 from ._mmbrdf import FitAccumulator, FitResult, SampleFitAccumulator, __version__, read_samples
 
 if TYPE_CHECKING:
@@ -101,7 +101,9 @@ _READ = ("columns", "convention", "frame", "skip_incomplete")  # options of read
 def _require_known(read: dict[str, Any]) -> None:
     for name in read:
         if name not in _READ:
-            raise TypeError(f"fit() got {name!r}: not an option of it, nor of read_samples(): {', '.join(_READ)}")
+            raise TypeError(
+                f"distributed.fit: {name!r}: not an option of it, nor of read_samples(): {', '.join(_READ)}"
+            )
 
 
 def _canonical(value: Any) -> str:
@@ -154,6 +156,7 @@ def _mark(path: str) -> _Mark:
 
 
 def _added(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> _Accumulator:
+    before = identity(path)
     saved = _saved_as(path, mark, this)
     kept = _kept(saved, this.kind)
     if kept is not None:
@@ -164,7 +167,7 @@ def _added(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> _Accumu
         accumulator.add(samples, threads=this.threads)
     else:
         accumulator.add(samples)
-    if saved is not None and _mark(path) == mark:  # else the samples may be of two files
+    if saved is not None and identity(path) == before and _mark(path) == mark:  # else the samples may be of two files
         _save(accumulator.state(), saved)
     return accumulator
 

@@ -76,3 +76,14 @@ def random_matrices():
 def data(ptfe):
     """A measurement without noise, so that every cell is known."""
     return mmbrdf.simulate(ptfe, 532, mmbrdf.germer2017_grid())
+
+
+@pytest.fixture(scope="session")
+def camera():
+    """Four states in each arm, and 54 references with noise of 0.1 %."""
+    return mmbrdf.images.simulate((6, 8), seed=1)
+
+
+@pytest.fixture(scope="session")
+def calibrated(camera):
+    return mmbrdf.images.calibrate(camera.references, camera.stacks, wavelength_nm=532)

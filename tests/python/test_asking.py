@@ -334,3 +334,30 @@ def test_functions_of_matrices_and_readings_have_nan_for_what_is_masked(random_m
             assert np.argwhere(np.isnan(found).any(axis=(-2, -1))).tolist() == [[2, 3]] and found.dtype == dtype
         with pytest.raises(ValueError, match="^readings: a part of it is masked; leave it out$"):
             instrument.reduce(readings)
+
+
+def test_masked_whole_numbers_are_reduced_in_double_precision(random_matrices):
+    instrument = mmbrdf.ideal_polarimeter(131.81, [-51.69, -15.12, 15.12, 51.69])
+    counts = np.ma.masked_array(np.rint(1e9 * instrument.readings(random_matrices)).astype(np.int64))
+    expected = instrument.reduce(counts.data)
+    counts[2, 3, 1, 1] = np.ma.masked
+    expected[2, 3] = np.nan
+    found = instrument.reduce(counts, invalid="nan")
+    assert found.dtype == float
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_what_is_masked_within_a_list_does_not_count_either(ptfe, random_matrices):
+    angles = np.ma.masked_array([0.0, 30.0, 60.0], [False, True, False])
+    there = np.array([True, False, True])
+    plain = ptfe.evaluate(532, 45, 0, np.array([angles.data] * 2), 180)
+    for given in ([angles, angles], (angles, list(angles)), [angles, [0.0, np.ma.masked, 60.0]]):
+        found = ptfe.evaluate(532, 45, 0, given, 180, invalid="nan")
+        np.testing.assert_array_equal(found[:, there], plain[:, there])
+        assert np.isnan(found[:, 1]).all()
+    hidden = np.ma.masked_array(random_matrices, np.zeros(random_matrices.shape, bool))
+    hidden[2, 3, 1, 1] = np.ma.masked
+    for rows in (list(hidden), [list(row) for row in hidden]):
+        assert np.argwhere(np.isnan(mmbrdf.depolarization(rows, invalid="nan"))).tolist() == [[2, 3]]
+    with pytest.raises(ValueError, match="^theta_i_deg: a part of it is masked; leave it out$"):
+        mmbrdf.images.PixelFit(532, ([angles, angles], 0, 0, 0))

@@ -117,7 +117,7 @@ def test_files_that_are_read_otherwise_are_not_those_of_the_checkpoints(files, t
 def test_unknown_options_are_refused_whatever_the_checkpoints(files, tmp_path):
     archive.fit(files[:2], checkpoint=tmp_path, **OPTIONS)
     with pytest.raises(
-        TypeError, match=r"fit\(\) got 'colums': not an option of it, nor of read_samples\(\): columns, "
+        TypeError, match=r"^distributed.fit: 'colums': not an option of it, nor of read_samples\(\): columns, "
     ):
         archive.fit(files[:2], checkpoint=tmp_path, colums={"f11": "f22"}, skip_broken=True, **OPTIONS)
 
@@ -190,6 +190,25 @@ def test_the_state_of_a_file_that_changes_while_it_is_read_is_not_kept(files, tm
 
     monkeypatch.setattr(archive, "read_samples", replaced_before)
     archive.fit(changing, checkpoint=folder, **OPTIONS)
+    assert list(folder.iterdir()) == []
+
+
+def test_nor_is_that_of_a_file_that_is_replaced_by_one_of_the_same_size_and_time(files, tmp_path, monkeypatch):
+    changing, other, folder = tmp_path / "changing.csv", tmp_path / "other.csv", tmp_path / "states"
+    changing.write_bytes(files[0].read_bytes())
+    at = changing.stat()
+    read = archive.read_samples
+
+    def replaced_after(path, **options):
+        samples = read(path, **options)
+        other.write_bytes(changing.read_bytes().replace(b"1", b"2"))
+        os.utime(other, ns=(at.st_atime_ns, at.st_mtime_ns))
+        os.replace(other, changing)
+        return samples
+
+    monkeypatch.setattr(archive, "read_samples", replaced_after)
+    archive.fit(changing, checkpoint=folder, **OPTIONS)
+    assert (changing.stat().st_size, changing.stat().st_mtime_ns) == (at.st_size, at.st_mtime_ns)
     assert list(folder.iterdir()) == []
 
 

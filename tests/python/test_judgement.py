@@ -225,15 +225,61 @@ def test_samples_beyond_the_fitted_range_are_left_out_as_by_the_program(ptfe, to
             here = mmbrdf.compare(ptfe, wide, **options)
         there = told("compare", "ptfe", "wide.csv", *command)
         assert (here.samples, here.largest.largest) == (there["samples"], there["largest"])
+        assert all(one.category is mmbrdf.ExtrapolationWarning and one.filename == __file__ for one in caught)
+        said = [re.sub(r"\d+", "N", str(one.message)) for one in caught]
         assert (
-            (len(caught) == 1)
-            == ("theta_max_deg" not in options)
-            == (here.samples < len(wide) and not command[:1] == ("--theta-max",))
+            said
+            == {
+                "": ["N of N samples beyond the fitted range are left out: theta_max_deg=N takes all"],
+                "90": ["ptfe: N of N samples lie outside the fitted range (theta_i+theta_r+directions)"],
+                "40.5": [],
+            }[str(options.get("theta_max_deg", ""))]
         )
-    assert re.fullmatch(
-        rf"\d+ of 400 samples beyond the fitted range are left out: theta_max_deg=90 takes all", str(caught[0].message)
-    )
-    assert caught[0].category is mmbrdf.ExtrapolationWarning and caught[0].filename == __file__
+
+
+@pytest.fixture(scope="module")
+def narrow_at_633(ptfe):
+    """A fit to 80 degrees at 532 nm, and to 30 at 633."""
+    data = mmbrdf.simulate(ptfe, [532, 633], mmbrdf.random_geometries(600, seed=1, theta_max_deg=80), speckle=0.01)
+    near = np.maximum(data.theta_i_deg, data.theta_r_deg) < 30
+    return mmbrdf.fit(data[(data.wavelength_nm == 532) | near], orders=(3, 2)).model
+
+
+@pytest.mark.filterwarnings("ignore::mmbrdf.ExtrapolationWarning")
+def test_a_direction_is_left_out_at_the_wavelengths_at_which_it_was_not_fitted(narrow_at_633, ptfe, told, tmp_path):
+    narrow_at_633.save(tmp_path / "narrow.json")
+    wide = mmbrdf.simulate(ptfe, [532, 633], mmbrdf.random_geometries(300, seed=5, theta_max_deg=75), speckle=0.01)
+    wide.save(tmp_path / "wide.csv")
+    wide = mmbrdf.load(tmp_path / "wide.csv")
+    assert mmbrdf.compare(narrow_at_633, wide, 633).samples < 100 < mmbrdf.compare(narrow_at_633, wide, 532).samples
+    for other, name in ((wide, "wide.csv"), (ptfe, "ptfe")):
+        here, there = mmbrdf.compare(narrow_at_633, other), told("compare", "narrow.json", name)
+        found = [here.samples, here.polarization_rms, here.largest.largest]
+        assert found == pytest.approx([there[one] for one in ("samples", "rms_polarization", "largest")], rel=1e-12)
+        if other is wide:
+            continue
+        rows = {row["element"]: row for row in there["elements"] if (row["element"], row["unit"]) != ("11", "f11")}
+        assert here.significance.keys() == rows.keys()
+        for name, one in here.significance.items():
+            expected = [rows[name][field] for field in ("mean_over_u", "largest_over_u", "within_95")]
+            assert [one.mean, one.largest, one.within] == pytest.approx(expected, rel=1e-9)
+
+
+def test_two_models_that_are_compared_beyond_their_fits_warn(ptfe):
+    first, second = ptfe, mmbrdf.material("ptfe-532")
+    for options in (
+        {"theta_max_deg": 90, "geometry": mmbrdf.in_plane(30, [0, 89])},
+        {"geometry": mmbrdf.in_plane(30, [0, 89])},
+    ):
+        with pytest.warns(mmbrdf.ExtrapolationWarning) as warned:
+            mmbrdf.compare(first, second, 532, **options)
+        assert [str(one.message) for one in warned] == [
+            f"{name}: 1 of 2 samples lies outside the fitted range (theta_r)" for name in ("ptfe", "ptfe-532")
+        ]
+        assert {one.filename for one in warned} == {__file__}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mmbrdf.compare(first, second, 532)
 
 
 def test_two_models_are_compared_as_far_as_it_is_said(told):

@@ -273,6 +273,7 @@ def wrong_calls(model, matrices):
     yield angle, lambda a: ask(None, 45, 0, a, 180)
     yield angle, lambda a: ask(532, 45, [np.nan], a, 180)
     yield angle, lambda a: ask(532, "45", 0, a, 180)
+    yield angle, lambda a: ask(532, [[45], [30, 20]], 0, a, 180)
     yield angle, lambda a: ask(532, 45, 0, a)
     yield angle, lambda a: ask(532, 45, 0, a, 180, "xy")
     yield angle, lambda a: ask(532, 45, a, 0, 180, theta_r_deg=0)
@@ -336,3 +337,43 @@ def test_frames_and_conventions_that_there_are_not_are_refused_at_once(ptfe):
                 mmbrdf.change_frame(values, *one[1:], *frames)
         with pytest.raises(ValueError, match=r"^convention 'zz' is not one of"):
             mmbrdf.convert(values, "zz", "germer2017")
+
+
+def calls_of_shapes(model):
+    """With shapes that do not go together; `z` makes an array of zeros."""
+    yield lambda z: model.evaluate(532, 45, 0, z((3,)), z((4,)))
+    yield lambda z: model.evaluate(532, 45, 0, z((3,)), [0.0, 1.0], invalid="nan")
+    yield lambda z: model.evaluate(532, 45, 0, z((3000,)), np.zeros(2000))
+    yield lambda z: mmbrdf.depolarization(z((5, 3, 3)))
+    yield lambda z: mmbrdf.depolarization(z((4,)))
+    yield lambda z: mmbrdf.polarized_curve(model, 532, [45.0, 0.0, z((3,)), z((4,))])
+    yield lambda z: mmbrdf.change_frame(z((5, 4, 4)), z((3,)), 0, 0, 0, "xy", "sp")
+    yield lambda z: mmbrdf.degree_of_polarization(z((5, 4, 4)), np.ones((3, 4)))
+    yield lambda z: mmbrdf.standard_uncertainty(z((5, 4, 4)), z((5, 15, 16)))
+    yield lambda z: mmbrdf.DirectionSampler(model, 532).sample(z((3,)), 0, z((4,)), 0.5)
+    yield lambda z: mmbrdf.directional_hemispherical_reflectance(model, 532, z((3,)), z((2,)))
+
+
+def test_shapes_that_do_not_go_together_are_refused_at_the_call_with_the_words_of_the_eager_one(ptfe):
+    for call in calls_of_shapes(ptfe):
+        with pytest.raises(ValueError, match="shape") as eager:
+            call(np.zeros)
+        with pytest.raises(ValueError) as lazy:
+            call(lambda shape: da.zeros(shape, chunks=2))
+        assert str(lazy.value) == str(eager.value)
+
+
+def test_draws_are_not_made_twice(samples, monkeypatch):
+    small = mmbrdf.fit(samples, orders=(2, 1), uncertainty="noise").model
+    asked = []
+    for name in ("Model.analyze", "Model.evaluate_draws"):
+        of = mmbrdf._chunks.FUNCTIONS[name]
+        many = lambda draws=0, count=0, of=of, **more: (
+            asked.append(draws or count),
+            of(**({"draws": draws} if draws else {"count": count}), **more),
+        )[1]
+        monkeypatch.setitem(mmbrdf._chunks.FUNCTIONS, name, many)
+    theta_r = xarray.DataArray([0.0, 30.0], dims="view")
+    small.analyze(532, 45, 0, theta_r, 180, draws=200)
+    small.evaluate_draws(200, 1, 532, 45, 0, theta_r, 180)
+    assert asked == [2, 200] * 2

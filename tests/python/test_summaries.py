@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """summary() and what notebooks show: a few lines, values to two digits of their u."""
 
+import pickle
 import re
 import xml.etree.ElementTree as xml
 
@@ -78,3 +79,10 @@ def test_a_summary_says_what_there_is_to_know(things):
 def test_names_are_text_in_html(samples):
     model = mmbrdf.fit(samples, name="<b>&").model
     assert "<b>" not in model._repr_html_() and "&lt;b&gt;&amp;" in model._repr_html_()
+
+
+@pytest.mark.parametrize(
+    "kind", [mmbrdf.Model, mmbrdf.FitResult, mmbrdf.Dataset, mmbrdf.Polarimeter, mmbrdf.Calibration]
+)
+def test_a_summary_can_be_sent_to_other_processes(kind):
+    assert pickle.loads(pickle.dumps(kind.summary)) is kind.summary

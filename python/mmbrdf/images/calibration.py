@@ -41,8 +41,8 @@ def _stacks(stacks: Any) -> NDArray[np.float32]:
     """As (reference, y, x, frame), by names where there are some."""
     image = ("y", "x", "frame")
     if isinstance(stacks, list | tuple):
-        return np.asarray([nan_where_masked(_by_name("stacks", one, image)) for one in stacks], np.float32)
-    return np.asarray(nan_where_masked(_by_name("stacks", stacks, ("reference", *image))), np.float32)
+        return np.asarray([nan_where_masked(_by_name("stacks", one, image), np.float32) for one in stacks], np.float32)
+    return np.asarray(nan_where_masked(_by_name("stacks", stacks, ("reference", *image)), np.float32), np.float32)
 
 
 def calibrate(

@@ -33,8 +33,8 @@ class PixelInstrument:
 
         Raises ValueError for shapes that do not fit each other.
         """
-        self.generator = np.asarray(nan_where_masked(generator), float)
-        self.analyzer = np.asarray(nan_where_masked(analyzer), float)
+        self.generator = np.asarray(nan_where_masked(generator, float), float)
+        self.analyzer = np.asarray(nan_where_masked(analyzer, float), float)
         for name, array in (("generator", self.generator), ("analyzer", self.analyzer)):
             if array.ndim != 4 or array.shape[-1] != 4:
                 raise ValueError(f"{name}: shape {array.shape}, expected (y, x, states, 4)")

@@ -22,7 +22,7 @@ def readings(mueller: ArrayLike, instrument: _Instrument) -> NDArray[np.float64]
     own = _polarimeter(instrument)
     if isinstance(own, PixelInstrument):
         mueller = _by_name("mueller", mueller, ("y", "x", "row", "column"))
-    m = np.asarray(nan_where_masked(mueller), float)
+    m = np.asarray(nan_where_masked(mueller, float), float)
     if isinstance(own, Polarimeter):
         return np.asarray(own.readings(m)).reshape(*m.shape[:-2], -1)
     if m.shape != (*own.shape, 4, 4):

@@ -64,7 +64,7 @@ def uncertainty(
         result = type(stack)(values, kept, [*outer, *core], f"u of {quantity or 'mueller'}", attributes)
         return result.transpose(*[name for name in stack.dims if name != frame], *core)
     if not _chunks.is_lazy(stack):
-        array = nan_where_masked(stack)
+        array = nan_where_masked(stack, np.float32)
         _checked(array, own)
         return work(array)
     import dask.array
@@ -83,7 +83,7 @@ class _Noise:
         self.own, self.noise, self.quantity = own, noise, quantity
 
     def __call__(self, stack: NDArray[Any]) -> NDArray[Any]:
-        stack = nan_where_masked(stack)
+        stack = nan_where_masked(stack, np.float32)
         outer, frames = stack.shape[:-1], stack.shape[-1]
         result = np.empty(outer if self.quantity else (*outer, 4, 4), np.float32)
         flat, out = stack.reshape(-1, frames), result.reshape(-1) if self.quantity else result.reshape(-1, 16)

@@ -104,7 +104,7 @@ def reduce(
     dark, mask = _plain("dark", dark, image, image[:-1]), _plain("mask", mask, image, image[:-1])
     if _chunks.is_lazy(stack):
         return _reduced_lazily(stack, own, dark, saturation, mask)
-    array = nan_where_masked(stack)
+    array = nan_where_masked(stack, np.float32)
     if array.dtype.kind not in "biuf":
         raise TypeError(f"stack: expected real numbers, not {array.dtype}")
     _checked(array, own)
@@ -156,9 +156,9 @@ class _Block:
         self.pairs: NDArray[Any] | None = None
 
     def __call__(self, stack: NDArray[Any], *more: NDArray[Any]) -> NDArray[Any]:
-        stack = nan_where_masked(stack)
+        stack = nan_where_masked(stack, np.float32)
         given = {
-            name: nan_where_masked(one) if name == "dark" else np.ma.filled(one, False)
+            name: nan_where_masked(one, np.float32) if name == "dark" else np.ma.filled(one, False)
             for name, one in zip(self.names, more)
         }
         own: Polarimeter | PixelInstrument

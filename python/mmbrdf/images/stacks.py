@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _chunks
-from .._arguments import nan_where_masked, number
+from .._arguments import joined_masks, nan_where_masked, number
 from .._mmbrdf import Polarimeter
 from .instruments import PixelInstrument, _frames
 
@@ -39,7 +39,7 @@ def _dark_for(dark: Any, stack: Any) -> Any:
     """As it broadcasts against the stack: one number, a frame (y, x), (frame,) or all."""
     if dark is None:
         return None
-    array = dark if _chunks.is_lazy(dark) and _chunks.is_lazy(stack) else nan_where_masked(dark)
+    array = dark if _chunks.is_lazy(dark) and _chunks.is_lazy(stack) else nan_where_masked(dark, np.float32)
     if array.shape == tuple(stack.shape[:-1]):
         return array[..., None]
     if array.ndim == 0 or array.shape == tuple(stack.shape[-1:]) or array.shape == tuple(stack.shape):
@@ -53,7 +53,7 @@ def _dark_for(dark: Any, stack: Any) -> Any:
 def _mask_for(mask: Any, stack: Any) -> Any:
     if mask is None:
         return None
-    array = mask if _chunks.is_lazy(mask) and _chunks.is_lazy(stack) else np.ma.filled(mask, False)
+    array = mask if _chunks.is_lazy(mask) and _chunks.is_lazy(stack) else np.ma.filled(joined_masks(mask), False)
     if array.dtype.kind != "b" or tuple(array.shape) != tuple(stack.shape[:-1]):
         raise ValueError(
             f"mask: {array.dtype} of shape {tuple(array.shape)}, expected truth values (y, x) = {tuple(stack.shape[:-1])}"
