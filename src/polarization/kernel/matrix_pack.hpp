@@ -56,7 +56,8 @@ MMBRDF_INLINE void store_matrices(const Pack<T> (&m)[16], T* to, ptrdiff_t strid
   constexpr int width = Pack<T>::width;
   for (int first = 0; first < 16; first += width) {
     Pack<T> rows[width];
-    for (int e = 0; e < width; ++e) keep_in_register(rows[e] = m[first + e]);  // constants: g++ 12 mixes them up
+    for (int e = 0; e < width; ++e)
+      keep_in_register(rows[e] = m[first + e]);  // g++ 12 makes 1, 1, 0, 0 of constants 1, 0, 0, 0
     transpose<1>(rows);
     for (int lane = 0; lane < width; ++lane) store(rows[lane], to + lane * stride + first);
   }
