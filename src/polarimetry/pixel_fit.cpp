@@ -21,8 +21,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector4d;
 using Eigen::VectorXd;
 
-constexpr std::size_t most_slopes = 16;  // of one reading over what belongs to no reference alone
-constexpr double small_step = 1e-6;      // in units of χ²: a thousandth of the standard uncertainties
+constexpr std::size_t most_slopes =
+    16;                              // of one reading over what belongs to no reference alone, but for states of a grid
+constexpr double small_step = 1e-6;  // in units of χ²: a thousandth of the standard uncertainties
 
 /// Slopes of a reading over what belongs to no reference alone, places rising, and over what is of the reference.
 struct Row {
@@ -39,7 +40,7 @@ struct Row {
 /// What is of one reference alone: its part of the normal equations, eliminated.
 struct Own {
   Matrix4d inverse = Matrix4d::Zero();
-  MatrixXd cross;  ///< inverse × slopes over the others, 4 × size
+  Eigen::Matrix<double, 4, Eigen::Dynamic> cross;  ///< inverse × slopes over the others
   Vector4d step = Vector4d::Zero();
 };
 
@@ -56,9 +57,11 @@ class PixelFit {
   void accumulate();
   void accumulate(std::size_t reference, std::span<const Vector4d> w, std::span<const Vector4d> a,
                   std::span<const double> slopes);
-  Row row_of_instrument(std::size_t j, const Vector4d& seen, const Vector4d& scattered, double drifted,
-                        std::span<const double> all_slopes) const;
-  void add(Row& row, double root, double residual, Index own, Own& mine);
+  void add_retarders(Row& row, std::size_t j, const Vector4d& seen, const Vector4d& scattered, double drifted,
+                     std::span<const double> all_slopes) const;
+  void add_states(const Row& row, Index w, Index a, const Vector4d& seen, const Vector4d& scattered, double residual,
+                  Own& mine);
+  void add(const Row& row, double residual, Index own, Own& mine);
   void eliminate(Own& own, Index count, Matrix4d square, const Vector4d& values);
   void hold_scales();
   bool solve(double damping);
@@ -118,44 +121,59 @@ void PixelFit::accumulate(std::size_t i, std::span<const Vector4d> w, std::span<
     const double time = drifts ? problem_.retarders->time(index(j)) : 0, drifted = 1 + x_.drifts[i] * time;
     const double steady = a[q].dot(scattered), expected = drifted * steady;
     const double root = 1 / std::sqrt(std::max(variance(problem_.options.noise, expected), least_variance_));
-    Row row = row_of_instrument(j, seen, scattered, drifted, all_slopes);
-    for (const auto& [place, d] : derivatives)
-      if (place < first) row.add(place, drifted * a[q].dot(d * w[p]));
-    for (const auto& [place, d] : derivatives)
-      if (place >= first) row.own(place - first) = root * drifted * a[q].dot(d * w[p]);
-    if (drifts) row.own(drift) = root * time * steady;
     const double residual = root * (static_cast<double>(readings_[i * n + j]) - expected);
+    Row row;
+    if (problem_.retarders) add_retarders(row, j, seen, scattered, root * drifted, all_slopes);
+    for (const auto& [place, d] : derivatives) {
+      const double slope = root * drifted * a[q].dot(d * w[p]);
+      if (place < first)
+        row.add(place, slope);
+      else
+        row.own(place - first) = slope;
+    }
+    if (drifts) row.own(drift) = root * time * steady;
     chi_squared_ += residual * residual;
-    add(row, root, residual, own, mine);
+    if (!problem_.retarders)
+      add_states(row, 4 * index(p), 4 * index(w.size() + q), root * seen, root * scattered, residual, mine);
+    add(row, residual, own, mine);
     square += row.own * row.own.transpose();
     values += residual * row.own;
   }
   eliminate(mine, own, square, values);
 }
 
-Row PixelFit::row_of_instrument(std::size_t j, const Vector4d& seen, const Vector4d& scattered, double drifted,
-                                std::span<const double> all_slopes) const {
-  Row row;
-  if (problem_.retarders) {
-    const double* const slopes = all_slopes.data() + 4 * j * retarder_parameters;
-    const Map<const RowMajor> of_w(slopes, 4, retarder_parameters);
-    const Map<const RowMajor> of_a(slopes + 4 * problem_.readings * retarder_parameters, 4, retarder_parameters);
-    for (std::size_t k = 0; k < problem_.retarders->free.size(); ++k) {
-      const Index parameter = index(problem_.retarders->free[k]);
-      row.add(index(k), drifted * (of_w.col(parameter).dot(seen) + of_a.col(parameter).dot(scattered)));
-    }
-    return row;
+void PixelFit::add_retarders(Row& row, std::size_t j, const Vector4d& seen, const Vector4d& scattered, double factor,
+                             std::span<const double> all_slopes) const {
+  const double* const slopes = all_slopes.data() + 4 * j * retarder_parameters;
+  const Map<const RowMajor> of_w(slopes, 4, retarder_parameters);
+  const Map<const RowMajor> of_a(slopes + 4 * problem_.readings * retarder_parameters, 4, retarder_parameters);
+  for (std::size_t k = 0; k < problem_.retarders->free.size(); ++k) {
+    const Index parameter = index(problem_.retarders->free[k]);
+    row.add(index(k), factor * (of_w.col(parameter).dot(seen) + of_a.col(parameter).dot(scattered)));
   }
-  const std::size_t p = j % problem_.generators, q = j / problem_.generators;
-  for (Index c = 0; c < 4; ++c) row.add(4 * index(p) + c, seen(c));
-  for (Index c = 0; c < 4; ++c) row.add(4 * index(problem_.generators + q) + c, scattered(c));
-  return row;
 }
 
-/// To the normal equations, in units of the standard deviation; `row.own` is in them already.
-void PixelFit::add(Row& row, double root, double residual, Index own, Own& mine) {
+/// To the normal equations: the slopes over a state of W and one of A, at w and a, with each other and with those of the
+/// row, which come behind them.
+void PixelFit::add_states(const Row& row, Index w, Index a, const Vector4d& seen, const Vector4d& scattered,
+                          double residual, Own& mine) {
+  square_.block<4, 4>(w, w).noalias() += seen * seen.transpose();
+  square_.block<4, 4>(a, w).noalias() += scattered * seen.transpose();
+  square_.block<4, 4>(a, a).noalias() += scattered * scattered.transpose();
   for (std::size_t r = 0; r < row.count; ++r) {
-    const double slope = row.slopes[r] *= root;
+    square_.row(row.places[r]).segment<4>(w) += row.slopes[r] * seen.transpose();
+    square_.row(row.places[r]).segment<4>(a) += row.slopes[r] * scattered.transpose();
+  }
+  values_.segment<4>(w) += residual * seen;
+  values_.segment<4>(a) += residual * scattered;
+  mine.cross.middleCols<4>(w).noalias() += row.own * seen.transpose();
+  mine.cross.middleCols<4>(a).noalias() += row.own * scattered.transpose();
+}
+
+/// To the normal equations. All is in units of the standard deviation.
+void PixelFit::add(const Row& row, double residual, Index own, Own& mine) {
+  for (std::size_t r = 0; r < row.count; ++r) {
+    const double slope = row.slopes[r];
     const Index place = row.places[r];
     for (std::size_t c = 0; c <= r; ++c) square_(place, row.places[c]) += slope * row.slopes[c];
     values_(place) += slope * residual;
@@ -170,13 +188,11 @@ void PixelFit::eliminate(Own& own, Index count, Matrix4d square, const Vector4d&
   own.step = own.inverse * values;
   const MatrixXd solved = own.inverse.topLeftCorner(count, count) * own.cross.topRows(count);
   values_.noalias() -= own.cross.topRows(count).transpose() * own.step.head(count);
-  for (Index c = 0; c < problem_.size; ++c) {
-    for (Index k = 0; k < count; ++k) {
-      const double factor_of = solved(k, c);
-      if (factor_of == 0) continue;
-      square_.col(c).tail(problem_.size - c).noalias() -=
-          factor_of * own.cross.row(k).tail(problem_.size - c).transpose();
-    }
+  for (Index k = 0; k < count; ++k) {
+    const VectorXd row = own.cross.row(k);
+    for (Index c = 0; c < problem_.size; ++c)
+      if (const double factor_of = solved(k, c); factor_of != 0)
+        square_.col(c).tail(problem_.size - c).noalias() -= factor_of * row.tail(problem_.size - c);
   }
   own.cross.topRows(count) = solved;
 }
@@ -338,9 +354,10 @@ FittedPixel PixelFit::run(double most_misfit) {
     ended = values_.dot(step_) <= small_step;
     move(step_);
   }
-  if (!ended) return result;
-  accumulate();
-  if (!std::isfinite(chi_squared_) || !solve(0)) return result;
+  // The last step is small: the equations before it are those after it, and it takes values · step from χ².
+  if (!ended || !solve(0)) return result;
+  chi_squared_ -= values_.dot(step_);
+  if (!std::isfinite(chi_squared_)) return result;
   normalise();
   result.misfit = chi_squared_ / static_cast<double>(problem_.degrees_of_freedom);
   result.x = x_;
