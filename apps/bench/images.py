@@ -87,9 +87,16 @@ def chunks(stack, instrument):
         if rows > side:
             continue
         lazy = images.reduce(da.from_array(stack, chunks=(rows, side, 16)), instrument)
+        size = f"{rows * side / 1e6:.2g} Mpixel"
         for workers in (1, 2):
             run = lambda: da.store(lazy, out, lock=False, scheduler="threads", num_workers=workers)  # noqa: E731
-            say(f"Dask, {workers} threads, chunks of {rows * side / 1e6:.2g} Mpixel", best(run, count), "Mpixel", 1e6)
+            say(f"Dask, {workers} threads, chunks of {size}", best(run, count), "Mpixel", 1e6)
+
+        def one_by_one():
+            for first in range(0, side, rows):
+                out[first : first + rows] = images.reduce(stack[first : first + rows], instrument)
+
+        say(f"chunks of {size} one after the other, without Dask", best(one_by_one, count), "Mpixel", 1e6)
 
 
 def files(pixels):

@@ -95,6 +95,49 @@ def _in_equal_chunks(values: list[Any], cores: list[int]) -> list[Any]:
     return list(dask.array.core.unify_chunks(*where, warn=False)[1])
 
 
+class _Whole:
+    """A function of chunks, of which those that are whole along their last axes come in lists: it can be sent."""
+
+    def __init__(self, work: Callable[..., Any]):
+        self.work = work
+        self.__name__ = getattr(work, "function", type(work).__name__)  # as Dask shows it
+
+    def __call__(self, *chunks: Any) -> Any:
+        alone = []
+        for chunk in chunks:
+            while isinstance(chunk, list):
+                (chunk,) = chunk
+            alone.append(chunk)
+        return self.work(*alone)
+
+
+def by_chunk(
+    work: Callable[..., Any],
+    arrays: Sequence[Any],
+    cores: Sequence[Sequence[str]],
+    output: Sequence[str],
+    sizes: Mapping[str, int],
+    dtype: Any,
+) -> Any:
+    """What dask.array.apply_gufunc does for one output, without its copy of chunks, whose last axes are whole here."""
+    import dask.array
+
+    outer = max(array.ndim - len(core) for array, core in zip(arrays, cores))
+    known = {name for core in cores for name in core}
+    axes = {name: outer + k for k, name in enumerate(sorted(known.union(output)))}
+    given: list[Any] = []
+    for array, core in zip(arrays, cores):
+        given += [array, [*range(outer - array.ndim + len(core), outer), *(axes[name] for name in core)]]
+    return dask.array.blockwise(
+        _Whole(work),
+        [*range(outer), *(axes[name] for name in output)],
+        *given,
+        new_axes={axes[name]: sizes[name] for name in output if name not in known},
+        dtype=dtype,
+        meta=np.empty((0,) * (outer + len(output)), dtype),
+    )
+
+
 def of_dask(call: Call, arrays: Mapping[str, Any], signature: Signature, sizes: Mapping[str, int]) -> Any:
     import dask.array
 
@@ -104,12 +147,15 @@ def of_dask(call: Call, arrays: Mapping[str, Any], signature: Signature, sizes: 
     new = [name for names in signature.outputs for name in names if name not in known]
     for name, value in arrays.items():
         require_whole(name, value, signature.arrays[name])
-    several = len(outputs) > 1
+    cores = [signature.arrays[name] for name in arrays]
+    equal = _in_equal_chunks(list(arrays.values()), list(map(len, cores)))
+    if len(outputs) == 1:
+        return by_chunk(call, equal, cores, signature.outputs[0], _sizes(new, sizes), signature.dtype)
     return dask.array.apply_gufunc(
         call,
         f"{','.join(inputs)}->{','.join(outputs)}",
-        *_in_equal_chunks(list(arrays.values()), [len(signature.arrays[name]) for name in arrays]),
-        output_dtypes=list(signature.dtypes) if several else signature.dtype,
+        *equal,
+        output_dtypes=list(signature.dtypes),
         output_sizes=_sizes(new, sizes),
     )
 

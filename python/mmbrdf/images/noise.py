@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .. import _chunks, _mmbrdf
 from .._arguments import nan_where_masked, number
 from .._mmbrdf import Polarimeter
+from .._signatures import MATRIX
 from .instruments import PixelInstrument, _core_shape, _Instrument, _polarimeter
 from .stacks import _ROWS_AT_ONCE, _checked, _named_axes
 
@@ -67,15 +68,11 @@ def uncertainty(
         array = nan_where_masked(stack, np.float32)
         _checked(array, own)
         return work(array)
-    import dask.array
-
     _checked(stack, own)
     _chunks.require_whole("stack", stack, ("frame",))
     if isinstance(own, PixelInstrument):
         raise TypeError("stack: uncertainties of a PixelInstrument take numpy arrays: go through rows of the image")
-    core = "" if quantity else "row,column"
-    sizes = {} if quantity else {"row": 4, "column": 4}
-    return dask.array.apply_gufunc(work, f"(frame)->({core})", stack, output_dtypes=np.float32, output_sizes=sizes)
+    return _chunks.by_chunk(work, [stack], [("frame",)], () if quantity else MATRIX, _chunks.SIZES, np.float32)
 
 
 class _Noise:

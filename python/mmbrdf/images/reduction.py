@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .. import _chunks, _mmbrdf
 from .._arguments import nan_where_masked
 from .._mmbrdf import Polarimeter
+from .._signatures import MATRIX
 from .instruments import PixelInstrument, _core_shape, _Instrument, _polarimeter
 from .stacks import _ROWS_AT_ONCE, _checked, _dark_for, _mask_for, _named_axes, _plain, _saturation
 
@@ -117,7 +118,7 @@ def _reduced_lazily(stack: Any, own: Polarimeter | PixelInstrument, dark: Any, s
     _checked(stack, own)
     _chunks.require_whole("stack", stack, ("frame",))
     given = [dask.array.asarray(stack)]
-    signature = ["(frame)"]
+    cores: list[tuple[str, ...]] = [("frame",)]
     dark, mask = _dark_for(dark, stack), _mask_for(mask, stack)
     names = []
     for name, array in (("dark", dark), ("mask", mask)):
@@ -129,23 +130,17 @@ def _reduced_lazily(stack: Any, own: Polarimeter | PixelInstrument, dark: Any, s
         if name == "dark":
             whole = dask.array.broadcast_to(whole, stack.shape)
         given.append(whole.rechunk(stack.chunks[: whole.ndim]))
-        signature.append("(frame)" if name == "dark" else "()")
+        cores.append(("frame",) if name == "dark" else ())
         names.append(name)
     fixed = dark if "dark" not in names else None
     work = _Block(own if isinstance(own, Polarimeter) else None, fixed, saturation, names)
     if isinstance(own, PixelInstrument):  # its states go with the chunks
         for states in (own.generator, own.analyzer):
             given.append(dask.array.from_array(states, chunks=(*stack.chunks[:-1], -1, -1)))
-        signature += ["(generator,four)", "(analyzer,four)"]
+        cores += [("generator", "four"), ("analyzer", "four")]
         work.pairs = own.pairs
     single = stack.dtype != np.float64 or isinstance(own, PixelInstrument)
-    return dask.array.apply_gufunc(
-        work,
-        f"{','.join(signature)}->(row,column)",
-        *given,
-        output_dtypes=np.float32 if single else np.float64,
-        output_sizes={"row": 4, "column": 4},
-    )
+    return _chunks.by_chunk(work, given, cores, MATRIX, _chunks.SIZES, np.float32 if single else np.float64)
 
 
 class _Block:
