@@ -124,7 +124,10 @@ class Walk:
                     self.put_old(outputs)
                     result = self.failing(line, call, at, how)
                     self.points[name, call] += 1
-                    if wrong := self.wrong(name, result, outputs, new, reference.stdout):
+                    wrong = self.wrong(name, result, outputs, new, reference.stdout)
+                    if not wrong and call == "pthread_create" and result.returncode != 0:
+                        wrong = "the threads that there are did not do the work"
+                    if wrong:
                         self.violations.append(f"{name}: {call} {at} {how}: {wrong}")
                         self.clean(outputs)
         self.clean(outputs, all_of_it=True)
