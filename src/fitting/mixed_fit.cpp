@@ -141,11 +141,23 @@ BlockFits block_fits(const MixedRounds& rounds, const Model& evaluated, const st
   return result;
 }
 
+/// Of samples that are not complete; empty if all are.
+std::string left_out(const MeasuredKinds& kinds) {
+  long all = 0, incomplete = 0;
+  for (const double wavelength : kinds.wavelengths()) {
+    all += kinds.samples(wavelength);
+    incomplete += kinds.incomplete(wavelength);
+  }
+  if (incomplete == 0) return "";
+  return "left out of the fit of the sample: " + std::to_string(incomplete) + " of " + std::to_string(all) +
+         " samples, in which elements are missing";
+}
+
 /// What is kept of them.
 Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const DeclaredErrors& declared,
                        BlockFits fits, const BlockSums& sums) {
   const Basis& basis = rounds.basis();
-  PosteriorData data{generous(basis.orders), basis.mapping, ~rounds.kinds().known, shared_errors(declared), {}, {}};
+  PosteriorData data{generous(basis.orders), basis.mapping, ~rounds.kinds().known(), shared_errors(declared), {}, {}};
   for (std::size_t at = 0; const auto& [wavelength, first] : rounds.first()) {
     PosteriorAt known{wavelength, first.law, first.f11, 0, {}};
     for (double& coefficient : known.f11) coefficient /= evaluated.reflectance.at(wavelength);
@@ -182,7 +194,7 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
       throw MixedFailure("f11 at " + shortest(in_nanometres(wavelength)) + " nm is that of an albedo of " +
                          rounded(found, 2) + ": is it in sr^-1, and the reflectance a part of 1?");
   tried([&] {
-    BlockFits fits = block_fits(rounds, model, mixed_columns(rounds.basis(), ~rounds.kinds().known), sums);
+    BlockFits fits = block_fits(rounds, model, mixed_columns(rounds.basis(), ~rounds.kinds().known()), sums);
     for (std::size_t b = 0; b < model.blocks.size(); ++b) {
       model.blocks[b].coefficients = through(model.validity.wavelengths, fits, b, model.powers);
       model.blocks[b].covariance.clear();
@@ -190,6 +202,7 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
     }
     model.posterior = posterior_of(rounds, model, options.declared, std::move(fits), sums);
   });
+  if (std::string few = left_out(rounds.kinds()); !few.empty()) result.warnings.push_back(std::move(few));
   result.elements = squares.misfit(model);
   model.reflectance.covariance.clear();
   model.reflectance.covariance_with_f11.clear();
@@ -214,13 +227,14 @@ FitResult sample_fit(std::span<const Sample> samples, const Basis& basis, const 
     while (rounds.next() && rounds.round() < 4);
   });
   if (rounds.finished()) throw MixedFailure(rounds.reason());
-  const std::vector<MixedColumns> columns = mixed_columns(basis, ~rounds.kinds().known);
+  const std::vector<MixedColumns> columns = mixed_columns(basis, ~rounds.kinds().known());
+  const Series with_all = complete(series, rounds.kinds());
   const auto gram = [&](double wavelength, std::size_t block) {
-    return sums_of(columns[block], series.at(wavelength), rounds.first().at(wavelength));
+    return sums_of(columns[block], with_all.at(wavelength), rounds.first().at(wavelength));
   };
   const auto directions = [&](double wavelength) {
     DirectionCounts result;
-    result.add(series.at(wavelength));
+    result.add(with_all.at(wavelength));
     return result;
   };
   FitResult result = mixed_fit(rounds, options, {gram, directions});

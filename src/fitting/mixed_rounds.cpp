@@ -214,10 +214,12 @@ void MixedRounds::add_third(std::vector<Sample> samples, double wavelength, Sums
   squares_.try_emplace(wavelength, basis_).first->second.add(samples, weights(samples, first, 1));
 }
 
-void MixedRounds::add_fourth(const Series& series, int threads) {
+void MixedRounds::add_fourth(const Series& all, int threads) {
+  const Series series = complete(all, kinds_);
   std::vector<std::pair<const std::vector<Sample>*, const FirstPass*>> list;
   std::vector<Sums*> sums;
   for (const auto& [wavelength, samples] : series) {
+    if (samples.empty()) continue;
     list.emplace_back(&samples, &first_.at(known(wavelength)));
     sums.push_back(&sums_at(wavelength));
     sums.back()->directions.add(samples);
@@ -287,8 +289,8 @@ bool MixedRounds::next() {
 }
 
 void MixedRounds::settle_first() {
-  if (!kinds_.known[0]) throw std::invalid_argument("f11 is not measured in any sample");
-  for (const auto& [wavelength, count] : kinds_.samples) {
+  if (!kinds_.known()[0]) throw std::invalid_argument("f11 is not measured in any sample");
+  for (const double wavelength : kinds_.wavelengths()) {
     const Sums& sums = wavelength_slot(sums_, wavelength);
     FirstPass& first = first_[wavelength];
     first.mean = sums.count > 0 ? sums.f11 / static_cast<double>(sums.count) : 0;
@@ -312,7 +314,7 @@ void MixedRounds::settle_third() {
 }
 
 void MixedRounds::begin_fourth() {
-  columns_ = std::make_shared<const std::vector<MixedColumns>>(mixed_columns(basis_, ~kinds_.known));
+  columns_ = std::make_shared<const std::vector<MixedColumns>>(mixed_columns(basis_, ~kinds_.known()));
   FitOptions options;
   options.powers = 0;
   options.reflectance = ReflectanceTable{};

@@ -6,7 +6,7 @@
 ///   2  where the law is relative: least f° and the sizes of f11 − f°, which say whether noise is relative to f11; f^,
 ///      f11 of first_order weighed as if the readings were without noise
 ///   3  least f^; least squares of the evaluated modes with the weights of the mixed model
-///   4  where there is a mixed model: sums of each block (mixed/evidence.hpp), and directions
+///   4  where there is a mixed model: sums of each block (mixed/evidence.hpp), and directions, of complete samples
 #pragma once
 
 #include <cstdint>
@@ -90,7 +90,7 @@ class MixedRounds {
   void add_first(std::span<const Sample> samples, const ReadingLaw& law, Sums& sums) const;
   void add_second(std::span<const Sample> samples, const FirstPass& first, Sums& sums) const;
   void add_third(std::vector<Sample> samples, double wavelength, Sums& sums);
-  void add_fourth(const Series& series, int threads);
+  void add_fourth(const Series& all, int threads);
   double known(double wavelength) const;
   void settle_first();
   void settle_second();

@@ -12,9 +12,9 @@
 #include "text/numbers.hpp"
 
 //   settled: the basis, the law, round, whether all have ended, samples and digest of round 1;
-//   after round 1: bits of the elements that are known, of those that are not, whether any are as measured;
-//     of each wavelength, rising: λ, samples, mean, law, f11, least; after round 3 the state of its least squares
-//   sums: samples and digest of this round; in round 1 what was measured, as above, and λ and samples of each wavelength;
+//   after round 1: of each wavelength, rising, λ and the kinds of its samples: bits of what they do not know, number;
+//     of each wavelength: mean, least, law, f11; after round 3 the state of its least squares
+//   sums: samples and digest of this round; in round 1 the kinds of samples, as above;
 //     for each wavelength: λ, count, Σ f11, fit, least; in round 2 the counts of sizes; in round 3 least squares; in round 4
 //     of each block n, yy, z, d and the lower triangle of g, then the directions
 
@@ -55,30 +55,11 @@ ReadingLaw next_law(StateReader& reader) {
   return {exponents[0], exponents[1], reader.whole("a law that is relative", 1) == 1};
 }
 
-void append(std::vector<double>& state, const MeasuredKinds& kinds) {
-  append(state, {static_cast<double>(kinds.known.to_ulong()), static_cast<double>(kinds.unknown.to_ulong()),
-                 kinds.as_measured ? 1.0 : 0.0, static_cast<double>(kinds.samples.size())});
-  for (const auto& [wavelength, count] : kinds.samples) append(state, {wavelength, static_cast<double>(count)});
-}
 double next_wavelength(StateReader& reader) {
   const double wavelength = reader.next(1).front();
   require_wavelength(wavelength);
   return wavelength;
 }
-MeasuredKinds next_kinds(StateReader& reader) {
-  MeasuredKinds result;
-  result.known = Elements(static_cast<unsigned long>(reader.whole("elements", 65535)));
-  result.unknown = Elements(static_cast<unsigned long>(reader.whole("elements", 65535)));
-  result.as_measured = reader.whole("elements as they were measured", 1) == 1;
-  for (long rest = reader.whole("a number of wavelengths"); rest > 0; --rest) {
-    const double wavelength = next_wavelength(reader);
-    if (!result.samples.empty() && wavelength <= result.samples.rbegin()->first + wavelength_resolution)
-      throw std::invalid_argument("a state of a fit whose wavelengths do not rise");
-    result.samples[wavelength] = reader.whole("a number of samples");
-  }
-  return result;
-}
-
 void append(std::vector<double>& state, const Gram& gram) {
   append(state, {static_cast<double>(gram.n), gram.yy});
   append(state, std::span(gram.z.data(), static_cast<std::size_t>(gram.z.size())));
@@ -105,6 +86,31 @@ Gram next_gram(StateReader& reader, Index columns) {
 
 }  // namespace
 
+void MeasuredKinds::append(std::vector<double>& state) const {
+  mmbrdf::append(state, {static_cast<double>(at_.size())});
+  for (const auto& [wavelength, counts] : at_) {
+    mmbrdf::append(state, {wavelength, static_cast<double>(counts.size())});
+    for (const auto& [kind, count] : counts)
+      mmbrdf::append(state, {static_cast<double>(kind), static_cast<double>(count)});
+  }
+}
+
+MeasuredKinds MeasuredKinds::from_state(StateReader& reader) {
+  MeasuredKinds result;
+  for (long rest = reader.whole("a number of wavelengths"); rest > 0; --rest) {
+    const double wavelength = next_wavelength(reader);
+    if (!result.at_.empty() && wavelength <= result.at_.rbegin()->first + wavelength_resolution)
+      throw std::invalid_argument("a state of a fit whose wavelengths do not rise");
+    Counts& counts = result.at_[wavelength];
+    for (long kinds = reader.whole("a number of kinds of samples", 131072); kinds > 0; --kinds) {
+      const auto kind = static_cast<unsigned long>(reader.whole("elements", 131071));
+      counts[kind] = reader.whole("a number of samples");
+    }
+    if (counts.empty()) throw std::invalid_argument("a state of a fit with a wavelength without samples");
+  }
+  return result;
+}
+
 void DirectionCounts::append(std::vector<double>& state) const {
   mmbrdf::append(state, {too_many_ ? 1.0 : 0.0, static_cast<double>(counts_.size())});
   for (const auto& [angles, count] : counts_)
@@ -128,7 +134,7 @@ std::vector<double> MixedRounds::settled() const {
   append(result, {static_cast<double>(round_), finished_ ? 1.0 : 0.0, static_cast<double>(first_samples_)});
   append(result, first_digest_);
   if (round_ == 1) return result;
-  append(result, kinds_);
+  kinds_.append(result);
   for (const auto& [wavelength, first] : first_) {
     append(result, {first.mean, first.least});
     append(result, first.law);
@@ -142,7 +148,7 @@ std::vector<double> MixedRounds::state() const {
   std::vector<double> result = settled();
   append(result, {static_cast<double>(samples_)});
   append(result, digest_);
-  if (round_ == 1) append(result, kinds_);
+  if (round_ == 1) kinds_.append(result);
   for (const auto& [wavelength, sums] : sums_) {
     append(result, {wavelength, static_cast<double>(sums.count), sums.f11, sums.least});
     append(result, sums.fit.state());
@@ -164,8 +170,8 @@ void MixedRounds::read_settled(StateReader& reader) {
   first_digest_ = next_digest(reader);
   if (round_ < 1 || (finished_ && round_ < 3)) throw std::invalid_argument("a state of a fit of no round");
   if (round_ == 1) return;
-  kinds_ = next_kinds(reader);
-  for (const auto& [wavelength, count] : kinds_.samples) {
+  kinds_ = MeasuredKinds::from_state(reader);
+  for (const double wavelength : kinds_.wavelengths()) {
     FirstPass& first = first_[wavelength];
     const std::span<const double> numbers = reader.next(2);
     first.mean = numbers[0];
@@ -183,7 +189,7 @@ void MixedRounds::read_settled(StateReader& reader) {
 void MixedRounds::read_sums(StateReader& reader) {
   samples_ = reader.whole("a number of samples");
   digest_ = next_digest(reader);
-  if (round_ == 1) kinds_ = next_kinds(reader);
+  if (round_ == 1) kinds_ = MeasuredKinds::from_state(reader);
   while (!reader.at_end()) {
     const double wavelength = next_wavelength(reader);
     Sums& sums = sums_at(wavelength);

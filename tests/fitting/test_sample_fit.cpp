@@ -263,7 +263,7 @@ TEST(SampleFit, IsLeastSquaresWhereThereIsNoMixedModel) {
   const Basis low{Family::isotropic, {3, 2}};
   const std::vector<Sample> few(samples.begin(), samples.begin() + 28);
   std::vector<Sample> gap = samples;
-  gap[5].normalized(1, 1) = std::nan("");
+  for (std::size_t s = 0; s < 31; ++s) gap[9 * s].normalized(1, 1) = std::nan("");  // one more than a tenth
   FitOptions free;
   free.minimum_norm = true;
   expect_noise(few, {low, free, Weights::none}, 3, "28 samples at 532 nm, at least 30 are needed");
@@ -271,6 +271,40 @@ TEST(SampleFit, IsLeastSquaresWhereThereIsNoMixedModel) {
   expect_noise(samples, {{Family::isotropic, {2, 0}}, {}, Weights::none}, 3, "orders 2,0 leave elements without modes");
   expect_noise(gap, {low}, 3, "missing in some samples: 22");
   expect_noise(samples, {low, wrong}, 4, "f11 at 532 nm is that of an albedo of");
+}
+
+/// Samples of which element e is not known from `first` on, each `step`.
+std::vector<Sample> with_gaps(std::vector<Sample> samples, std::size_t e, std::size_t first, std::size_t step) {
+  for (std::size_t s = first; s < samples.size(); s += step) samples[s].normalized.elements[e] = std::nan("");
+  return samples;
+}
+
+// Weights come from f11 of all of them, and those that lack an element have it: the fit of the others by themselves is
+// within a tenth of u.
+TEST(SampleFit, LeavesOutAFewSamplesThatLackElements) {
+  const std::vector<Sample> whole = simulated(300), some = with_gaps(with_gaps(whole, 5, 3, 20), 9, 4, 60);
+  std::vector<Sample> others;
+  std::ranges::copy_if(some, std::back_inserter(others), [](const Sample& s) { return not_measured(s).none(); });
+  const Case one{{Family::isotropic, {3, 2}}};
+  const FitResult found = in_memory(some, one), expected = in_memory(others, one);
+  ASSERT_TRUE(found.model.posterior);
+  EXPECT_EQ(found.warnings.back(),
+            "left out of the fit of the sample: " + std::to_string(whole.size() - others.size()) +
+                " of 300 samples, in which elements are missing");
+  EXPECT_EQ(expected.warnings.size() + 1, found.warnings.size());
+  EXPECT_EQ(found.elements[0].rows, 300);
+  EXPECT_EQ(found.elements[5].rows, 300 - 15);
+  const PreparedModel a = prepare(found.model, 0.532), b = prepare(expected.model, 0.532);
+  const PreparedUncertainty u = prepare_uncertainty(expected.model, 0.532), v = prepare_uncertainty(found.model, 0.532);
+  for (const Geometry& g : halton_directions(20, 0, 70)) {
+    const Mueller sigma = standard_uncertainty(u.normalized(g)), with = standard_uncertainty(v.normalized(g)),
+                  apart = normalized(a.evaluate(g)) - normalized(b.evaluate(g));
+    for (std::size_t e = 1; e < 16; ++e) {
+      EXPECT_LT(std::abs(apart.elements[e]), 0.1 * sigma.elements[e]);
+      EXPECT_NEAR(with.elements[e], sigma.elements[e], 0.05 * sigma.elements[e]);
+    }
+  }
+  expect_same_fit(some, one);
 }
 
 TEST(SampleFit, RefusesWhatIsNotARoundOverTheSameSamples) {
