@@ -27,8 +27,8 @@ constexpr double small_step = 1e-6;  // in units of χ²: a thousandth of the st
 
 /// Slopes of a reading over what belongs to no reference alone, places rising, and over what is of the reference.
 struct Row {
-  std::array<Index, most_slopes> places{};
-  std::array<double, most_slopes> slopes{};
+  std::array<Index, most_slopes> places;  // of which there are `count`: not set to 0 for each reading
+  std::array<double, most_slopes> slopes;
   std::size_t count = 0;
   Vector4d own = Vector4d::Zero();
   void add(Index place, double slope) {
@@ -57,6 +57,8 @@ class PixelFit {
   void accumulate();
   void accumulate(std::size_t reference, std::span<const Vector4d> w, std::span<const Vector4d> a,
                   std::span<const double> slopes);
+  void look_through(const Matrix4d& m, std::span<const Derivative> derivatives, std::span<const Vector4d> w,
+                    std::span<const Vector4d> a);
   void add_retarders(Row& row, std::size_t j, const Vector4d& seen, const Vector4d& scattered, double drifted,
                      std::span<const double> all_slopes) const;
   void add_states(const Row& row, Index w, Index a, const Vector4d& seen, const Vector4d& scattered, double residual,
@@ -79,6 +81,7 @@ class PixelFit {
   VectorXd values_, step_;
   Eigen::LLT<MatrixXd> factor_;
   std::vector<Own> owns_;
+  std::vector<Vector4d> seen_, scattered_, changes_;  // of a reference: Aᵀ M, M W, and Aᵀ dM for each of its slopes
   double chi_squared_ = 0, least_variance_ = 0;
 };
 
@@ -104,6 +107,19 @@ void PixelFit::accumulate() {
   hold_scales();
 }
 
+void PixelFit::look_through(const Matrix4d& m, std::span<const Derivative> derivatives, std::span<const Vector4d> w,
+                            std::span<const Vector4d> a) {
+  seen_.resize(a.size());
+  scattered_.resize(w.size());
+  changes_.resize(derivatives.size() * a.size());
+  for (std::size_t p = 0; p < w.size(); ++p) scattered_[p] = m * w[p];
+  for (std::size_t q = 0; q < a.size(); ++q) {
+    seen_[q] = m.transpose() * a[q];
+    for (std::size_t k = 0; k < derivatives.size(); ++k)
+      changes_[k * a.size() + q] = derivatives[k].slope.transpose() * a[q];
+  }
+}
+
 void PixelFit::accumulate(std::size_t i, std::span<const Vector4d> w, std::span<const Vector4d> a,
                           std::span<const double> all_slopes) {
   const Index own = problem_.own(i), first = problem_.size, drift = own - 1;
@@ -115,18 +131,18 @@ void PixelFit::accumulate(std::size_t i, std::span<const Vector4d> w, std::span<
   Vector4d values = Vector4d::Zero();
   const std::size_t n = problem_.readings;
   const bool drifts = problem_.retarders && problem_.options.retarders->fit_drift;
-  for (std::size_t j = 0; j < n; ++j) {
-    const std::size_t p = problem_.retarders ? j : j % w.size(), q = problem_.retarders ? j : j / w.size();
-    const Vector4d seen = m.transpose() * a[q], scattered = m * w[p];
+  look_through(m, derivatives, w, a);
+  for (std::size_t j = 0, p = 0, q = 0; j < n; ++j) {  // readings of a grid have the generators inside
+    const Vector4d &seen = seen_[q], &scattered = scattered_[p];
     const double time = drifts ? problem_.retarders->time(index(j)) : 0, drifted = 1 + x_.drifts[i] * time;
     const double steady = a[q].dot(scattered), expected = drifted * steady;
     const double root = 1 / std::sqrt(std::max(variance(problem_.options.noise, expected), least_variance_));
     const double residual = root * (static_cast<double>(readings_[i * n + j]) - expected);
     Row row;
     if (problem_.retarders) add_retarders(row, j, seen, scattered, root * drifted, all_slopes);
-    for (const auto& [place, d] : derivatives) {
-      const double slope = root * drifted * a[q].dot(d * w[p]);
-      if (place < first)
+    for (std::size_t k = 0; k < derivatives.size(); ++k) {
+      const double slope = root * drifted * changes_[k * a.size() + q].dot(w[p]);
+      if (const Index place = derivatives[k].place; place < first)
         row.add(place, slope);
       else
         row.own(place - first) = slope;
@@ -138,6 +154,10 @@ void PixelFit::accumulate(std::size_t i, std::span<const Vector4d> w, std::span<
     add(row, residual, own, mine);
     square += row.own * row.own.transpose();
     values += residual * row.own;
+    if (problem_.retarders || ++p == w.size()) {
+      p = problem_.retarders ? p + 1 : 0;
+      ++q;
+    }
   }
   eliminate(mine, own, square, values);
 }
