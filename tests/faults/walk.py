@@ -39,6 +39,7 @@ COMMANDS = {
     "evaluate": ("evaluate model.json -g rows.csv --threads 3 -o out.csv", ["out.csv"]),
     "evaluate .npy": ("evaluate model.json -g rows.csv --threads 3 -o out.npy", ["out.npy"]),
     "fit": ("fit data.csv --orders 2,1 --basis germer2017 -o out.json", ["out.json"]),
+    "fit --declare": ("fit data.csv --orders 2,1 --declare scale=0.3% -o out.json", ["out.json"], ["pthread_create"]),
     "convert": ("convert model.json out.json", ["out.json"]),
     "simulate": ("simulate model.json --grid random:50 -o out.csv", ["out.csv"]),
     "simulate --raw": ("simulate model.json --grid random:4 --raw out", ["out/references.csv", "out/raw.csv"]),
@@ -111,12 +112,14 @@ class Walk:
         return "" if is_old or "is written" in talk[0] else "exit status 1, but the new one is there"
 
     def command(self, name, most):
-        line, outputs = COMMANDS[name]
+        line, outputs, *only = COMMANDS[name]
         self.put_old(outputs)
         reference = run(self.program, line, self.folder)
         reference.check_returncode()
         new = {output: (self.folder / output).read_bytes() for output in outputs}
         for call, ways in KINDS.items():
+            if only and call not in only[0]:
+                continue
             calls = self.count(line, call)
             step = 1 if most == 0 else max(1, calls * len(ways) / most)
             for at in sorted({int(k * step) + 1 for k in range(int(calls / step))}):
