@@ -15,7 +15,7 @@ import copy
 import hashlib
 import io
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -196,33 +196,52 @@ def _merged(first: _Part, second: _Part) -> _Part:
     return _Part(result, read, skipped)
 
 
-def _here(parts: Iterable[_Part]) -> _Part:
-    """The same tree, with as many states in memory as it has levels."""
-    stack: list[tuple[int, _Part]] = []
+def _tree(parts: Iterable[Any], merged: Callable[[Any, Any], Any]) -> Any:
+    """Binary, over their order; no more parts at once than it has levels."""
+    stack: list[tuple[int, Any]] = []
     for part in parts:
         stack.append((1, part))
         while len(stack) > 1 and stack[-1][0] == stack[-2][0]:
             (size, first), (_, second) = stack[-2:]
-            stack[-2:] = [(2 * size, _merged(first, second))]
+            stack[-2:] = [(2 * size, merged(first, second))]
     while len(stack) > 1:
         (size, first), (more, second) = stack[-2:]
-        stack[-2:] = [(size + more, _merged(first, second))]
+        stack[-2:] = [(size + more, merged(first, second))]
     return stack[0][1]
 
 
-def _there(client: distributed.Client, leaves: Sequence[Any], progress: Callable[[Any], Any] | None) -> _Part:
-    level = list(leaves)
+def _there(
+    client: distributed.Client,
+    files: dict[str, _Mark | None],
+    begun: _Accumulator,
+    this: _Round,
+    progress: Callable[[Any], Any] | None,
+) -> _Part:
+    """By workers, in the order of the tree: each merge goes before the files after it, and nothing is held here that is
+    merged, so that workers have few states at once."""
+
+    def sent(*task: Any) -> Any:
+        return client.submit(*task, pure=False, fifo_timeout="0 ms")
+
+    there = sent(this.kind.of, begun.state())  # of a worker that dies it is made again
+    watched: Any = None
     if progress is not None:
         from distributed import as_completed
 
-        watched = as_completed(list(leaves))
-    while len(level) > 1:
-        pairs = [client.submit(_merged, a, b, pure=False) for a, b in zip(level[::2], level[1::2])]
-        level = pairs + level[len(pairs) * 2 :]
+        watched = as_completed()
+
+    def leaves() -> Iterator[Any]:
+        for path, mark in files.items():
+            leaf = sent(_leaf, path, mark, there, this)
+            if watched is not None:
+                watched.add(leaf)
+            yield leaf
+
+    root = _tree(leaves(), lambda first, second: sent(_merged, first, second))
     if progress is not None:
         for _ in progress(watched):
             pass
-    result: _Part = level[0].result()
+    result: _Part = root.result()
     return result
 
 
@@ -236,11 +255,9 @@ def _of_all(
     """One round."""
     if client is None:
         each: Iterable[str] = files if progress is None else progress(list(files))
-        return _here(_leaf(path, files[path], begun, this) for path in each)
-    there = client.submit(this.kind.of, begun.state(), pure=False)  # of a worker that dies it is made again
-    return _there(
-        client, [client.submit(_leaf, path, mark, there, this, pure=False) for path, mark in files.items()], progress
-    )
+        part: _Part = _tree((_leaf(path, files[path], begun, this) for path in each), _merged)
+        return part
+    return _there(client, files, begun, this, progress)
 
 
 def _rounds(

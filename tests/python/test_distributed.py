@@ -46,20 +46,9 @@ def test_files_fitted_together_are_one_fit(files, plain):
     np.testing.assert_allclose(plain, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("count", range(1, 8))
-def test_the_tree_depends_on_the_number_of_files_alone(count):
-    """In this process it is that of levels, in which an odd one out goes up as it is."""
-
-    level = [str(k) for k in range(count)]
-    while len(level) > 1:
-        pairs = [f"({a}{b})" for a, b in zip(level[::2], level[1::2])]
-        level = pairs + level[len(pairs) * 2 :]
-    merged = archive._merged
-    try:
-        archive._merged = lambda a, b: f"({a}{b})"
-        assert archive._here(str(k) for k in range(count)) == level[0]
-    finally:
-        archive._merged = merged
+def test_the_tree_is_binary_over_the_order_of_the_files():
+    tree = archive._tree(map(str, range(7)), lambda first, second: f"({first}{second})")
+    assert tree == "(((01)(23))((45)6))"
 
 
 def test_a_broken_file_is_named_and_left_out_only_if_that_was_asked(files, plain, tmp_path):
@@ -360,6 +349,36 @@ def test_one_worker_and_two_give_the_bits_of_this_process_in_all_rounds(few, sam
             fitted = archive.fit(few, client, declared={"scale": 0.003})
         np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
         assert fitted.result.model.to_json() == sampled.result.model.to_json()
+
+
+class _Held:
+    """A plugin of the scheduler: the most tasks of which workers held what came out."""
+
+    def __init__(self):
+        self.now, self.most = set(), 0
+
+    def transition(self, key, start, finish, *_, **__):
+        (self.now.add if finish == "memory" else self.now.discard)(key)
+        self.most = max(self.most, len(self.now))
+
+
+def test_workers_hold_few_states_at_once_whatever_the_number_of_files(few, tmp_path):
+    """Half a dozen levels of a tree, and what runs; not the states of all files."""
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    many = [tmp_path / f"{k}_{path.name}" for k in range(40) for path in few]
+    for k, path in enumerate(many):
+        os.link(few[k % len(few)], path)
+    held = type("Held", (_Held, cluster_of.SchedulerPlugin), {})()
+    with (
+        cluster_of.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+        ) as cluster,
+        cluster_of.Client(cluster) as client,
+    ):
+        cluster.scheduler.add_plugin(held)
+        fitted = archive.fit(many, client, **OPTIONS)
+    assert fitted.samples == 40 * archive.fit(few, **OPTIONS).samples
+    assert 1 < held.most < 60
 
 
 def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):
