@@ -133,8 +133,11 @@ def _saved_as(path: str, mark: _Mark, this: _Round) -> Path | None:
 def _save(state: Any, path: Path) -> None:
     content = io.BytesIO()
     np.save(content, state)
-    with replacing(path) as beside:
-        beside.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+    try:
+        with replacing(path) as beside:
+            beside.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+    except OSError as error:  # of the folder, not of the file of samples
+        raise OSError(f"checkpoint {path.parent}: {error.strerror or error}") from None
 
 
 def _kept(path: Path | None, kind: _Kind) -> _Accumulator | None:
@@ -155,21 +158,16 @@ def _mark(path: str) -> _Mark:
     return _Mark(at.st_size, at.st_mtime_ns)
 
 
-def _added(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> _Accumulator:
+def _read(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> tuple[_Accumulator, bool]:
+    """And whether it was the same file all the while: otherwise the samples may be of two."""
     before = identity(path)
-    saved = _saved_as(path, mark, this)
-    kept = _kept(saved, this.kind)
-    if kept is not None:
-        return kept
-    accumulator = copy.deepcopy(begun)
+    result: Any = copy.deepcopy(begun)
     samples = read_samples(path, **this.options)
-    if isinstance(accumulator, SampleFitAccumulator):
-        accumulator.add(samples, threads=this.threads)
+    if isinstance(result, SampleFitAccumulator):
+        result.add(samples, threads=this.threads)
     else:
-        accumulator.add(samples)
-    if saved is not None and identity(path) == before and _mark(path) == mark:  # else the samples may be of two files
-        _save(accumulator.state(), saved)
-    return accumulator
+        result.add(samples)
+    return result, identity(path) == before and _mark(path) == mark
 
 
 def _leaf(path: str, before: _Mark | None, begun: _Accumulator, this: _Round) -> _Part:
@@ -178,12 +176,17 @@ def _leaf(path: str, before: _Mark | None, begun: _Accumulator, this: _Round) ->
         mark = _mark(path)
         if before is not None and mark != before:
             raise ValueError(f"{path}: changed since the first round over the files; fit again")
-        accumulator = _added(path, mark, begun, this)
+        saved = _saved_as(path, mark, this)
+        accumulator, is_new = _kept(saved, this.kind), False
+        if accumulator is None:
+            accumulator, is_new = _read(path, mark, begun, this)
     except (OSError, ValueError) as error:
         text = str(error) if os.path.basename(path) in str(error) else f"{path}: {error}"
         if this.skip_broken and before is None:
             return _Part(None, {}, {path: text})
         raise OSError(text) from None
+    if saved is not None and is_new:
+        _save(accumulator.state(), saved)
     return _Part(accumulator, {path: mark}, {})
 
 

@@ -201,10 +201,13 @@ def test_nor_is_that_of_a_file_that_is_replaced_by_one_of_the_same_size_and_time
     assert list(folder.iterdir()) == []
 
 
-def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
+@pytest.mark.parametrize("skip_broken", [False, True])
+def test_a_state_that_cannot_be_written_leaves_nothing_behind_nor_its_file_out(
+    files, tmp_path, monkeypatch, skip_broken
+):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
-    with pytest.raises(OSError, match="No space left"):
-        archive.fit(files[:1], checkpoint=tmp_path, **OPTIONS)
+    with pytest.raises(OSError, match=rf"^checkpoint {tmp_path}: No space left on device$"):
+        archive.fit(files[:2], checkpoint=tmp_path, skip_broken=skip_broken, **OPTIONS)
     assert list(tmp_path.iterdir()) == []
 
 
