@@ -408,3 +408,27 @@ def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, p
         expected = archive.fit(many, **OPTIONS)
         np.testing.assert_array_equal(coefficients(found[0]), coefficients(expected))
         assert found[0].samples == expected.samples
+
+
+def test_a_worker_that_is_killed_in_each_round_leaves_the_bits_as_they_are(few, sampled, tmp_path):
+    """It takes a piece that is done, what it made of others, and its copy of what the rounds before have found."""
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    killed = []
+    with (
+        cluster_of.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+        ) as cluster,
+        cluster_of.Client(cluster) as client,
+    ):
+
+        def killing(watched):
+            for count, piece in enumerate(watched):
+                holders = client.who_has([piece])[piece.key] if count == 0 else ()
+                for worker in holders:
+                    killed.append(client.run(os.getpid, workers=[worker])[worker])
+                    os.kill(killed[-1], signal.SIGKILL)
+                yield piece
+
+        fitted = archive.fit(few, client, declared={"scale": 0.003}, progress=killing)
+    assert len(set(killed)) >= 4  # one in each round
+    assert fitted.result.model.to_json() == sampled.result.model.to_json()
