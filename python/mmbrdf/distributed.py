@@ -122,6 +122,13 @@ def _require_once(paths: Sequence[str]) -> None:
             raise ValueError(f"files: number {k} ({path}) is number {first} ({paths[first]}) again: leave one out")
 
 
+def _require_lasting(paths: Sequence[str]) -> None:
+    """Rounds read each file again, and of a pipe they would wait for ever."""
+    for path in paths:
+        if Path(path).is_fifo():
+            raise ValueError(f"files: {path} is a pipe, which can be read once: save it, or take uncertainty='noise'")
+
+
 def _saved_as(path: str, mark: _Mark, this: _Round) -> Path | None:
     """Another file for what was changed, or is read or fitted otherwise."""
     if this.checkpoint is None:
@@ -335,6 +342,8 @@ def fit(
         raise ValueError("files: none")
     _require_once(paths)
     _require_fitting(uncertainty, weights, declared)
+    if uncertainty == "sample":
+        _require_lasting(paths)
     kind = _Kind(basis, two_orders(orders), mapping, as_printed, uncertainty, weights)
     _require_known(read)
     if client is not None and not callable(getattr(client, "submit", None)):

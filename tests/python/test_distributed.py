@@ -152,6 +152,13 @@ def test_a_file_that_is_there_twice_is_refused(files, tmp_path):
         archive.fit([files[0], tmp_path / "other.csv"], **OPTIONS)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_a_pipe_is_refused_by_fits_that_read_it_in_rounds(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(ValueError, match=r"^files: .*pipe.csv is a pipe, which can be read once: save it, or take "):
+        archive.fit(tmp_path / "pipe.csv")
+
+
 @pytest.mark.parametrize("damage", ["empty", "cut", "other", "flipped"])
 def test_a_damaged_state_is_made_again_and_its_file_is_not_left_out(files, plain, tmp_path, damage):
     archive.fit(files, checkpoint=tmp_path, **OPTIONS)
