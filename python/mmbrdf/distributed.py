@@ -270,6 +270,18 @@ def _of_all(
     return _there(client, files, begun, this, progress)
 
 
+def _goes_on(accumulator: SampleFitAccumulator, checkpoint: str | None) -> bool:
+    try:
+        return accumulator.next_round()
+    except ValueError as error:
+        if "of other samples" not in str(error):
+            raise
+        why = "a file was changed, but not its size and time"
+        if checkpoint is not None:
+            why += f", now or since its state was kept: empty {checkpoint}"
+        raise ValueError(f"files: {error}: {why}") from None
+
+
 def _rounds(
     paths: Sequence[str], this: _Round, client: distributed.Client | None, progress: Callable[[Any], Any] | None
 ) -> _Part:
@@ -277,7 +289,7 @@ def _rounds(
     if part.accumulator is None:
         raise ValueError(f"files: none of {len(paths)} can be read; the first: {next(iter(part.skipped.values()))}")
     skipped = part.skipped
-    while isinstance(part.accumulator, SampleFitAccumulator) and part.accumulator.next_round():
+    while isinstance(part.accumulator, SampleFitAccumulator) and _goes_on(part.accumulator, this.checkpoint):
         begun = part.accumulator
         this = this._replace(begun=hashlib.sha256(begun.state().tobytes()).hexdigest())
         part = _of_all(dict(part.read), begun, this, client, progress)

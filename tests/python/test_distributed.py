@@ -318,8 +318,27 @@ def test_a_file_with_other_samples_under_the_same_mark_is_refused_too(few, monke
         return read(few[1] if len(asked) > 3 and path == str(few[0]) else path, **options)
 
     monkeypatch.setattr(archive, "read_samples", other)
-    with pytest.raises(ValueError, match=r"^round 2 was of other samples than round 1, \d+ of them in place of \d+$"):
+    with pytest.raises(
+        ValueError,
+        match=r"^files: round 2 was of other samples than round 1, \d+ of them in place of \d+: a file was changed, "
+        r"but not its size and time$",
+    ):
         archive.fit(few)
+
+
+def test_a_state_of_a_file_that_was_changed_under_the_same_mark_is_told_from_its_folder(few, tmp_path):
+    folder, copies = tmp_path / "states", [tmp_path / path.name for path in few]
+    for path, copy in zip(few, copies):
+        copy.write_bytes(path.read_bytes())
+    archive.fit(copies, checkpoint=folder)
+    at = copies[1].stat()
+    copies[1].write_bytes(copies[1].read_bytes().replace(b"0.1", b"0.2"))
+    os.utime(copies[1], ns=(at.st_atime_ns, at.st_mtime_ns))
+    for path in folder.iterdir():  # of the first round one is there
+        if np.load(path)[8] > 1:
+            path.unlink()
+    with pytest.raises(ValueError, match=rf"as many of them: .*, now or since its state was kept: empty {folder}$"):
+        archive.fit(copies, checkpoint=folder)
 
 
 def test_progress_sees_each_round(few):
