@@ -305,6 +305,24 @@ def _require_fitting(uncertainty: str, weights: str | None, declared: dict[str, 
         raise ValueError("declared: errors are declared of a sample, with uncertainty='sample'")
 
 
+def _refusal(accumulator: _Accumulator, options: dict[str, Any]) -> str:
+    try:
+        accumulator.solve(**options)
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
+def _require_solvable(empty: _Accumulator, options: dict[str, Any]) -> None:
+    """What is wrong with options by themselves is said before anything is read: not by the end of all rounds."""
+    try:
+        refusal = _refusal(empty, options)
+    except TypeError as error:
+        raise TypeError(str(error).replace(f"{type(empty).__name__}.solve", "distributed.fit")) from None
+    if refusal != _refusal(empty, {}):  # that nothing was added yet
+        raise ValueError(refusal)
+
+
 @told_in_a_line("distributed.fit")
 def fit(
     files: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
@@ -360,15 +378,15 @@ def fit(
     _require_known(read)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise TypeError(f"client: expected a distributed.Client, not {type(client).__name__}")
-    kind.empty()  # refuses what makes no sense before anything is read
+    options: dict[str, Any] = {"powers": powers, "reflectance": reflectance, "minimum_norm": minimum_norm}
+    if uncertainty == "sample":
+        options["declared"] = declared or {}
+    options |= {"name": name, "attribution": attribution}
+    _require_solvable(kind.empty(), options)
     folder = None if checkpoint is None else os.path.abspath(os.fspath(checkpoint))
     if folder is not None:
         os.makedirs(folder, exist_ok=True)
     this = _Round(kind, "", skip_broken, folder, read, threads=0 if client is None else 1)
     accumulator, _, skipped = _rounds(paths, this, client, progress)
     assert accumulator is not None
-    options: dict[str, Any] = {"powers": powers, "reflectance": reflectance, "minimum_norm": minimum_norm}
-    if isinstance(accumulator, SampleFitAccumulator):
-        options["declared"] = declared or {}
-    result = accumulator.solve(**options, name=name, attribution=attribution)
-    return ArchiveFit(result, accumulator.samples, skipped)
+    return ArchiveFit(accumulator.solve(**options), accumulator.samples, skipped)

@@ -366,6 +366,28 @@ def test_what_files_cannot_be_fitted_with_is_refused(few, options, message):
         archive.fit(few, **options)
 
 
+@pytest.mark.parametrize(
+    "options, error, message",
+    [
+        (
+            {"declared": {"scal": 0.1}},
+            ValueError,
+            "declared has no 'scal', only 'scale', 'source_deg' and 'receiver_deg'$",
+        ),
+        (
+            {"reflectance": {532: "white"}},
+            TypeError,
+            "distributed.fit: reflectance: expected a dict {a number: a number}",
+        ),
+        ({"powers": 1.5}, TypeError, "distributed.fit: powers: expected a whole number, not float 1.5$"),
+    ],
+)
+def test_what_cannot_be_solved_with_is_refused_before_anything_is_read(few, monkeypatch, options, error, message):
+    monkeypatch.setattr(archive, "read_samples", lambda *_, **__: pytest.fail("read"))
+    with pytest.raises(error, match="^" + message):
+        archive.fit(few, **options)
+
+
 def test_one_worker_and_two_give_the_bits_of_this_process_in_all_rounds(few, sampled, tmp_path):
     cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
     for workers in (1, 2):
