@@ -15,6 +15,7 @@ import copy
 import hashlib
 import io
 import os
+import uuid
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -230,8 +231,8 @@ def _there(
     """By workers, in the order of the tree: each merge goes before the files after it, and nothing is held here that is
     merged, so that workers have few states at once."""
 
-    def sent(*task: Any) -> Any:
-        return client.submit(*task, pure=False, fifo_timeout="0 ms")
+    def sent(*task: Any, key: str | None = None) -> Any:
+        return client.submit(*task, pure=False, fifo_timeout="0 ms", key=key)
 
     there = sent(this.kind.of, begun.state())  # of a worker that dies it is made again
     watched: Any = None
@@ -242,7 +243,8 @@ def _there(
 
     def leaves() -> Iterator[Any]:
         for path, mark in files.items():
-            leaf = sent(_leaf, path, mark, there, this)
+            name = f"_leaf-{os.path.basename(path)}-{uuid.uuid4().hex}"  # which Dask names if workers die of it
+            leaf = sent(_leaf, path, mark, there, this, key=name)
             if watched is not None:
                 watched.add(leaf)
             yield leaf

@@ -406,9 +406,10 @@ class _Held:
     """A plugin of the scheduler: the most tasks of which workers held what came out."""
 
     def __init__(self):
-        self.now, self.most = set(), 0
+        self.now, self.most, self.names = set(), 0, set()
 
     def transition(self, key, start, finish, *_, **__):
+        self.names.add(key)
         (self.now.add if finish == "memory" else self.now.discard)(key)
         self.most = max(self.most, len(self.now))
 
@@ -430,6 +431,8 @@ def test_workers_hold_few_states_at_once_whatever_the_number_of_files(few, tmp_p
         fitted = archive.fit(many, client, **OPTIONS)
     assert fitted.samples == 40 * archive.fit(few, **OPTIONS).samples
     assert 1 < held.most < 60
+    for path in many:  # so that the error of one that kills workers says which it is
+        assert sum(f"-{path.name}-" in name for name in held.names) == 1
 
 
 def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):
