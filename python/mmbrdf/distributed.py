@@ -17,6 +17,7 @@ import io
 import os
 import uuid
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -253,7 +254,10 @@ def _there(
     if progress is not None:
         for _ in progress(watched):
             pass
-    result: _Part = root.result()
+    try:
+        result: _Part = root.result()
+    except CancelledError:  # with the name of a piece
+        raise ConnectionError("client: lost its scheduler; with checkpoint= another call continues") from None
     return result
 
 
@@ -380,6 +384,8 @@ def fit(
     _require_known(read)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise TypeError(f"client: expected a distributed.Client, not {type(client).__name__}")
+    if getattr(client, "asynchronous", False):
+        raise ValueError("client: is asynchronous, and would not be waited for: take a Client without that")
     options: dict[str, Any] = {"powers": powers, "reflectance": reflectance, "minimum_norm": minimum_norm}
     if uncertainty == "sample":
         options["declared"] = declared or {}

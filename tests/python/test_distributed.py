@@ -483,3 +483,27 @@ def test_a_worker_that_is_killed_in_each_round_leaves_the_bits_as_they_are(few, 
         fitted = archive.fit(few, client, declared={"scale": 0.003}, progress=killing)
     assert len(set(killed)) >= 4  # one in each round
     assert fitted.result.model.to_json() == sampled.result.model.to_json()
+
+
+def test_a_client_that_loses_its_scheduler_is_told_in_a_line(few, sampled, tmp_path):
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    with cluster_of.LocalCluster(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        client = cluster_of.Client(cluster)
+
+        def losing(watched):
+            yield next(iter(watched))
+            cluster.close()
+
+        with pytest.raises(
+            ConnectionError, match="^client: lost its scheduler; with checkpoint= another call continues$"
+        ):
+            archive.fit(few, client, declared={"scale": 0.003}, checkpoint=tmp_path, progress=losing)
+        client.close()
+    fitted = archive.fit(few, declared={"scale": 0.003}, checkpoint=tmp_path)
+    np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
+
+
+def test_a_client_that_is_asynchronous_is_refused(few):
+    client = type("Client", (), {"asynchronous": True, "submit": print})()
+    with pytest.raises(ValueError, match="^client: is asynchronous, and would not be waited for"):
+        archive.fit(few, client)
