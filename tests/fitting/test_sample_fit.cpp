@@ -336,6 +336,27 @@ TEST(SampleFit, RefusesWhatIsNotARoundOverTheSameSamples) {
   EXPECT_TRUE(sums.next_round());
 }
 
+TEST(SampleFit, RefusesOthersOfWhichOnlyWhatWasMeasuredInAnotherFrameDiffers) {
+  const auto measured = [](double m12) {
+    std::vector<Sample> samples = simulated(40);
+    for (Sample& sample : samples) {
+      sample.normalized.elements.fill(std::nan(""));
+      sample.normalized(0, 0) = 1;
+      sample.normalized(0, 1) = m12;
+      sample = from_frame(sample, Frame::sp);
+    }
+    return samples;
+  };
+  SampleFitAccumulator sums;
+  sums.add(measured(0.1));
+  ASSERT_TRUE(sums.next_round());
+  SampleFitAccumulator other = sums;
+  sums.add(measured(0.1));
+  EXPECT_TRUE(sums.next_round());
+  other.add(measured(0.2));
+  EXPECT_EQ(message_of([&] { other.next_round(); }), "round 2 was of other samples than round 1, as many of them");
+}
+
 TEST(SampleFit, RefusesWeightsThatNeedAllSamplesAndSamplesThatHaveNone) {
   EXPECT_EQ(message_of([] { SampleFitAccumulator({}, Weights::estimated); }),
             "weights estimated need all samples at once: take none or speckle, or fit()");
