@@ -15,7 +15,9 @@ import copy
 import hashlib
 import io
 import os
-from collections.abc import Callable, Iterable, Sequence
+import uuid
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -122,6 +124,13 @@ def _require_once(paths: Sequence[str]) -> None:
             raise ValueError(f"files: number {k} ({path}) is number {first} ({paths[first]}) again: leave one out")
 
 
+def _require_lasting(paths: Sequence[str]) -> None:
+    """Rounds read each file again, and of a pipe they would wait for ever."""
+    for path in paths:
+        if Path(path).is_fifo():
+            raise ValueError(f"files: {path} is a pipe, which can be read once: save it, or take uncertainty='noise'")
+
+
 def _saved_as(path: str, mark: _Mark, this: _Round) -> Path | None:
     """Another file for what was changed, or is read or fitted otherwise."""
     if this.checkpoint is None:
@@ -133,8 +142,11 @@ def _saved_as(path: str, mark: _Mark, this: _Round) -> Path | None:
 def _save(state: Any, path: Path) -> None:
     content = io.BytesIO()
     np.save(content, state)
-    with replacing(path) as beside:
-        beside.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+    try:
+        with replacing(path) as beside:
+            beside.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+    except OSError as error:  # of the folder, not of the file of samples
+        raise OSError(f"checkpoint {path.parent}: {error.strerror or error}") from None
 
 
 def _kept(path: Path | None, kind: _Kind) -> _Accumulator | None:
@@ -155,21 +167,16 @@ def _mark(path: str) -> _Mark:
     return _Mark(at.st_size, at.st_mtime_ns)
 
 
-def _added(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> _Accumulator:
+def _read(path: str, mark: _Mark, begun: _Accumulator, this: _Round) -> tuple[_Accumulator, bool]:
+    """And whether it was the same file all the while: otherwise the samples may be of two."""
     before = identity(path)
-    saved = _saved_as(path, mark, this)
-    kept = _kept(saved, this.kind)
-    if kept is not None:
-        return kept
-    accumulator = copy.deepcopy(begun)
+    result: Any = copy.deepcopy(begun)
     samples = read_samples(path, **this.options)
-    if isinstance(accumulator, SampleFitAccumulator):
-        accumulator.add(samples, threads=this.threads)
+    if isinstance(result, SampleFitAccumulator):
+        result.add(samples, threads=this.threads)
     else:
-        accumulator.add(samples)
-    if saved is not None and identity(path) == before and _mark(path) == mark:  # else the samples may be of two files
-        _save(accumulator.state(), saved)
-    return accumulator
+        result.add(samples)
+    return result, identity(path) == before and _mark(path) == mark
 
 
 def _leaf(path: str, before: _Mark | None, begun: _Accumulator, this: _Round) -> _Part:
@@ -178,12 +185,17 @@ def _leaf(path: str, before: _Mark | None, begun: _Accumulator, this: _Round) ->
         mark = _mark(path)
         if before is not None and mark != before:
             raise ValueError(f"{path}: changed since the first round over the files; fit again")
-        accumulator = _added(path, mark, begun, this)
+        saved = _saved_as(path, mark, this)
+        accumulator, is_new = _kept(saved, this.kind), False
+        if accumulator is None:
+            accumulator, is_new = _read(path, mark, begun, this)
     except (OSError, ValueError) as error:
         text = str(error) if os.path.basename(path) in str(error) else f"{path}: {error}"
         if this.skip_broken and before is None:
             return _Part(None, {}, {path: text})
         raise OSError(text) from None
+    if saved is not None and is_new:
+        _save(accumulator.state(), saved)
     return _Part(accumulator, {path: mark}, {})
 
 
@@ -196,33 +208,56 @@ def _merged(first: _Part, second: _Part) -> _Part:
     return _Part(result, read, skipped)
 
 
-def _here(parts: Iterable[_Part]) -> _Part:
-    """The same tree, with as many states in memory as it has levels."""
-    stack: list[tuple[int, _Part]] = []
+def _tree(parts: Iterable[Any], merged: Callable[[Any, Any], Any]) -> Any:
+    """Binary, over their order; no more parts at once than it has levels."""
+    stack: list[tuple[int, Any]] = []
     for part in parts:
         stack.append((1, part))
         while len(stack) > 1 and stack[-1][0] == stack[-2][0]:
             (size, first), (_, second) = stack[-2:]
-            stack[-2:] = [(2 * size, _merged(first, second))]
+            stack[-2:] = [(2 * size, merged(first, second))]
     while len(stack) > 1:
         (size, first), (more, second) = stack[-2:]
-        stack[-2:] = [(size + more, _merged(first, second))]
+        stack[-2:] = [(size + more, merged(first, second))]
     return stack[0][1]
 
 
-def _there(client: distributed.Client, leaves: Sequence[Any], progress: Callable[[Any], Any] | None) -> _Part:
-    level = list(leaves)
+def _there(
+    client: distributed.Client,
+    files: dict[str, _Mark | None],
+    begun: _Accumulator,
+    this: _Round,
+    progress: Callable[[Any], Any] | None,
+) -> _Part:
+    """By workers, in the order of the tree: each merge goes before the files after it, and nothing is held here that is
+    merged, so that workers have few states at once."""
+
+    def sent(*task: Any, key: str | None = None) -> Any:
+        return client.submit(*task, pure=False, fifo_timeout="0 ms", key=key)
+
+    there = sent(this.kind.of, begun.state())  # of a worker that dies it is made again
+    watched: Any = None
     if progress is not None:
         from distributed import as_completed
 
-        watched = as_completed(list(leaves))
-    while len(level) > 1:
-        pairs = [client.submit(_merged, a, b, pure=False) for a, b in zip(level[::2], level[1::2])]
-        level = pairs + level[len(pairs) * 2 :]
+        watched = as_completed()
+
+    def leaves() -> Iterator[Any]:
+        for path, mark in files.items():
+            name = f"_leaf-{os.path.basename(path)}-{uuid.uuid4().hex}"  # which Dask names if workers die of it
+            leaf = sent(_leaf, path, mark, there, this, key=name)
+            if watched is not None:
+                watched.add(leaf)
+            yield leaf
+
+    root = _tree(leaves(), lambda first, second: sent(_merged, first, second))
     if progress is not None:
         for _ in progress(watched):
             pass
-    result: _Part = level[0].result()
+    try:
+        result: _Part = root.result()
+    except CancelledError:  # with the name of a piece
+        raise ConnectionError("client: lost its scheduler; with checkpoint= another call continues") from None
     return result
 
 
@@ -236,11 +271,21 @@ def _of_all(
     """One round."""
     if client is None:
         each: Iterable[str] = files if progress is None else progress(list(files))
-        return _here(_leaf(path, files[path], begun, this) for path in each)
-    there = client.submit(this.kind.of, begun.state(), pure=False)  # of a worker that dies it is made again
-    return _there(
-        client, [client.submit(_leaf, path, mark, there, this, pure=False) for path, mark in files.items()], progress
-    )
+        part: _Part = _tree((_leaf(path, files[path], begun, this) for path in each), _merged)
+        return part
+    return _there(client, files, begun, this, progress)
+
+
+def _goes_on(accumulator: SampleFitAccumulator, checkpoint: str | None) -> bool:
+    try:
+        return accumulator.next_round()
+    except ValueError as error:
+        if "of other samples" not in str(error):
+            raise
+        why = "a file was changed, but not its size and time"
+        if checkpoint is not None:
+            why += f", now or since its state was kept: empty {checkpoint}"
+        raise ValueError(f"files: {error}: {why}") from None
 
 
 def _rounds(
@@ -250,7 +295,7 @@ def _rounds(
     if part.accumulator is None:
         raise ValueError(f"files: none of {len(paths)} can be read; the first: {next(iter(part.skipped.values()))}")
     skipped = part.skipped
-    while isinstance(part.accumulator, SampleFitAccumulator) and part.accumulator.next_round():
+    while isinstance(part.accumulator, SampleFitAccumulator) and _goes_on(part.accumulator, this.checkpoint):
         begun = part.accumulator
         this = this._replace(begun=hashlib.sha256(begun.state().tobytes()).hexdigest())
         part = _of_all(dict(part.read), begun, this, client, progress)
@@ -264,6 +309,24 @@ def _require_fitting(uncertainty: str, weights: str | None, declared: dict[str, 
         raise ValueError(f"weights {weights!r}: with uncertainty='noise' files are fitted with weights='none' alone")
     if uncertainty == "noise" and declared:
         raise ValueError("declared: errors are declared of a sample, with uncertainty='sample'")
+
+
+def _refusal(accumulator: _Accumulator, options: dict[str, Any]) -> str:
+    try:
+        accumulator.solve(**options)
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
+def _require_solvable(empty: _Accumulator, options: dict[str, Any]) -> None:
+    """What is wrong with options by themselves is said before anything is read: not by the end of all rounds."""
+    try:
+        refusal = _refusal(empty, options)
+    except TypeError as error:
+        raise TypeError(str(error).replace(f"{type(empty).__name__}.solve", "distributed.fit")) from None
+    if refusal != _refusal(empty, {}):  # that nothing was added yet
+        raise ValueError(refusal)
 
 
 @told_in_a_line("distributed.fit")
@@ -315,19 +378,23 @@ def fit(
         raise ValueError("files: none")
     _require_once(paths)
     _require_fitting(uncertainty, weights, declared)
+    if uncertainty == "sample":
+        _require_lasting(paths)
     kind = _Kind(basis, two_orders(orders), mapping, as_printed, uncertainty, weights)
     _require_known(read)
     if client is not None and not callable(getattr(client, "submit", None)):
         raise TypeError(f"client: expected a distributed.Client, not {type(client).__name__}")
-    kind.empty()  # refuses what makes no sense before anything is read
+    if getattr(client, "asynchronous", False):
+        raise ValueError("client: is asynchronous, and would not be waited for: take a Client without that")
+    options: dict[str, Any] = {"powers": powers, "reflectance": reflectance, "minimum_norm": minimum_norm}
+    if uncertainty == "sample":
+        options["declared"] = declared or {}
+    options |= {"name": name, "attribution": attribution}
+    _require_solvable(kind.empty(), options)
     folder = None if checkpoint is None else os.path.abspath(os.fspath(checkpoint))
     if folder is not None:
         os.makedirs(folder, exist_ok=True)
     this = _Round(kind, "", skip_broken, folder, read, threads=0 if client is None else 1)
     accumulator, _, skipped = _rounds(paths, this, client, progress)
     assert accumulator is not None
-    options: dict[str, Any] = {"powers": powers, "reflectance": reflectance, "minimum_norm": minimum_norm}
-    if isinstance(accumulator, SampleFitAccumulator):
-        options["declared"] = declared or {}
-    result = accumulator.solve(**options, name=name, attribution=attribution)
-    return ArchiveFit(result, accumulator.samples, skipped)
+    return ArchiveFit(accumulator.solve(**options), accumulator.samples, skipped)

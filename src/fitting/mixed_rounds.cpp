@@ -72,6 +72,9 @@ std::uint64_t digest_of(const Sample& sample) {
                               sample.geometry.reflected.theta, sample.geometry.reflected.phi, sample.f11})
     mix(number);
   for (const double number : sample.normalized.elements) mix(number);
+  if (!sample.as_measured) return result;
+  mix(static_cast<double>(sample.as_measured->frame) + 1);
+  for (const double number : sample.as_measured->normalized.elements) mix(number);
   return result;
 }
 

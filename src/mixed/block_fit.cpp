@@ -26,12 +26,12 @@ double first_noise(const Gram& gram, const std::vector<Index>& kept) {
   return std::max(left, 1e-3 * gram.yy) / static_cast<double>(gram.n);
 }
 
-BlockFit fitted(const MixedColumns& columns, const Gram& gram, const Block& evaluated, const Prior& prior,
-                const Estimate& estimate) {
+BlockFit fitted(const MixedColumns& columns, const Gram& gram, const Parts& parts, const Block& evaluated,
+                const Prior& prior, const Estimate& estimate) {
   const Index count = columns.isotropic_count(), hyper = prior.mean.size();
   const std::vector<Index> kept = columns_of(evaluated, columns.isotropic());
   const auto& [at, evidence, evaluations] = estimate;
-  const VectorXd roots = prior.variances(at.head(hyper)).cwiseSqrt();
+  const VectorXd variances = prior.variances(at.head(hyper)), roots = variances.cwiseSqrt();
   BlockFit result;
   result.evaluations = evaluations;
   BlockPosterior& p = result.posterior;
@@ -43,9 +43,11 @@ BlockFit fitted(const MixedColumns& columns, const Gram& gram, const Block& eval
   const MatrixXd& inverse = evidence.inverse.matrix;
   result.covariance =
       roots.head(count).asDiagonal() * inverse.topLeftCorner(count, count) * roots.head(count).asDiagonal();
-  const MatrixXd shared = roots.head(count).asDiagonal() *
-                          (inverse.topRows(count) * (roots.asDiagonal() * gram.d)).eval() / p.noise_variance;
-  for (Index i = 0; i < shared.size(); ++i) p.shared.push_back(static_cast<float>(shared.data()[i]));
+  for (Index error = 0; error < gram.d.cols(); ++error) {
+    const VectorXd b = roots.cwiseProduct(gram.d.col(error)) / p.noise_variance,
+                   shared = roots.cwiseProduct(solved(gram.g, parts, variances, p.noise_variance, evidence.inverse, b));
+    for (Index i = 0; i < count; ++i) p.shared.push_back(static_cast<float>(shared(i)));
+  }
   const VectorXd a = projection(columns, kept) * evidence.mean.head(count);
   result.coefficients.assign(a.data(), a.data() + a.size());
   return result;
@@ -93,7 +95,7 @@ BlockFit fit_block(const MixedColumns& columns, const Gram& gram, const Block& e
   const Prior prior = prior_of(columns);
   const Parts parts = parts_of(gram.g, columns.calibration_count());
   const double noise = first_noise(gram, columns_of(evaluated, columns.isotropic()));
-  return fitted(columns, gram, evaluated, prior, estimate(gram, parts, prior, noise));
+  return fitted(columns, gram, parts, evaluated, prior, estimate(gram, parts, prior, noise));
 }
 
 // C = S R Rᵀ S, the rows of R of norm 1: correlations are those of rows, which rounding turns by some 1e-4.
@@ -110,7 +112,7 @@ void round_covariance(BlockPosterior& posterior, const MatrixXd& covariance) {
 BlockFit fit_block_at(const MixedColumns& columns, const Gram& gram, const Block& evaluated, const LogVariances& at) {
   const Prior prior = prior_of(columns);
   const Parts parts = parts_of(gram.g, columns.calibration_count());
-  return fitted(columns, gram, evaluated, prior, {at, evidence(gram, parts, prior, at), 1});
+  return fitted(columns, gram, parts, evaluated, prior, {at, evidence(gram, parts, prior, at), 1});
 }
 
 }  // namespace mmbrdf

@@ -31,6 +31,25 @@ Index root_of(std::vector<Index>& above, Index j) {
   return j;
 }
 
+/// G x, as if columns of different parts had no products: as inverse_of() takes them.
+VectorXd product(const MatrixXd& g, const Parts& parts, const VectorXd& x) {
+  VectorXd result = VectorXd::Zero(x.size());
+  for (const std::vector<Index>& part : parts.columns)
+    for (auto k = part.begin(); k != part.end(); ++k) {
+      double row = g(*k, *k) * x(*k);
+      for (auto j = k + 1; j != part.end(); ++j) {
+        result(*j) += g(*j, *k) * x(*k);
+        row += g(*j, *k) * x(*j);
+      }
+      result(*k) += row;
+    }
+  for (const Index c : parts.border) {
+    result.head(c) += x(c) * g.row(c).head(c).transpose();
+    result(c) = g.row(c).head(c + 1).dot(x.head(c + 1));
+  }
+  return result;
+}
+
 /// Steps and changes of the gradient, from which curvature is learnt (Nocedal and Wright, algorithm 7.4); where none is
 /// known it is Fisher's information.
 class Curvature {
@@ -137,6 +156,15 @@ Inverse inverse_of(const MatrixXd& g, const Parts& parts, const VectorXd& varian
   return result;
 }
 
+// The product with the inverse alone is off by the rounding of the inverse times b, which is as large as A: where
+// readings leave columns open by parts of the prior, not of the solution. What it leaves of b mends that.
+VectorXd solved(const MatrixXd& g, const Parts& parts, const VectorXd& variances, double noise, const Inverse& inverse,
+                const VectorXd& b) {
+  const VectorXd roots = variances.cwiseSqrt();
+  const VectorXd x = inverse.matrix * b;
+  return x + inverse.matrix * (b - x - roots.cwiseProduct(product(g, parts, roots.cwiseProduct(x))) / noise);
+}
+
 Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, const LogVariances& at) {
   const Index count = prior.mean.size(), size = gram.z.size();
   const double noise = std::exp(at(count)), n = static_cast<double>(gram.n);
@@ -149,14 +177,15 @@ Evidence evidence(const Gram& gram, const Parts& parts, const Prior& prior, cons
     return result;
   }
   const MatrixXd& inverse = result.inverse.matrix;
-  const VectorXd m = inverse * roots.cwiseProduct(gram.z) / noise, r = inverse.diagonal();
+  const VectorXd m = solved(gram.g, parts, v, noise, result.inverse, roots.cwiseProduct(gram.z) / noise),
+                 r = inverse.diagonal();
   result.mean = roots.cwiseProduct(m);
-  const double explained = gram.z.dot(result.mean);
-  result.alone = -0.5 * (n * at(count) + result.inverse.log_determinant + (gram.yy - explained) / noise);
+  // ‖y − Xμ‖² = yy − zᵀμ − μᵀ(z − Gμ), and (yy − zᵀμ) / s² = ‖y − Xμ‖² / s² + mᵀm, which an error of μ changes little
+  const double residual =
+      gram.yy - gram.z.dot(result.mean) - result.mean.dot(gram.z - product(gram.g, parts, result.mean));
+  result.alone = -0.5 * (n * at(count) + result.inverse.log_determinant + residual / noise + m.squaredNorm());
   const VectorXd pull = (theta - prior.mean).cwiseQuotient(prior.deviation);
   result.value = result.alone - 0.5 * pull.squaredNorm();
-  // ‖y − Xμ‖² = yy − zᵀμ − μᵀ(z − Gμ), and z − Gμ = s² L⁻¹ m
-  const double residual = gram.yy - explained - noise * m.squaredNorm();
   result.gradient.resize(count + 1);
   result.gradient.head(count) = prior.design.transpose() * (0.5 * (m.array().square() - 1 + r.array())).matrix() -
                                 pull.cwiseQuotient(prior.deviation);

@@ -51,6 +51,10 @@ struct Inverse {
 };
 Inverse inverse_of(const Eigen::MatrixXd& g, const Parts& parts, const Eigen::VectorXd& variances, double noise);
 
+/// A⁻¹ b, of an inverse_of() these.
+Eigen::VectorXd solved(const Eigen::MatrixXd& g, const Parts& parts, const Eigen::VectorXd& variances, double noise,
+                       const Inverse& inverse, const Eigen::VectorXd& b);
+
 struct Evidence {
   double value = 0;             ///< with the hyperprior: less ½ Σ ((θ − mean) / deviation)²
   double alone = 0;             ///< without it

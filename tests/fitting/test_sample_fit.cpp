@@ -203,6 +203,36 @@ TEST(SampleFit, IsSoOfSamplesOfWhichABlockWasNotMeasured) {
   expect_same_fit(samples);
 }
 
+/// All at one incidence, in degrees: what others would tell is left to the prior.
+std::vector<Sample> at_incidence(double theta_i, int count) {
+  std::vector<Geometry> geometries = random_geometries(count, 7);
+  for (Geometry& g : geometries) g.incident = direction_from_degrees(theta_i, 0);
+  return simulate(material("ptfe"), std::vector{0.532}, geometries, 0.006, 7);
+}
+
+/// Of what readings leave open coefficients are as uncertain as the prior: values are the same in parts of u.
+TEST(SampleFit, IsSoOfOneIncidence) {
+  for (const double theta_i : {0.001, 45.0}) {
+    const std::vector<Sample> samples = at_incidence(theta_i, 300);
+    const FitResult found = in_parts(samples).solve(), expected = in_memory(samples);
+    const PreparedModel a = prepare(found.model, 0.532), b = prepare(expected.model, 0.532);
+    const PreparedUncertainty u = prepare_uncertainty(found.model, 0.532),
+                              v = prepare_uncertainty(expected.model, 0.532);
+    double apart = 0, ratio = 1;
+    for (const Geometry& g : halton_directions(100, 0, 70)) {
+      const Mueller c = standard_uncertainty(u.normalized(g)), d = standard_uncertainty(v.normalized(g));
+      const Mueller m = a.evaluate(g), n = b.evaluate(g);
+      for (std::size_t e = 0; e < 16; ++e) {
+        const double difference = e == 0 ? m(0, 0) - n(0, 0) : m.elements[e] / m(0, 0) - n.elements[e] / n(0, 0);
+        apart = std::max(apart, std::abs(difference) / d.elements[e]);
+        ratio = std::max(ratio, std::abs(c.elements[e] / d.elements[e]));
+      }
+    }
+    EXPECT_LT(apart, 10 * sample_fit_tolerance) << theta_i;
+    EXPECT_LT(ratio, 1 + 10 * sample_fit_tolerance) << theta_i;
+  }
+}
+
 TEST(SampleFit, IsSoOfThePublishedGrid) {
   if (published("PTFE.data.csv").empty()) GTEST_SKIP() << absent("PTFE.data.csv");
   expect_same_fit(at_wavelengths(read_samples(published("PTFE.data.csv")), std::array{0.532}));
@@ -338,6 +368,27 @@ TEST(SampleFit, RefusesWhatIsNotARoundOverTheSameSamples) {
   sums.add(std::span(samples).subspan(20));
   sums.add(std::span(samples).first(20));
   EXPECT_TRUE(sums.next_round());
+}
+
+TEST(SampleFit, RefusesOthersOfWhichOnlyWhatWasMeasuredInAnotherFrameDiffers) {
+  const auto measured = [](double m12) {
+    std::vector<Sample> samples = simulated(40);
+    for (Sample& sample : samples) {
+      sample.normalized.elements.fill(std::nan(""));
+      sample.normalized(0, 0) = 1;
+      sample.normalized(0, 1) = m12;
+      sample = from_frame(sample, Frame::sp);
+    }
+    return samples;
+  };
+  SampleFitAccumulator sums;
+  sums.add(measured(0.1));
+  ASSERT_TRUE(sums.next_round());
+  SampleFitAccumulator other = sums;
+  sums.add(measured(0.1));
+  EXPECT_TRUE(sums.next_round());
+  other.add(measured(0.2));
+  EXPECT_EQ(message_of([&] { other.next_round(); }), "round 2 was of other samples than round 1, as many of them");
 }
 
 TEST(SampleFit, RefusesWeightsThatNeedAllSamplesAndSamplesThatHaveNone) {

@@ -46,20 +46,9 @@ def test_files_fitted_together_are_one_fit(files, plain):
     np.testing.assert_allclose(plain, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("count", range(1, 8))
-def test_the_tree_depends_on_the_number_of_files_alone(count):
-    """In this process it is that of levels, in which an odd one out goes up as it is."""
-
-    level = [str(k) for k in range(count)]
-    while len(level) > 1:
-        pairs = [f"({a}{b})" for a, b in zip(level[::2], level[1::2])]
-        level = pairs + level[len(pairs) * 2 :]
-    merged = archive._merged
-    try:
-        archive._merged = lambda a, b: f"({a}{b})"
-        assert archive._here(str(k) for k in range(count)) == level[0]
-    finally:
-        archive._merged = merged
+def test_the_tree_is_binary_over_the_order_of_the_files():
+    tree = archive._tree(map(str, range(7)), lambda first, second: f"({first}{second})")
+    assert tree == "(((01)(23))((45)6))"
 
 
 def test_a_broken_file_is_named_and_left_out_only_if_that_was_asked(files, plain, tmp_path):
@@ -163,6 +152,13 @@ def test_a_file_that_is_there_twice_is_refused(files, tmp_path):
         archive.fit([files[0], tmp_path / "other.csv"], **OPTIONS)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_a_pipe_is_refused_by_fits_that_read_it_in_rounds(tmp_path):
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(ValueError, match=r"^files: .*pipe.csv is a pipe, which can be read once: save it, or take "):
+        archive.fit(tmp_path / "pipe.csv")
+
+
 @pytest.mark.parametrize("damage", ["empty", "cut", "other", "flipped"])
 def test_a_damaged_state_is_made_again_and_its_file_is_not_left_out(files, plain, tmp_path, damage):
     archive.fit(files, checkpoint=tmp_path, **OPTIONS)
@@ -212,10 +208,13 @@ def test_nor_is_that_of_a_file_that_is_replaced_by_one_of_the_same_size_and_time
     assert list(folder.iterdir()) == []
 
 
-def test_a_state_that_cannot_be_written_leaves_nothing_behind(files, tmp_path, monkeypatch):
+@pytest.mark.parametrize("skip_broken", [False, True])
+def test_a_state_that_cannot_be_written_leaves_nothing_behind_nor_its_file_out(
+    files, tmp_path, monkeypatch, skip_broken
+):
     monkeypatch.setattr(os, "replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
-    with pytest.raises(OSError, match="No space left"):
-        archive.fit(files[:1], checkpoint=tmp_path, **OPTIONS)
+    with pytest.raises(OSError, match=rf"^checkpoint {tmp_path}: No space left on device$"):
+        archive.fit(files[:2], checkpoint=tmp_path, skip_broken=skip_broken, **OPTIONS)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -319,8 +318,27 @@ def test_a_file_with_other_samples_under_the_same_mark_is_refused_too(few, monke
         return read(few[1] if len(asked) > 3 and path == str(few[0]) else path, **options)
 
     monkeypatch.setattr(archive, "read_samples", other)
-    with pytest.raises(ValueError, match=r"^round 2 was of other samples than round 1, \d+ of them in place of \d+$"):
+    with pytest.raises(
+        ValueError,
+        match=r"^files: round 2 was of other samples than round 1, \d+ of them in place of \d+: a file was changed, "
+        r"but not its size and time$",
+    ):
         archive.fit(few)
+
+
+def test_a_state_of_a_file_that_was_changed_under_the_same_mark_is_told_from_its_folder(few, tmp_path):
+    folder, copies = tmp_path / "states", [tmp_path / path.name for path in few]
+    for path, copy in zip(few, copies):
+        copy.write_bytes(path.read_bytes())
+    archive.fit(copies, checkpoint=folder)
+    at = copies[1].stat()
+    copies[1].write_bytes(copies[1].read_bytes().replace(b"0.1", b"0.2"))
+    os.utime(copies[1], ns=(at.st_atime_ns, at.st_mtime_ns))
+    for path in folder.iterdir():  # of the first round one is there
+        if np.load(path)[8] > 1:
+            path.unlink()
+    with pytest.raises(ValueError, match=rf"as many of them: .*, now or since its state was kept: empty {folder}$"):
+        archive.fit(copies, checkpoint=folder)
 
 
 def test_progress_sees_each_round(few):
@@ -348,6 +366,28 @@ def test_what_files_cannot_be_fitted_with_is_refused(few, options, message):
         archive.fit(few, **options)
 
 
+@pytest.mark.parametrize(
+    "options, error, message",
+    [
+        (
+            {"declared": {"scal": 0.1}},
+            ValueError,
+            "declared has no 'scal', only 'scale', 'source_deg' and 'receiver_deg'$",
+        ),
+        (
+            {"reflectance": {532: "white"}},
+            TypeError,
+            "distributed.fit: reflectance: expected a dict {a number: a number}",
+        ),
+        ({"powers": 1.5}, TypeError, "distributed.fit: powers: expected a whole number, not float 1.5$"),
+    ],
+)
+def test_what_cannot_be_solved_with_is_refused_before_anything_is_read(few, monkeypatch, options, error, message):
+    monkeypatch.setattr(archive, "read_samples", lambda *_, **__: pytest.fail("read"))
+    with pytest.raises(error, match="^" + message):
+        archive.fit(few, **options)
+
+
 def test_one_worker_and_two_give_the_bits_of_this_process_in_all_rounds(few, sampled, tmp_path):
     cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
     for workers in (1, 2):
@@ -360,6 +400,39 @@ def test_one_worker_and_two_give_the_bits_of_this_process_in_all_rounds(few, sam
             fitted = archive.fit(few, client, declared={"scale": 0.003})
         np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
         assert fitted.result.model.to_json() == sampled.result.model.to_json()
+
+
+class _Held:
+    """A plugin of the scheduler: the most tasks of which workers held what came out."""
+
+    def __init__(self):
+        self.now, self.most, self.names = set(), 0, set()
+
+    def transition(self, key, start, finish, *_, **__):
+        self.names.add(key)
+        (self.now.add if finish == "memory" else self.now.discard)(key)
+        self.most = max(self.most, len(self.now))
+
+
+def test_workers_hold_few_states_at_once_whatever_the_number_of_files(few, tmp_path):
+    """Half a dozen levels of a tree, and what runs; not the states of all files."""
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    many = [tmp_path / f"{k}_{path.name}" for k in range(40) for path in few]
+    for k, path in enumerate(many):
+        os.link(few[k % len(few)], path)
+    held = type("Held", (_Held, cluster_of.SchedulerPlugin), {})()
+    with (
+        cluster_of.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+        ) as cluster,
+        cluster_of.Client(cluster) as client,
+    ):
+        cluster.scheduler.add_plugin(held)
+        fitted = archive.fit(many, client, **OPTIONS)
+    assert fitted.samples == 40 * archive.fit(few, **OPTIONS).samples
+    assert 1 < held.most < 60
+    for path in many:  # so that the error of one that kills workers says which it is
+        assert sum(f"-{path.name}-" in name for name in held.names) == 1
 
 
 def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, plain, tmp_path):
@@ -386,3 +459,51 @@ def test_workers_and_workers_that_are_killed_leave_the_bits_as_they_are(files, p
         expected = archive.fit(many, **OPTIONS)
         np.testing.assert_array_equal(coefficients(found[0]), coefficients(expected))
         assert found[0].samples == expected.samples
+
+
+def test_a_worker_that_is_killed_in_each_round_leaves_the_bits_as_they_are(few, sampled, tmp_path):
+    """It takes a piece that is done, what it made of others, and its copy of what the rounds before have found."""
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    killed = []
+    with (
+        cluster_of.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+        ) as cluster,
+        cluster_of.Client(cluster) as client,
+    ):
+
+        def killing(watched):
+            for count, piece in enumerate(watched):
+                holders = client.who_has([piece])[piece.key] if count == 0 else ()
+                for worker in holders:
+                    killed.append(client.run(os.getpid, workers=[worker])[worker])
+                    os.kill(killed[-1], signal.SIGKILL)
+                yield piece
+
+        fitted = archive.fit(few, client, declared={"scale": 0.003}, progress=killing)
+    assert len(set(killed)) >= 4  # one in each round
+    assert fitted.result.model.to_json() == sampled.result.model.to_json()
+
+
+def test_a_client_that_loses_its_scheduler_is_told_in_a_line(few, sampled, tmp_path):
+    cluster_of = pytest.importorskip("distributed", reason="no distributed: ./dev packages clusters")
+    with cluster_of.LocalCluster(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        client = cluster_of.Client(cluster)
+
+        def losing(watched):
+            yield next(iter(watched))
+            cluster.close()
+
+        with pytest.raises(
+            ConnectionError, match="^client: lost its scheduler; with checkpoint= another call continues$"
+        ):
+            archive.fit(few, client, declared={"scale": 0.003}, checkpoint=tmp_path, progress=losing)
+        client.close()
+    fitted = archive.fit(few, declared={"scale": 0.003}, checkpoint=tmp_path)
+    np.testing.assert_array_equal(coefficients(fitted), coefficients(sampled))
+
+
+def test_a_client_that_is_asynchronous_is_refused(few):
+    client = type("Client", (), {"asynchronous": True, "submit": print})()
+    with pytest.raises(ValueError, match="^client: is asynchronous, and would not be waited for"):
+        archive.fit(few, client)

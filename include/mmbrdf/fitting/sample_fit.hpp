@@ -73,7 +73,8 @@ class SampleFitAccumulator {
 };
 
 /// Of coefficients, in parts of the largest of a block, and ten times of it of u: how far orders and parts take a search
-/// that ends where a step promises less evidence than 1e-8.
+/// that ends where a step promises less evidence than 1e-8. Where samples leave much open, as those of one incidence, of values
+/// ten times of it in parts of u.
 inline constexpr double sample_fit_tolerance = 1e-7;
 
 }  // namespace mmbrdf
