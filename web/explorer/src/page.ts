@@ -2,6 +2,7 @@
 // The page: one state, which controls, pictures, words and the link show.
 import type { Mmbrdf } from "mmbrdf";
 
+import { Address } from "./address";
 import { showMatrix, showTables } from "./answer";
 import { standalone } from "./chart";
 import { Controls } from "./controls";
@@ -25,6 +26,7 @@ export class Page {
   readonly #shelf: Shelf;
   readonly #hemispheres: Hemispheres;
   readonly #controls: Controls;
+  readonly #address = new Address(() => this.#calm());
   readonly #beside = new Beside();
   #shown!: Shown;
   #other?: Shown;
@@ -36,6 +38,7 @@ export class Page {
   #curves?: Curves[];
   #asked = 0; // number of the last question to the worker
   #busy = true; // the worker answers one question at a time
+  #open = true; // what is shown has not all its answers
   #drawing = false;
   #failed = false; // to show the state
   #chart = "";
@@ -196,7 +199,8 @@ export class Page {
     if (!blocks.includes(state.block)) state.block = blocks[0];
     this.#controls.showBlocks(blocks, state.block);
     element("facts").textContent = `${model.basis}. Fitted: ${model.fittedRange}.`;
-    history.replaceState(null, "", toLink(state));
+    this.#address.show(toLink(state));
+    element("link-state").textContent = ""; // that was another link
     const file = this.#shelf.files.get(state.model);
     const named = file ? { ...state, model: file.path } : state; // what the program calls it
     element("program").textContent = programLines(named, this.#along, Boolean(file), this.#compared());
@@ -227,9 +231,16 @@ export class Page {
 
   #ask() {
     this.#asked += 1;
+    this.#open = true;
     document.body.dataset.busy = "true";
     this.#waiting(["quantities", "parts", "chart"], true);
     if (!this.#busy) this.#send("numbers");
+  }
+
+  /** Nothing more will change of itself, if nothing is open and the address bar has the link. */
+  #calm(open = this.#open) {
+    this.#open = open;
+    if (!open && !this.#address.waits) delete document.body.dataset.busy;
   }
 
   /** Whether what is computed beside is of an earlier question. */
@@ -253,7 +264,7 @@ export class Page {
     if (this.#asked === 0) return; // the worker was faster than the first picture
     if (id !== this.#asked) return this.#send("numbers");
     if (error !== undefined) {
-      delete document.body.dataset.busy;
+      this.#calm(false);
       return this.#trouble(error);
     }
     if (numbers) {
@@ -263,7 +274,7 @@ export class Page {
       this.#matrix();
       return this.#send("curves");
     }
-    delete document.body.dataset.busy;
+    this.#calm(false);
     this.#curves = curves!;
     this.#waiting(["chart"], false);
     this.#chart = showCurve(this.#drawn(curves!));

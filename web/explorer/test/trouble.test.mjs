@@ -91,6 +91,27 @@ for (const [asked, line, shown] of [
     assert.deepEqual(complaints, []);
   });
 
+test("the address bar is changed a few times a second, and has the link of what is shown in the end", { skip }, async () => {
+  const { page } = await opened(chromium);
+  await settled(page);
+  const changes = await page.evaluate(async () => {
+    let count = 0;
+    const replace = history.replaceState.bind(history);
+    history.replaceState = (...to) => ((count += 1), replace(...to));
+    const field = document.getElementById("phiI");
+    for (let i = 1; i <= 40; ++i) {
+      field.value = String(i);
+      field.dispatchEvent(new Event("input", { bubbles: true }));
+      await new Promise(requestAnimationFrame);
+      await new Promise((done) => setTimeout(done, 10));
+    }
+    return { count, seconds: performance.now() / 1000 };
+  });
+  assert.ok(changes.count <= 3 * changes.seconds + 1, `${changes.count} in less than ${changes.seconds} s`);
+  await settled(page);
+  assert.match(page.url(), /[#&]phiI=40(&|$)/);
+});
+
 test("while uncertainties are computed, older numbers are marked, and no file is made of them", { skip }, async () => {
   const { page } = await opened(chromium);
   await settled(page);
