@@ -261,7 +261,7 @@ export class Page {
   #answered({ id, error, numbers, curves }: Reply) {
     this.#busy = false;
     if (id === 0 && error !== undefined) return this.#trouble(`Uncertainties cannot be computed: ${error}`);
-    if (this.#asked === 0) return; // the worker was faster than the first picture
+    if (this.#asked === 0 || this.#drawing) return; // what is to be drawn will ask
     if (id !== this.#asked) return this.#send("numbers");
     if (error !== undefined) {
       this.#calm(false);
