@@ -13,7 +13,7 @@ import { type Incidence, Measured, type Near, nothing } from "./measured";
 import { Shelf, Shown } from "./models";
 import { Residuals } from "./residuals";
 import { type Along, along } from "./scan";
-import { choices, fromLink, start, type State, toLink, understood } from "./state";
+import { type Asked, choices, fromLink, start, type State, toLink, understood } from "./state";
 import { csv, type Named, pictureWords, programLines, pythonLines, save } from "./take";
 import type { Curves, Numbers, Question, Reply } from "./worker";
 import Beside from "./worker?worker&inline";
@@ -47,14 +47,15 @@ export class Page {
     readonly mmbrdf: Mmbrdf,
     wasm: Uint8Array,
   ) {
-    this.state = fromLink(location.hash);
+    const asked = fromLink(location.hash);
+    this.state = asked.state;
     this.#shelf = new Shelf(mmbrdf);
     this.#hemispheres = new Hemispheres(mmbrdf, (what, [theta, phi]) =>
       this.change(what === "source" ? { thetaI: theta, phiI: phi } : { thetaR: theta, phiR: phi }),
     );
     this.#controls = new Controls(mmbrdf, this);
     this.#listen();
-    this.open(this.state.model, this.state, true);
+    this.open(this.state.model, asked, true);
     this.#beside.onmessage = ({ data }: MessageEvent<Reply>) => this.#answered(data);
     this.#beside.onerror = () => this.#trouble("Uncertainties cannot be computed: this browser starts no worker");
     this.#beside.postMessage({ wasm });
@@ -78,7 +79,7 @@ export class Page {
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;
       const asked = fromLink(location.hash);
-      this.open(asked.model, asked);
+      this.open(asked.state.model, asked);
     });
   }
 
@@ -113,7 +114,7 @@ export class Page {
   }
 
   /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
-  open(name: string, asked?: State, first = false) {
+  open(name: string, asked?: Asked, first = false) {
     let line = "";
     try {
       const shown = this.#opened(name);
@@ -136,7 +137,7 @@ export class Page {
     this.#trouble(line);
     const known = this.#shown.model.wavelengths;
     const inside = known.length && this.state.wavelength >= known[0] && this.state.wavelength <= known[known.length - 1];
-    const wavelength = first || inside || !known.length ? this.state.wavelength : known[0];
+    const wavelength = asked?.named.has("wavelength") || inside || !known.length ? this.state.wavelength : known[0];
     this.change({ model: name, wavelength });
   }
 

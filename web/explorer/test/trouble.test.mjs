@@ -74,6 +74,9 @@ for (const [asked, line, shown] of [
   ["phiR=1e300", /^phiR = 1e\+300 .*: 180 is shown\.$/, { phiR: "180" }],
   [`limits=${no_limits}`, /^limits of the link must be 16 pairs/, {}],
   ["limits=1,2", /^limits of the link must be 16 pairs/, {}],
+  ["wavelength=6OO", /^wavelength = 6OO of the link must be a number: 532 is shown\.$/, { wavelength: "532" }],
+  ["wavelength=300", /^$/, { wavelength: "300" }], // beyond the fitted range, as asked for
+  ["frame=s&wave=600&digits=1", /^wave of the link means nothing here\. digits = 1 .* true or false: false .*\. frame = s .* one of xy, sp, scattering_plane: xy is shown\.$/, {}],
 ])
   test(`a link with ${asked.slice(0, 40)} shows a page that lives`, { skip }, async () => {
     const { page, complaints } = await opened(chromium, { hash: `#${asked}` });
@@ -90,6 +93,12 @@ for (const [asked, line, shown] of [
     await look();
     assert.deepEqual(complaints, []);
   });
+
+test("a link without a wavelength shows one that the model was fitted to", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-633" });
+  await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "633");
+});
 
 test("the address bar is changed a few times a second, and has the link of what is shown in the end", { skip }, async () => {
   const { page } = await opened(chromium);
