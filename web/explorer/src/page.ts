@@ -72,15 +72,23 @@ export class Page {
     ofCurve("svg", () => standalone(this.#chart), () => `${this.#fileName()}.svg`, "image/svg+xml");
     ofCurve("samples-csv", () => this.#residuals!.csv(), () => "samples.csv", "text/csv");
     element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits))));
-    element("link").addEventListener("click", async () => {
-      await navigator.clipboard?.writeText(location.href).catch(() => undefined);
-      element("link").textContent = "The link is in the address bar, and copied";
-    });
+    element("link").addEventListener("click", () => void this.#copyLink());
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;
       const asked = fromLink(location.hash);
       this.open(asked.state.model, asked);
     });
+  }
+
+  async #copyLink() {
+    const { model, compare } = this.state;
+    const files = this.#measured || this.#shelf.files.has(model) || this.#shelf.files.has(compare);
+    const link = location.href.replace(/#.*$/, "") + toLink(this.state);
+    const where = await (navigator.clipboard?.writeText(link) ?? Promise.reject()).then(
+      () => "The link is copied.",
+      () => "The link is in the address bar: this browser does not let the page copy it.",
+    );
+    element("link-state").textContent = files ? `${where} It does not hold files: who follows it has to open them.` : where;
   }
 
   // ---- files and models ----------------------------------------------------------------------------------------------

@@ -143,6 +143,24 @@ test("an answer that comes between a change and its picture is not taken for one
   assert.deepEqual(complaints, []);
 });
 
+for (const [can, words] of [[true, /^The link is copied\.$/], [false, /^The link is in the address bar: /]])
+  test(`a link that ${can ? "is" : "cannot be"} copied is said to be so, until it is another`, { skip }, async () => {
+    const { page, complaints } = await opened(chromium, { hash: "#thetaI=20" });
+    await settled(page);
+    await page.evaluate((copies) => {
+      const clipboard = copies ? { writeText: async (text) => void (window.copied = text) } : undefined;
+      Object.defineProperty(navigator, "clipboard", { value: clipboard });
+    }, can);
+    await page.click("#link");
+    await page.waitForFunction(() => document.getElementById("link-state").textContent);
+    assert.match(await page.textContent("#link-state"), words);
+    if (can) assert.equal(await page.evaluate(() => window.copied), page.url());
+    await page.fill("#thetaI", "21");
+    await settled(page);
+    assert.equal(await page.textContent("#link-state"), "");
+    assert.deepEqual(complaints, []);
+  });
+
 test("while uncertainties are computed, older numbers are marked, and no file is made of them", { skip }, async () => {
   const { page } = await opened(chromium);
   await settled(page);
