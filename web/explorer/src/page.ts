@@ -40,6 +40,7 @@ export class Page {
   #busy = true; // the worker answers one question at a time
   #open = true; // what is shown has not all its answers
   #drawing = false;
+  #reading = Promise.resolve();
   #failed = false; // to show the state
   #chart = "";
 
@@ -93,15 +94,37 @@ export class Page {
 
   // ---- files and models ----------------------------------------------------------------------------------------------
 
-  async read(file: File) {
-    const contents = new Uint8Array(await file.arrayBuffer());
+  /** One after the other, after those that are still being read. */
+  read(files: File[]): Promise<void> {
+    this.#reading = this.#reading.then(async () => {
+      const lines = [];
+      for (const file of files) lines.push(await this.#readOne(file));
+      element("reading").textContent = "";
+      const line = lines.filter((one) => one).join(" ");
+      if (line) this.#trouble(line);
+    });
+    return this.#reading;
+  }
+
+  /** Returns what is wrong with it. */
+  async #readOne(file: File): Promise<string> {
+    element("reading").textContent = `Reading ${file.name} …`;
+    let contents: Uint8Array;
     try {
-      if (this.mmbrdf.holdsSamples(contents)) return this.#measure(contents, file.name);
-      const name = this.#shelf.add(contents, file.name);
-      this.#controls.offer(name);
-      this.open(name);
+      contents = new Uint8Array(await file.arrayBuffer());
+    } catch {
+      return `${file.name}: cannot be read: is it a file, and still there?`;
+    }
+    try {
+      if (this.mmbrdf.holdsSamples(contents)) this.#measure(contents, file.name);
+      else {
+        const name = this.#shelf.add(contents, file.name);
+        this.#controls.offer(name);
+        this.open(name);
+      }
+      return "";
     } catch (error) {
-      this.#trouble((error as Error).message);
+      return (error as Error).message;
     }
   }
 

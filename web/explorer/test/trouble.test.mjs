@@ -161,6 +161,28 @@ for (const [can, words] of [[true, /^The link is copied\.$/], [false, /^The link
     assert.deepEqual(complaints, []);
   });
 
+test("of files that are opened together each is taken, and one that is wrong has its line", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium);
+  await settled(page);
+  const samples = Buffer.from(run("simulate", "ptfe-633", "--grid", "random:20"));
+  const files = [file_of("ptfe-633", "one.json"), { name: "none.json", mimeType: "", buffer: Buffer.from("{") }, { name: "samples.csv", mimeType: "text/csv", buffer: samples }];
+  await page.setInputFiles("#file", files);
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  assert.equal(await page.inputValue("#model"), "one.json");
+  assert.match(await trouble(page), /^none\.json:1: not JSON[^.]*$/);
+  assert.match(await page.textContent("#samples-words"), /^samples\.csv: 20 samples/);
+  assert.equal(await page.textContent("#reading"), "");
+  await page.evaluate(() => {
+    Blob.prototype.arrayBuffer = () => Promise.reject(new DOMException("a folder")); // as Chromium has it
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([], "folder"));
+    document.body.dispatchEvent(new DragEvent("drop", { bubbles: true, dataTransfer }));
+  });
+  await page.waitForFunction(() => document.getElementById("trouble").textContent === "folder: cannot be read: is it a file, and still there?");
+  assert.deepEqual(complaints, []);
+});
+
 test("while uncertainties are computed, older numbers are marked, and no file is made of them", { skip }, async () => {
   const { page } = await opened(chromium);
   await settled(page);
