@@ -117,7 +117,7 @@ export class Hemispheres {
     };
     this.current = (now: State) => (state = now);
     this.#box.addEventListener("pointerdown", (event) => {
-      if (!state || event.button !== 0) return;
+      if (!state || event.button !== 0 || !event.isPrimary) return; // not a second finger
       const { x, y, size } = at(event);
       const near = (theta: number, phi: number) => {
         const [mx, my] = placed(state!, theta, phi);
@@ -128,11 +128,12 @@ export class Hemispheres {
       moved(held, direction(state, x, y));
     });
     this.#box.addEventListener("pointermove", (event) => {
-      if (!held || !state) return;
+      if (!held || !state || !event.isPrimary) return;
       const { x, y } = at(event);
       moved(held, direction(state, x, y));
     });
-    for (const end of ["pointerup", "pointercancel"]) this.#box.addEventListener(end, () => (held = undefined));
+    for (const end of ["pointerup", "pointercancel"] as const)
+      this.#box.addEventListener(end, ({ isPrimary }) => (held = isPrimary ? undefined : held));
     this.#box.addEventListener("keydown", (event) => {
       const steps: Record<string, Angles> = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
       const step = steps[event.key];

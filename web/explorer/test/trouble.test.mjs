@@ -275,6 +275,28 @@ test("a drag beyond the disc where it began ends at 90 degrees, on the side of t
   await page.mouse.up();
 });
 
+test("a second finger moves nothing", { skip }, async () => {
+  const { page } = await opened(chromium);
+  await settled(page);
+  const moved = await page.evaluate(async () => {
+    const box = document.querySelector("#hemispheres");
+    const { left, top, width } = box.getBoundingClientRect();
+    const at = (type, x, more) =>
+      box.dispatchEvent(new PointerEvent(type, { bubbles: true, clientX: left + (width / 8) * (1 + x), clientY: top + width / 8, ...more }));
+    box.setPointerCapture = () => {}; // there is no pointer of that number
+    const [first, second] = [{ pointerId: 1, isPrimary: true }, { pointerId: 2, isPrimary: false }];
+    at("pointerdown", 0.5, first);
+    at("pointerdown", -0.5, second);
+    at("pointermove", -0.2, second);
+    at("pointerup", -0.2, second);
+    at("pointermove", Math.sin(Math.PI / 9), first);
+    at("pointerup", Math.sin(Math.PI / 9), first);
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    return ["thetaR", "phiR"].map((id) => document.getElementById(id).value);
+  });
+  assert.deepEqual(moved, ["20", "0"]);
+});
+
 test("a link keeps the digits that were typed", { skip }, async () => {
   const { page } = await opened(chromium, { hash: "#thetaI=45.12345&phiI=-179.98765" });
   await settled(page);
