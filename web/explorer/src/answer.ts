@@ -106,7 +106,7 @@ export function showTables(state: State, mmbrdf: Mmbrdf, answer: Answer) {
     row.dataset.quantity = name;
     row.append(heading("row", name.replaceAll("_", " "), known.meaning));
     const size = known.unit === "sr^-1" ? answer.elements[0]! : 1;
-    row.insertCell().textContent = value === null ? "no meaning here" : numberText(state, value, uncertainty, size);
+    row.insertCell().textContent = value === null ? (answer.elements.includes(null) ? "not known" : "no meaning here") : numberText(state, value, uncertainty, size);
     row.insertCell().textContent = state.digits && uncertainty !== null ? String(uncertainty) : uncertaintyText(uncertainty);
     row.insertCell().textContent = known.unit.replace("^-1", "⁻¹") || "1";
   }

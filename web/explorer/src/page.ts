@@ -72,7 +72,7 @@ export class Page {
     ofCurve("csv", () => csv(this.#drawn(this.#curves!)), () => `${this.#fileName()}.csv`, "text/csv");
     ofCurve("svg", () => standalone(this.#chart), () => `${this.#fileName()}.svg`, "image/svg+xml");
     ofCurve("samples-csv", () => this.#residuals!.csv(), () => "samples.csv", "text/csv");
-    element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits))));
+    element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits, element("legend-points").textContent!))));
     element("link").addEventListener("click", () => void this.#copyLink());
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;

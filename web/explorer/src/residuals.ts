@@ -58,9 +58,15 @@ export class Residuals {
     const of = { values: "value", residuals: "difference", over_u: "overU" } as const;
     const values = Float64Array.from(this.all, (one) => one[of[this.state.points]]);
     const { geometries } = this.near;
-    if (this.state.points === "values") return { geometries, values };
-    const ends = [...Array(16).keys()].map((e) => (this.state.points === "over_u" ? 3 : 3 * rms(Array.from(values).filter((_, i) => i % 16 === e)) || 1));
-    return { geometries, values, ends };
+    const { name } = this.measured.samples;
+    const none = geometries.length > 0 && !values.some(Number.isFinite);
+    if (this.state.points === "values") return { geometries, values, words: `points: ${name}, in the colours of the pictures` };
+    if (this.state.points === "over_u") {
+      const words = none ? `no points: ${name} does not state its uncertainties` : `points: (${name} − model) / u from −3 blue to 3 red`;
+      return { geometries, values, ends: Array(16).fill(3), words };
+    }
+    const ends = [...Array(16).keys()].map((e) => 3 * rms(Array.from(values).filter((_, i) => i % 16 === e)) || 1);
+    return { geometries, values, ends, words: `points: ${name} − model, from −3 rms blue to 3 rms red in each picture` };
   }
 
   /** The one at the chosen direction, if there is one. */

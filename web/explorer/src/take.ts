@@ -63,8 +63,8 @@ export function pythonLines(state: State, ownFile: boolean): string {
   return lines.join("\n");
 }
 
-/** The lines over a picture of the hemispheres. */
-export function pictureWords(state: State, limits: number[]): string[] {
+/** The lines over a picture of the hemispheres; `points`: what they show, if there are any. */
+export function pictureWords(state: State, limits: number[], points: string): string[] {
   const other = state.compare && state.shown !== "model";
   const model = !other ? state.model : state.shown === "other" ? state.compare : `${state.compare} − ${state.model}`;
   const projection = state.projection === "lambert" ? "equal solid angles" : "direction cosines";
@@ -72,6 +72,7 @@ export function pictureWords(state: State, limits: number[]): string[] {
     `${model} at ${state.wavelength} nm, light from θi = ${state.thetaI}°, φi = ${state.phiI}°; ring: θr = ${state.thetaR}°, φr = ${state.phiR}°`,
     `Frame ${state.frame}, signs of ${state.convention}, ${projection}; striped: extrapolated`,
     `f11 from ${short(limits[0])} to ${short(limits[1])} sr⁻¹; ${state.normalized ? "others are divided by f11" : "others in sr⁻¹"}`,
+    ...(points ? [points] : []),
   ];
 }
 

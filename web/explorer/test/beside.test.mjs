@@ -103,9 +103,14 @@ test("elements that were not measured have no points, and uncertainties that are
   assert.equal(await points(page), 33);
   assert.match(await page.textContent("#samples-words"), /without uncertainties, 15 elements were not measured and have no points/);
   assert.equal(await page.locator("#chart circle.sample").count(), 29);
+  assert.equal(await page.textContent("#legend-points"), "points: f11.csv, in the colours of the pictures");
+  await page.selectOption("#points", "residuals");
+  await settled(page);
+  assert.match(await page.textContent("#legend-points"), /^points: f11\.csv − model, from −3 rms/);
   await page.selectOption("#points", "over_u");
   await settled(page);
   assert.equal(await points(page), 0);
+  assert.equal(await page.textContent("#legend-points"), "no points: f11.csv does not state its uncertainties");
   await page.selectOption("#curve", "polarized");
   await settled(page);
   assert.equal(await page.locator("#chart circle.sample").count(), 0);
