@@ -56,7 +56,7 @@ export function showMatrix(state: State, beside: Beside) {
     ? "f11 in sr⁻¹, all others divided by it; with standard uncertainties"
     : "In sr⁻¹, with standard uncertainties";
   element("sample-words").textContent = sample?.words ?? "";
-  showWords(state, at, matrix[0], u ? u[0] : null, numbers?.[0].answer);
+  showWords(state, beside, matrix[0], u ? u[0] : null);
 }
 
 const uText = (state: State, u: number | undefined) => (u === undefined ? "…" : state.digits ? String(u) : uncertaintyText(u));
@@ -78,11 +78,13 @@ const insideWords: Record<string, string> = {
   unknown: "The fitted range is not known.",
 };
 
-function showWords(state: State, at: ModelAt, f11: number, u: number | null, answer?: Answer) {
+function showWords(state: State, { at, other, numbers }: Beside, f11: number, u: number | null) {
+  const answer = numbers?.[0].answer;
   const [where] = at.outside(chosen(state));
+  const [otherWhere] = other?.outside(chosen(state)) ?? [];
   const yes = (is: boolean | null | undefined, words: string, not: string) => (is === undefined || is === null ? "" : is ? words : not);
   const words = element("words");
-  words.innerHTML = '<span id="f11"></span> <span class="beyond"></span> <span id="validity"></span> <span id="physical"></span>';
+  words.innerHTML = '<span id="f11"></span> <span class="beyond"></span> <span id="validity"></span> <span id="physical"></span> <span id="other-beyond" class="beyond"></span>';
   element("f11").textContent =
     `f11 = ${numberText(state, f11, u)} sr⁻¹, ` +
     (u === null && at.model.hasUncertainty && !answer
@@ -95,6 +97,7 @@ function showWords(state: State, at: ModelAt, f11: number, u: number | null, ans
   element("physical").textContent =
     yes(answer?.realizable, "Realizable: a scatterer can have this matrix.", "Not realizable: no scatterer has this matrix.") +
     yes(answer?.estimable, "", " The data of the fit do not determine every element here.");
+  element("other-beyond").textContent = otherWhere?.extrapolated ? `${state.compare} is extrapolated here: ${otherWhere.line}.` : "";
 }
 
 export function showTables(state: State, mmbrdf: Mmbrdf, answer: Answer) {

@@ -143,10 +143,13 @@ function residuals({ points, residualLabel }: Chart, x: Scale): string[] {
   ];
 }
 
-/** For a file, which has no style sheet: dark on white. */
-export function standalone(svg: string): string {
+/** For a file, which has no style sheet: dark on white, with words below. */
+export function standalone(svg: string, said: string): string {
   const fixed: Record<string, string> = { "var(--s1)": "#0b57a4", "var(--s2)": "#b34700", "var(--s3)": "#3a7d1f", "var(--s4)": "#8a2c86" };
+  const height = Number(/viewBox="0 0 \d+ (\d+)"/.exec(svg)![1]);
+  const lines = said.match(/\S(.{0,94}\S)?(?=\s|$)/g) ?? [];
   return svg
     .replace(/var\(--s\d\)/g, (name) => fixed[name])
-    .replace("<svg ", '<svg color="#1b1f24" style="background:#fff" ');
+    .replace(/viewBox="0 0 (\d+) \d+"/, `viewBox="0 0 $1 ${height + 18 * lines.length + 8}" color="#1b1f24" style="background:#fff"`)
+    .replace("</svg>", () => `${lines.map((line, i) => words(left - 48, height + 18 * (i + 1), line)).join("")}</svg>`);
 }

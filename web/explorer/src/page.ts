@@ -42,7 +42,7 @@ export class Page {
   #drawing = false;
   #reading = Promise.resolve();
   #failed = false; // to show the state
-  #chart = "";
+  #chart = { svg: "", words: "" };
 
   constructor(
     readonly mmbrdf: Mmbrdf,
@@ -70,7 +70,7 @@ export class Page {
         element("take-state").textContent = `The curve is ${why}.`;
       });
     ofCurve("csv", () => csv(this.#drawn(this.#curves!)), () => `${this.#fileName()}.csv`, "text/csv");
-    ofCurve("svg", () => standalone(this.#chart), () => `${this.#fileName()}.svg`, "image/svg+xml");
+    ofCurve("svg", () => standalone(this.#chart.svg, this.#chart.words), () => `${this.#fileName()}.svg`, "image/svg+xml");
     ofCurve("samples-csv", () => this.#residuals!.csv(), () => "samples.csv", "text/csv");
     element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits, element("legend-points").textContent!))));
     element("link").addEventListener("click", () => void this.#copyLink());

@@ -100,12 +100,13 @@ export function csv({ state, along, curves, mmbrdf, at, other }: Drawing): strin
   const validity = at.outside(along.geometries);
   const signed = kind === "plane" ? "theta_r_signed_deg" : "phi_r_from_light_deg";
   const group = (name: string) => [name, `u_${name}`, ...(beside ? [`other_${name}`, `u_other_${name}`] : [])];
-  const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", signed, ...names.flatMap(group), "validity"];
+  const otherValidity = beside && other?.outside(along.geometries);
+  const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", signed, ...names.flatMap(group), "validity", ...(beside ? ["other_validity"] : [])];
   const numbers = (of: Bands | undefined, name: string, i: number) => (of ? [of[name].values[i], of[name].uncertainties[i]] : []);
   const rows = along.geometries.map((one, i) => [
     state.wavelength, one.thetaI, one.phiI!, one.thetaR, one.phiR!, x[i],
     ...names.flatMap((name) => [...numbers(bands, name, i), ...numbers(beside, name, i)]),
-    validity[i].validity,
+    validity[i].validity, ...(otherValidity ? [otherValidity[i].validity] : []),
   ]);
   return table(head, rows);
 }

@@ -192,7 +192,12 @@ test("two models: both numbers and their difference, from a link that keeps them
     near(Number(row.f11), Number(ours[i].f11), 1e-12, "f11");
     near(Number(row.other_f11), Number(others[i].f11), 1e-12, "f11 of the other");
     near(Number(row.u_other_f11), Number(others[i].u_f11), 1e-9, "its u");
+    assert.deepEqual([row.validity, row.other_validity], [ours[i].validity, others[i].validity]);
   });
+  assert.match(rows[85].other_validity, /wavelength/);
+  assert.match(await page.textContent("#other-beyond"), /^ptfe-633 is extrapolated here: outside the fitted range \(wavelength\)/);
+  const hatched = await page.$$eval("#chart rect[fill='url(#hatch)']", (all) => all.map((one) => Number(one.getAttribute("width"))));
+  assert.deepEqual(hatched, [566]); // all of the difference
   const off = rows.map((_, i) => others[i].f11 - ours[i].f11);
   const [, low, high] = /Δ f11 from (\S+) to (\S+)\.$/.exec(await page.getAttribute("#chart svg", "aria-label"));
   near(Number(low), Math.min(...off), 1e-7, "the least of the curve of differences"); // six digits are said
@@ -200,6 +205,16 @@ test("two models: both numbers and their difference, from a link that keeps them
   assert.match(page.url(), /compare=ptfe-633&.*shown=difference|shown=difference.*compare=ptfe-633/);
   assert.match(await page.textContent("#program"), /\nmmbrdf compare ptfe-532 ptfe-633 -w 532$/);
   assert.deepEqual(complaints, []);
+});
+
+test("of another model that is extrapolated the words of the curve say so", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532&compare=ptfe-633&curve=f11" });
+  await settled(page);
+  assert.match(await page.textContent("#chart-words"), /Thin: ptfe-633, extrapolated\./);
+  await page.fill("#wavelength", "633");
+  await settled(page);
+  assert.match(await page.textContent("#chart-words"), /Thin: ptfe-633, extrapolated in part\./); // beyond 81.87 degrees
+  assert.equal(await page.textContent("#other-beyond"), "");
 });
 
 test("a model beside itself differs by nothing, and goes when it is not chosen", { skip }, async () => {
