@@ -55,6 +55,7 @@ export function showMatrix(state: State, beside: Beside) {
   element("matrix").querySelector("caption")!.textContent = state.normalized
     ? "f11 in sr⁻¹, all others divided by it; with standard uncertainties"
     : "In sr⁻¹, with standard uncertainties";
+  element("answer").classList.toggle("digits", state.digits);
   element("sample-words").textContent = sample?.words ?? "";
   showWords(state, beside, matrix[0], u ? u[0] : null);
 }
