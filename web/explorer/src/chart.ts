@@ -52,7 +52,7 @@ const words = (x: number, y: number, text: string, more = "") =>
 function ends(values: number[]): [number, number] {
   const known = values.filter(Number.isFinite);
   if (!known.length) return [0, 1];
-  const [low, high] = [Math.min(...known), Math.max(...known)];
+  const [low, high] = known.reduce(([least, most], one) => [Math.min(least, one), Math.max(most, one)], [Infinity, -Infinity]);
   return [low, high === low ? low + 1 : high];
 }
 

@@ -99,7 +99,9 @@ export class Residuals {
     const off = rms(of11.map(({ difference }) => difference));
     const over = rms(of11.map(({ overU }) => overU));
     const f11 = Number.isFinite(off) ? ` rms of data − model of f11: ${toPlaceOf(off, off)} sr⁻¹${Number.isFinite(over) ? `, ${toPlaceOf(over, 0.1)} u of both` : ""}.` : "";
-    return `${said} ${this.near.which.length} at this light and wavelength.${f11}`;
+    const { count, each } = this.near;
+    const some = each > 1 ? `, of which one in ${each} is shown` : "";
+    return `${said} ${count} at this light and wavelength${some}.${f11}`;
   }
 
   /** A row for each sample that is near, with a group of columns for each element that was measured. */

@@ -151,6 +151,31 @@ test("of many lights the list has the first, and says how many more there are", 
   assert.equal(await points(page), 16); // the nearest of all lights is shown
 });
 
+test("of thousands of samples at a light one in so many is shown, and the page says so", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532&curve=f11" });
+  const row = (i) => `532,45,180,${(i % 700) / 10},${i % 360},0.33`;
+  const rows = [[...head, "f11"].join(","), ...[...Array(10001).keys()].map(row), ""];
+  await page.setInputFiles("#file", { name: "many.csv", mimeType: "text/csv", buffer: Buffer.from(rows.join("\n")) });
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  assert.match(await page.textContent("#samples-words"), /\. 10001 at this light and wavelength, of which one in 6 is shown\./);
+  assert.equal(await points(page), 1667);
+  assert.deepEqual(complaints, []);
+});
+
+test("a negative polar angle of a sample is the opposite azimuth", { skip }, async () => {
+  const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
+  const rows = [[...head, "f11"].join(","), "532,-45,0,30,0,0.33", "532,45,180,-30,0,0.32", "532,-45,0,-30,180,0.31", ""];
+  await page.setInputFiles("#file", { name: "negative.csv", mimeType: "text/csv", buffer: Buffer.from(rows.join("\n")) });
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  const lights = await page.$$eval("#incidence option", (all) => all.map((one) => one.textContent));
+  assert.deepEqual(lights.slice(1), ["532 nm, θi 45°, φi 180° (3)"]);
+  assert.equal(await page.inputValue("#phiI"), "180");
+  assert.equal(await points(page), 3);
+  assert.deepEqual(complaints, []);
+});
+
 test("samples that cannot be read give the program's line, and those that are shown stay", { skip: skip || without_program }, async () => {
   const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
   const good = readFileSync(measured("samples.csv"), "utf8");
