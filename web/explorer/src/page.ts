@@ -235,8 +235,9 @@ export class Page {
     element("link-state").textContent = ""; // that was another link
     const file = this.#shelf.files.get(state.model);
     const named = file ? { ...state, model: file.path } : state; // what the program calls it
-    element("program").textContent = programLines(named, this.#along, Boolean(file), this.#compared());
-    element("python").textContent = pythonLines(named, Boolean(file));
+    const told = { state: named, along: this.#along, ownFile: Boolean(file), hasUncertainty: model.hasUncertainty };
+    element("program").textContent = programLines(told, this.#compared());
+    element("python").textContent = pythonLines(told);
     this.#ask();
     this.#matrix();
   }

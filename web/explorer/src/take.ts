@@ -25,8 +25,16 @@ export interface Named {
   ownFile: boolean;
 }
 
+/** What is shown, by its names in lines for elsewhere. */
+export interface Told {
+  state: State;
+  along: Along;
+  ownFile: boolean;
+  hasUncertainty: boolean;
+}
+
 /** `others`: a model or samples beside it. */
-export function programLines(state: State, { kind, x }: Along, ownFile: boolean, others: Named[]): string {
+export function programLines({ state, along: { kind, x }, ownFile, hasUncertainty }: Told, others: Named[]): string {
   const light = `-w ${state.wavelength} -i ${state.thetaI},${state.phiI}`;
   const model = fileName(state.model, ownFile);
   const where = `${model} ${light}`;
@@ -39,7 +47,7 @@ export function programLines(state: State, { kind, x }: Along, ownFile: boolean,
     coefficients: `# Coefficients are in the file of the model: mmbrdf convert ${model} model.json`,
   };
   const lines = [
-    `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}`,
+    `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}${hasUncertainty ? " --uncertainty" : ""}`,
     `mmbrdf analyze ${where} -r ${state.thetaR},${state.phiR}${frame}`,
     curve[kind],
     ...others.map((other) => `mmbrdf compare ${model} ${fileName(other.name, other.ownFile)} -w ${state.wavelength}`),
@@ -49,18 +57,35 @@ export function programLines(state: State, { kind, x }: Along, ownFile: boolean,
   return lines.join("\n");
 }
 
-export function pythonLines(state: State, ownFile: boolean): string {
-  const angles = `theta_i_deg=${state.thetaI}, phi_i_deg=${state.phiI}, theta_r_deg=${state.thetaR}, phi_r_deg=${state.phiR}`;
-  const lines = [
+/** The list of the azimuths of a curve around the normal. */
+const turns = (phiI: number) => (Number.isInteger(phiI) ? `range(${phiI - 180}, ${phiI + 181}, 3)` : `[${phiI} + turn for turn in range(-180, 181, 3)]`);
+
+export function pythonLines({ state, along: { kind, x }, ownFile, hasUncertainty }: Told): string {
+  const { wavelength, thetaI, phiI, thetaR, phiR, frame, convention } = state;
+  const light = `${wavelength}, theta_i_deg=${thetaI}, phi_i_deg=${phiI}`;
+  const where = `${light}, theta_r_deg=${thetaR}, phi_r_deg=${phiR}`;
+  const reflectance = (of: string) => [
+    `dhr = mmbrdf.directional_hemispherical_reflectance(model, ${of})`,
+    ...(hasUncertainty ? [`u_dhr = mmbrdf.directional_hemispherical_uncertainty(model, ${of})`] : []),
+  ];
+  const curve = {
+    plane: [`curve = model.analyze(${light}, theta_r_deg=range(-85, 86), phi_r_deg=${phiI + 180})`],
+    azimuth: [`curve = model.analyze(${light}, theta_r_deg=${thetaR}, phi_r_deg=${turns(phiI)})`],
+    dhr: reflectance(`${wavelength}, range(${x[0]}, ${x.length})`),
+    dhr_wavelength: reflectance(`[${x.join(", ")}], ${thetaI}`),
+    coefficients: [],
+  };
+  return [
     "import mmbrdf",
     "",
     `model = mmbrdf.${ownFile ? "load_model" : "material"}(${JSON.stringify(state.model)})`,
-    `f = model.evaluate(${state.wavelength}, ${angles}, frame="${state.frame}")`,
-    `u = model.evaluate_uncertainty(${state.wavelength}, ${angles}, frame="${state.frame}")`,
-    `all = model.analyze(${state.wavelength}, ${angles})`,
-  ];
-  if (state.convention !== "germer2017") lines.push(`f = mmbrdf.convert(f, "germer2017", "${state.convention}")`);
-  return lines.join("\n");
+    `f = model.evaluate(${where}, frame="${frame}")`,
+    ...(hasUncertainty ? [`u = model.evaluate_uncertainty(${where}, frame="${frame}")`] : []),
+    `quantities = model.analyze(${where})`,
+    ...curve[kind],
+    ...(convention === "germer2017" ? [] : [`f = mmbrdf.convert(f, "germer2017", "${convention}")`]),
+    ...(state.normalized ? ["m = mmbrdf.normalized(f)  # but for m11; of what it is uncertain by the program tells"] : []),
+  ].join("\n");
 }
 
 /** The lines over a picture of the hemispheres; `points`: what they show, if there are any. */

@@ -50,10 +50,19 @@ test("f11, its uncertainty and the CSV of the in-plane curve are found by their 
 });
 
 test("the lines of the page give the numbers of the page", { skip: skip || without_program }, async () => {
-  const { page } = await opened(chromium, { hash: "#wavelength=600&thetaI=50&frame=sp&digits=true" });
-  const [evaluate] = (await page.textContent("#program")).split("\n");
-  const printed = JSON.parse(run(...evaluate.split(" ").slice(1), "--format", "json")).mueller.flat();
-  (await matrix(page)).forEach(([value], e) => near(Number(value), printed[e], 1e-12 * printed[0], `element ${e}`));
+  for (const normalized of [false, true]) {
+    const { page } = await opened(chromium, { hash: `#wavelength=600&thetaI=50&frame=sp&digits=true&normalized=${normalized}` });
+    await answered(page);
+    const [evaluate] = (await page.textContent("#program")).split("\n");
+    const printed = JSON.parse(run(...evaluate.split(" ").slice(1), "--format", "json"));
+    const [values, u] = [printed.mueller.flat(), printed.u_mueller.flat()];
+    if (normalized) [values[0], u[0]] = [printed.f11, printed.u_f11];
+    (await matrix(page)).forEach(([value, uncertainty], e) => {
+      near(Number(value), values[e], 1e-12, `element ${e}`);
+      near(Number(uncertainty), u[e], 1e-9, `u of element ${e}`);
+    });
+    assert.equal(/m = mmbrdf\.normalized\(f\)/.test(await page.textContent("#python")), normalized);
+  }
 });
 
 test("a drag of the light moves it, pictures follow, and the link says where it is", { skip }, async () => {
