@@ -4,9 +4,10 @@ import { createRequire } from "node:module";
 import { readFileSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { join } from "node:path";
+import { gzipSync } from "node:zlib";
 
 import { analyzed, folder, refusal, run, without_program } from "../../mmbrdf/test/program.mjs";
-import { answered, browser, opened, skip } from "./browser.mjs";
+import { answered, browser, opened, page_file, skip } from "./browser.mjs";
 
 let chromium;
 before(async () => {
@@ -63,6 +64,11 @@ test("the lines of the page give the numbers of the page", { skip: skip || witho
     });
     assert.equal(/m = mmbrdf\.normalized\(f\)/.test(await page.textContent("#python")), normalized);
   }
+});
+
+test("the page takes at most 900 kB to load, compressed", { skip }, () => {
+  const bytes = gzipSync(readFileSync(page_file), { level: 9 }).length;
+  assert.ok(bytes <= 900000, `${bytes} bytes`);
 });
 
 test("a drag of the light moves it, pictures follow, and the link says where it is", { skip }, async () => {
