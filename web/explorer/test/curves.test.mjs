@@ -188,6 +188,7 @@ test("what of a model is not known is said to be so: f11 alone was measured, or 
   await page.setInputFiles("#file", published);
   await page.waitForFunction(() => document.querySelector("#model").value === "published.csv");
   await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "532"); // it stays: the file says none
   assert.match(await page.textContent("#chart-words"), /There are no bands: uncertainties are not known\./);
   assert.equal(await page.isVisible("#legend-unknown"), false);
   assert.doesNotMatch(await page.textContent("#python"), /uncertainty/); // which Python would refuse
