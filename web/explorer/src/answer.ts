@@ -108,11 +108,12 @@ export function showTables(state: State, mmbrdf: Mmbrdf, answer: Answer) {
     const known = mmbrdf.quantities.find((one) => one.name === name)!;
     const row = rows.insertRow();
     row.dataset.quantity = name;
-    row.append(heading("row", name.replaceAll("_", " "), known.meaning));
+    row.append(heading("row", name.replaceAll("_", " ")));
     const size = known.unit === "sr^-1" ? answer.elements[0]! : 1;
     row.insertCell().textContent = value === null ? (answer.elements.includes(null) ? "not known" : "no meaning here") : numberText(state, value, uncertainty, size);
     row.insertCell().textContent = state.digits && uncertainty !== null ? String(uncertainty) : uncertaintyText(uncertainty);
     row.insertCell().textContent = known.unit.replace("^-1", "⁻¹") || "1";
+    row.insertCell().textContent = known.meaning;
   }
   showParts(state, mmbrdf, answer);
 }

@@ -35,6 +35,7 @@ test("f11, its uncertainty and the CSV of the in-plane curve are found by their 
   const [row] = analyzed("ptfe", 600, [[45, 0, 30, 180]], "xy");
   near(Number(f11), Number(row.f11), 0.00005, "f11");
   near(Number(u), Number(row.u_f11), 0.00005, "u");
+  assert.ok(await page.locator("#quantities").getByText("0 for a perfect depolarizer, 1 where no light is depolarized").isVisible()); // 0.04 is not "little depolarized"
 
   const waiting = page.waitForEvent("download");
   await page.getByRole("button", { name: "Curve as CSV" }).click();
