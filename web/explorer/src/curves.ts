@@ -13,6 +13,8 @@ import type { Bands, Curves } from "./worker";
 
 export const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
 const coverage = 1.96; // of a normal distribution, 95 %
+/** A window in which the words of a wide chart would be too small. */
+export const narrow = matchMedia("(max-width: 511px)");
 
 /** All that a curve is drawn of. */
 export interface Drawing {
@@ -126,6 +128,7 @@ export function showCurve(drawing: Drawing): { svg: string; words: string } {
   const otherOutside = other && extrapolates(other, drawing);
   const yLabel = labels(drawing, chosen, isDifference ? "difference of " : "");
   const chart: Chart = {
+    width: narrow.matches ? 400 : 640,
     curves: lines(drawing, chosen),
     points: points(drawing, chosen),
     xLabel: along.label,

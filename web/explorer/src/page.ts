@@ -6,7 +6,7 @@ import { Address } from "./address";
 import { showMatrix, showTables } from "./answer";
 import { standalone } from "./chart";
 import { Controls } from "./controls";
-import { showCurve } from "./curves";
+import { narrow, showCurve } from "./curves";
 import { element } from "./dom";
 import { Hemispheres } from "./hemispheres";
 import { type Incidence, Measured, type Near, nothing } from "./measured";
@@ -74,6 +74,9 @@ export class Page {
     ofCurve("samples-csv", () => this.#residuals!.csv(), () => "samples.csv", "text/csv");
     element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits, element("legend-points").textContent!))));
     element("link").addEventListener("click", () => void this.#copyLink());
+    narrow.addEventListener("change", () => {
+      if (this.#curves && !this.#drawing) this.#chart = showCurve(this.#drawn(this.#curves));
+    });
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;
       const asked = fromLink(location.hash);

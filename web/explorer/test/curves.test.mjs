@@ -240,6 +240,32 @@ test("in a window as wide as a phone no number is broken in two", { skip }, asyn
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
 });
 
+test("the words of a chart can be read on a phone, and are all inside it, also when it is turned", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532", viewport: { width: 360, height: 780 } });
+  await settled(page);
+  const look = async (least) => {
+    const { small, outside } = await page.$eval("#chart svg", (svg, size) => {
+      const [all, box] = [Array.from(svg.querySelectorAll("text")), svg.getBoundingClientRect()];
+      const scale = box.width / svg.viewBox.baseVal.width;
+      const boxes = all.map((one) => [one.textContent, one.getBoundingClientRect()]);
+      return {
+        small: all.filter((one) => Number(one.getAttribute("font-size")) * scale < size).map((one) => one.textContent),
+        outside: boxes.filter(([, b]) => b.left < box.left - 1 || b.right > box.right + 1 || b.bottom > box.bottom + 1).map(([text]) => text),
+      };
+    }, least);
+    assert.deepEqual([small, outside], [[], []]);
+  };
+  for (const [curve, scan] of [["polarized", "plane"], ["polarized", "azimuth"], ["dhr_wavelength"], ["coefficients"]]) {
+    await page.selectOption("#curve", curve);
+    if (scan) await page.selectOption("#scan", scan);
+    await settled(page);
+    await look(10); // px
+  }
+  await page.setViewportSize({ width: 780, height: 360 });
+  await page.waitForFunction(() => document.querySelector("#chart svg").viewBox.baseVal.width === 640);
+  await look(13);
+});
+
 test("a window as wide as a phone has nothing to scroll to the side, whatever is shown", { skip: skip || without_program }, async () => {
   const { page } = await opened(chromium, { hash: "#model=ptfe-532&compare=ptfe-633&digits=true&curve=coefficients", viewport: { width: 360, height: 780 } });
   const name = "samples_of_a_long_name_that_has_no_place_to_break_in_it_anywhere.csv";
