@@ -41,7 +41,8 @@ export class Page {
   #open = true; // what is shown has not all its answers
   #drawing = false;
   #reading = Promise.resolve();
-  #failed = false; // to show the state
+  #failed = false; // to show what was asked for
+  #last?: State; // that was shown
   #chart = { svg: "", words: "" };
 
   constructor(
@@ -197,6 +198,7 @@ export class Page {
   }
 
   #trouble(words: string) {
+    this.#failed = false; // what was, is no more said
     element("trouble").textContent = words;
   }
 
@@ -213,21 +215,12 @@ export class Page {
   }
 
   #show(typed?: HTMLInputElement) {
+    const wrong = this.#draw();
+    if (wrong || this.#failed) this.#trouble(wrong);
+    this.#failed = wrong !== "";
     const { state } = this;
-    this.#numbers = this.#curves = undefined; // they were of another question
-    try {
-      this.#compare();
-      this.#near = this.#measured?.near(state) ?? nothing;
-      this.#along = along(state, this.#shown.model);
-      this.#picture();
-      this.#hemispheres.current(state);
-    } catch (error) {
-      this.#failed = true;
-      return this.#trouble((error as Error).message);
-    }
-    if (this.#failed) this.#trouble("");
-    this.#failed = false;
-    this.#controls.show(typed);
+    this.#last = { ...state };
+    this.#controls.show(wrong ? undefined : typed);
     this.#controls.showIncidences(this.#measured?.incidences ?? noIncidences, state);
     const { model } = this.#shown;
     const blocks = [...new Set(model.modes.map(({ block }) => block))];
@@ -243,6 +236,26 @@ export class Page {
     element("python").textContent = pythonLines(told);
     this.#ask();
     this.#matrix();
+  }
+
+  /** Pictures of the state, or of the last that could be shown: returns why then. */
+  #draw(): string {
+    const draw = () => {
+      this.#compare();
+      this.#near = this.#measured?.near(this.state) ?? nothing;
+      this.#along = along(this.state, this.#shown.model);
+      this.#picture();
+      this.#hemispheres.current(this.state);
+    };
+    this.#numbers = this.#curves = undefined; // they were of another question
+    try {
+      draw();
+      return "";
+    } catch (error) {
+      this.state = { ...(this.#last ?? start), model: this.#shown.name };
+      draw();
+      return (error as Error).message;
+    }
   }
 
   get #ats() {
@@ -301,7 +314,9 @@ export class Page {
     if (id !== this.#asked) return this.#send("numbers");
     if (error !== undefined) {
       this.#calm(false);
-      return this.#trouble(error);
+      this.#trouble(error);
+      this.#failed = true; // until something else is shown
+      return;
     }
     if (numbers) {
       this.#numbers = numbers;

@@ -88,7 +88,7 @@ export class Residuals {
     const { samples } = this.measured;
     const missing = 16 - samples.measured.length;
     const about = [
-      `${samples.name}: ${samples.count} samples`,
+      `${samples.name}: ${samples.count} ${samples.count === 1 ? "sample" : "samples"}`,
       samples.hasUncertainty ? "with uncertainties" : "without uncertainties",
       missing ? `${missing} elements were not measured and have no points` : "",
       samples.understood,

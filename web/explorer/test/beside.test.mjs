@@ -176,6 +176,21 @@ test("a negative polar angle of a sample is the opposite azimuth", { skip }, asy
   assert.deepEqual(complaints, []);
 });
 
+test("samples at a wavelength that no model takes leave what is shown, and say why", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
+  const rows = [[...head, "f11"].join(","), "1e20,45,0,30,0,0.33", ""];
+  await page.setInputFiles("#file", { name: "far.csv", mimeType: "text/csv", buffer: Buffer.from(rows.join("\n")) });
+  await page.waitForFunction(() => document.querySelector("#trouble").textContent === "wavelength 1e+20 nm is more than a metre");
+  await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "532");
+  await page.fill("#thetaI", "20");
+  await settled(page);
+  const [row] = analyzed("ptfe-532", 532, [[20, 0, 30, 180]], "xy");
+  near(Number(/f11 = (\S+) sr/.exec(await page.textContent("#words"))[1]), Number(row.f11), 0.0001, "f11");
+  assert.equal(await trouble(page), "");
+  assert.deepEqual(complaints, []);
+});
+
 test("samples that cannot be read give the program's line, and those that are shown stay", { skip: skip || without_program }, async () => {
   const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
   const good = readFileSync(measured("samples.csv"), "utf8");
