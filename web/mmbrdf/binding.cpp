@@ -131,7 +131,9 @@ EMSCRIPTEN_KEEPALIVE const char* describe(const Model* model) {
                          {"hasUncertainty", knows_uncertainty(*model)},
                          {"provenance", model->provenance}};
     json["wavelengths"] = ordered_json::array();
-    for (const double wavelength : known_wavelengths(*model)) json["wavelengths"].push_back(in_nanometres(wavelength));
+    if (knows_wavelength(*model))
+      for (const double wavelength : known_wavelengths(*model))
+        json["wavelengths"].push_back(in_nanometres(wavelength));
     return text_of(json);
   });
 }

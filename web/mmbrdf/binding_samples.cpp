@@ -38,10 +38,12 @@ Mueller uncertainty_of(const Sample& sample, bool divided) {
 
 extern "C" {
 
-/// Whether a file begins as one of samples.
+/// Whether a file begins as one of samples; not so of one that there is no memory for, which no reader takes.
 EMSCRIPTEN_KEEPALIVE int samples_are_in(const char* text, std::size_t length) {
-  std::istringstream in(std::string(text, length));
-  return holds_samples(in);
+  return guarded([&] {
+    std::istringstream in(std::string(text, length));
+    return static_cast<int>(holds_samples(in));
+  });
 }
 
 EMSCRIPTEN_KEEPALIVE Samples* samples_read(const char* text, std::size_t length, const char* path) {

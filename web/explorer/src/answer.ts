@@ -55,8 +55,9 @@ export function showMatrix(state: State, beside: Beside) {
   element("matrix").querySelector("caption")!.textContent = state.normalized
     ? "f11 in sr⁻¹, all others divided by it; with standard uncertainties"
     : "In sr⁻¹, with standard uncertainties";
+  element("answer").classList.toggle("digits", state.digits);
   element("sample-words").textContent = sample?.words ?? "";
-  showWords(state, at, matrix[0], u ? u[0] : null, numbers?.[0].answer);
+  showWords(state, beside, matrix[0], u ? u[0] : null);
 }
 
 const uText = (state: State, u: number | undefined) => (u === undefined ? "…" : state.digits ? String(u) : uncertaintyText(u));
@@ -78,11 +79,13 @@ const insideWords: Record<string, string> = {
   unknown: "The fitted range is not known.",
 };
 
-function showWords(state: State, at: ModelAt, f11: number, u: number | null, answer?: Answer) {
+function showWords(state: State, { at, other, numbers }: Beside, f11: number, u: number | null) {
+  const answer = numbers?.[0].answer;
   const [where] = at.outside(chosen(state));
+  const [otherWhere] = other?.outside(chosen(state)) ?? [];
   const yes = (is: boolean | null | undefined, words: string, not: string) => (is === undefined || is === null ? "" : is ? words : not);
   const words = element("words");
-  words.innerHTML = '<span id="f11"></span> <span class="beyond"></span> <span id="validity"></span> <span id="physical"></span>';
+  words.innerHTML = '<span id="f11"></span> <span class="beyond"></span> <span id="validity"></span> <span id="physical"></span> <span id="other-beyond" class="beyond"></span>';
   element("f11").textContent =
     `f11 = ${numberText(state, f11, u)} sr⁻¹, ` +
     (u === null && at.model.hasUncertainty && !answer
@@ -95,6 +98,7 @@ function showWords(state: State, at: ModelAt, f11: number, u: number | null, ans
   element("physical").textContent =
     yes(answer?.realizable, "Realizable: a scatterer can have this matrix.", "Not realizable: no scatterer has this matrix.") +
     yes(answer?.estimable, "", " The data of the fit do not determine every element here.");
+  element("other-beyond").textContent = otherWhere?.extrapolated ? `${state.compare} is extrapolated here: ${otherWhere.line}.` : "";
 }
 
 export function showTables(state: State, mmbrdf: Mmbrdf, answer: Answer) {
@@ -104,11 +108,12 @@ export function showTables(state: State, mmbrdf: Mmbrdf, answer: Answer) {
     const known = mmbrdf.quantities.find((one) => one.name === name)!;
     const row = rows.insertRow();
     row.dataset.quantity = name;
-    row.append(heading("row", name.replaceAll("_", " "), known.meaning));
+    row.append(heading("row", name.replaceAll("_", " ")));
     const size = known.unit === "sr^-1" ? answer.elements[0]! : 1;
-    row.insertCell().textContent = value === null ? "no meaning here" : numberText(state, value, uncertainty, size);
+    row.insertCell().textContent = value === null ? (answer.elements.includes(null) ? "not known" : "no meaning here") : numberText(state, value, uncertainty, size);
     row.insertCell().textContent = state.digits && uncertainty !== null ? String(uncertainty) : uncertaintyText(uncertainty);
     row.insertCell().textContent = known.unit.replace("^-1", "⁻¹") || "1";
+    row.insertCell().textContent = known.meaning;
   }
   showParts(state, mmbrdf, answer);
 }

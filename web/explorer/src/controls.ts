@@ -17,7 +17,7 @@ export interface Listener {
   limits: number[];
   change(some: Partial<State>, typed?: HTMLInputElement): void;
   open(name: string): void;
-  read(file: File): Promise<void>;
+  read(files: File[]): Promise<void>;
   /** Without the samples that are shown. */
   forget(): void;
 }
@@ -141,8 +141,7 @@ export class Controls {
 
   #listenToFiles() {
     field("file").addEventListener("change", () => {
-      const [file] = field("file").files ?? [];
-      if (file) void this.page.read(file).then(() => (field("file").value = "")); // so that the same file can be opened again
+      void this.page.read([...(field("file").files ?? [])]).then(() => (field("file").value = "")); // so that the same file can be opened again
     });
     addEventListener("dragover", (event) => {
       event.preventDefault();
@@ -152,8 +151,7 @@ export class Controls {
     addEventListener("drop", (event) => {
       event.preventDefault();
       document.body.classList.remove("dropping");
-      const file = event.dataTransfer?.files[0];
-      if (file) void this.page.read(file);
+      void this.page.read([...(event.dataTransfer?.files ?? [])]);
     });
   }
 }

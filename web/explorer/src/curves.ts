@@ -13,6 +13,8 @@ import type { Bands, Curves } from "./worker";
 
 export const polarized = ["f_ss", "f_pp", "f_sp", "f_ps"];
 const coverage = 1.96; // of a normal distribution, 95 %
+/** A window in which the words of a wide chart would be too small. */
+export const narrow = matchMedia("(max-width: 511px)");
 
 /** All that a curve is drawn of. */
 export interface Drawing {
@@ -83,10 +85,14 @@ function points({ state, along, curves, samples, near, other }: Drawing, chosen:
   );
 }
 
-/** Where the model extrapolates, in x. */
-function beyond({ state, at, along: { kind, x, geometries } }: Drawing): [number, number][] {
-  const angles = geometries.length === x.length ? at.outside(geometries).map(({ extrapolated }) => extrapolated) : undefined;
-  const outside = angles ?? x.map((wavelength) => leaves(at, wavelength) || (kind === "dhr_wavelength" && state.thetaI > (at.model.thetaIMax ?? 90)));
+/** Whether a model extrapolates at each x. */
+function extrapolates(at: ModelAt, { state, along: { kind, x, geometries } }: Drawing): boolean[] {
+  if (geometries.length === x.length) return at.outside(geometries).map(({ extrapolated }) => extrapolated);
+  return x.map((wavelength) => leaves(at, wavelength) || (kind === "dhr_wavelength" && state.thetaI > (at.model.thetaIMax ?? 90)));
+}
+
+/** Half way to those that are not outside, in x. */
+function stretches(x: number[], outside: boolean[]): [number, number][] {
   const result: [number, number][] = [];
   outside.forEach((is, i) => {
     if (!is) return;
@@ -113,34 +119,55 @@ function labels({ state, mmbrdf, along }: Drawing, chosen: [string, string][], c
   return `${change}${key === "dhr" ? "directional-hemispherical reflectance" : name}${unit ? ", sr⁻¹" : ""}`;
 }
 
-/** Shows it, and returns its SVG. */
-export function showCurve(drawing: Drawing): string {
-  const { state, other, along, samples } = drawing;
+/** Shows it, and returns its SVG and what is said of it. */
+export function showCurve(drawing: Drawing): { svg: string; words: string } {
+  const { state, at, other, along, samples } = drawing;
   const chosen = chosenCurves(drawing);
   const isDifference = other !== undefined && state.shown === "difference";
+  const outside = extrapolates(at, drawing);
+  const otherOutside = other && extrapolates(other, drawing);
   const yLabel = labels(drawing, chosen, isDifference ? "difference of " : "");
   const chart: Chart = {
+    width: narrow.matches ? 400 : 640,
     curves: lines(drawing, chosen),
     points: points(drawing, chosen),
     xLabel: along.label,
     yLabel,
     residualLabel: samples?.hasUncertainty ? "(data − model) / u" : "data − model",
-    beyond: beyond(drawing),
+    beyond: stretches(along.x, isDifference ? outside.map((is, i) => is || otherOutside![i]) : outside),
     at: cursor(state, along),
   };
   const span = (one: Curve) => `${one.name}${one.thin ? ` of ${state.compare}` : ""} from ${toPlaceOf(Math.min(...Array.from(one.y)), null)} to ${toPlaceOf(Math.max(...Array.from(one.y)), null)}`;
   const svg = drawn(chart, `${yLabel} against ${along.label}: ${chart.curves.map(span).join("; ")}.`);
   element("chart").innerHTML = svg;
-  element("chart-words").textContent = words(drawing, chart, isDifference);
-  return svg;
+  const said = words(drawing, chart, otherOutside);
+  element("chart-words").textContent = said;
+  return { svg, words: said };
 }
 
-function words({ state, at, other, along, samples }: Drawing, chart: Chart, isDifference: boolean): string {
-  const what = along.kind === "dhr_wavelength" || along.kind === "coefficients" ? at.model.name : `${at.model.name} at ${state.wavelength} nm`;
-  const parts = [isDifference ? `${state.compare} − ${what}, as if independent.` : `${what}.`];
-  if (along.kind === "coefficients") return `${parts[0]} The four largest of ${modesOf(at, state.block).length} modes (n, m, k, l); the CSV has all. Hatched: extrapolated.`;
-  parts.push("Bands hold 95 % (1.96 u).");
-  if (other && !isDifference) parts.push(`Thin: ${state.compare}.`);
+/** The model, and where: what runs along the curve is at its axis. */
+function place({ state, at, along: { kind } }: Drawing): string {
+  const { name, basis } = at.model;
+  const azimuth = /^isotropic/.test(basis) ? "" : ", light from φi = 0°"; // that of reflectances, as the program has them
+  return {
+    plane: `${name} at ${state.wavelength} nm, light from θi = ${state.thetaI}°, φi = ${state.phiI}°`,
+    azimuth: `${name} at ${state.wavelength} nm, light from θi = ${state.thetaI}°, φi = ${state.phiI}°`,
+    dhr: `${name} at ${state.wavelength} nm${azimuth}`,
+    dhr_wavelength: `${name}, light from θi = ${state.thetaI}°${azimuth && ", φi = 0°"}`,
+    coefficients: name,
+  }[kind];
+}
+
+function words(drawing: Drawing, chart: Chart, otherOutside?: boolean[]): string {
+  const { state, at, other, along, samples } = drawing;
+  const hatched = "Hatched: extrapolated.";
+  if (along.kind === "coefficients") return `${place(drawing)}. The four largest of ${modesOf(at, state.block).length} modes (n, m, k, l); the CSV has all. ${hatched}`;
+  const isDifference = other !== undefined && state.shown === "difference";
+  const parts = [isDifference ? `${state.compare} − ${place(drawing)}, as if independent.` : `${place(drawing)}.`];
+  const known = (list: ArrayLike<number>) => Array.from(list).some(Number.isFinite);
+  if (!chart.curves.some(({ y, thin }) => !thin && known(y))) parts.push("It is not known: elements that it takes were not measured.");
+  parts.push(chart.curves.some(({ half }) => known(half)) ? "Bands hold 95 % (1.96 u)." : "There are no bands: uncertainties are not known.");
+  if (other && !isDifference) parts.push(`Thin: ${state.compare}${otherOutside!.every((is) => is) ? ", extrapolated" : otherOutside!.some((is) => is) ? ", extrapolated in part" : ""}.`);
   if (samples) parts.push(chart.points.length ? `Points: ${chart.points.length} of ${samples.name}, with bars of 1.96 u where it is stated.` : `No samples of ${samples.name} lie on this curve.`);
-  return [...parts, "Hatched: extrapolated."].join(" ");
+  return [...parts, hatched].join(" ");
 }

@@ -3,6 +3,7 @@
 import type { Hemisphere, Mmbrdf, ModelAt } from "mmbrdf";
 
 import { f11Gradient, palette, signedGradient, signedPalette } from "./colors";
+import { element } from "./dom";
 import { short } from "./numbers";
 import { pictureOf } from "./picture";
 import { draw, type Points, takenBy } from "./points";
@@ -56,7 +57,8 @@ export class Hemispheres {
       this.#first.evaluate(at, state.thetaI, state.phiI, state);
       grid.subtract(this.#first);
     }
-    const limits = state.limits.length ? state.limits : automatic(grid.extremes(), difference);
+    const extremes = grid.extremes();
+    const limits = state.limits.length ? state.limits : automatic(extremes, difference);
     grid.colors.set(difference ? signedPalette : palette);
     grid.limits.set(limits);
     grid.paint();
@@ -67,7 +69,8 @@ export class Hemispheres {
     if (points) draw(this.#context, pixels, points, limits, place);
     performance.measure("frame", { start: begun, end: performance.now() });
     this.#canvas.dataset.points = String(points ? takenBy(points) : 0);
-    this.#label(state, limits, difference);
+    this.#label(state, limits, difference, extremes);
+    element("legend-points").textContent = points?.words ?? "";
     return limits;
   }
 
@@ -83,13 +86,16 @@ export class Hemispheres {
     return this.#grid;
   }
 
-  #label(state: State, limits: number[], difference: boolean) {
+  /** An element without extremes is not known. */
+  #label(state: State, limits: number[], difference: boolean, extremes: Float32Array) {
+    const known = [...Array(16).keys()].map((e) => Number.isFinite(extremes[2 * e]));
+    element("legend-unknown").hidden = !known.includes(false);
     const [source, detector] = [placed(state, state.thetaI, state.phiI), placed(state, state.thetaR, state.phiR)];
     this.#tiles.forEach((tile, e) => {
       const letter = state.normalized && e ? "m" : "f";
       const [name, limit, sun, eye] = tile.children as unknown as HTMLElement[];
       name.textContent = `${difference ? "Δ" : ""}${letter}${1 + (e >> 2)}${1 + (e & 3)}`;
-      limit.textContent = e || difference ? `± ${short(limits[2 * e + 1])}` : `${short(limits[0])} … ${short(limits[1])}`;
+      limit.textContent = !known[e] ? "not known" : e || difference ? `± ${short(limits[2 * e + 1])}` : `${short(limits[0])} … ${short(limits[1])}`;
       for (const [mark, [x, y]] of [[sun, source], [eye, detector]] as const) {
         mark.style.left = `${50 + 50 * x}%`;
         mark.style.top = `${50 - 50 * y}%`;
@@ -98,9 +104,9 @@ export class Hemispheres {
     const ramp = (gradient: string) => `<i class="ramp" style="background:${gradient}"></i>`;
     const unit = state.normalized ? "" : " sr<sup>-1</sup>";
     const lock = areOfPaper(state) ? ", as in the paper" : state.limits.length ? ", locked" : "";
-    document.querySelector("#legend-f11")!.innerHTML =
+    element("legend-f11").innerHTML =
       `${difference ? "Δ" : ""}f11: ${short(limits[0])}${ramp(difference ? signedGradient : f11Gradient)}${short(limits[1])} sr<sup>-1</sup>${lock}`;
-    document.querySelector("#legend-others")!.innerHTML =
+    element("legend-others").innerHTML =
       `others: −${ramp(signedGradient)}+ of the limit in each picture${unit}${lock}`;
   }
 
@@ -117,7 +123,7 @@ export class Hemispheres {
     };
     this.current = (now: State) => (state = now);
     this.#box.addEventListener("pointerdown", (event) => {
-      if (!state || event.button !== 0) return;
+      if (!state || event.button !== 0 || !event.isPrimary) return; // not a second finger
       const { x, y, size } = at(event);
       const near = (theta: number, phi: number) => {
         const [mx, my] = placed(state!, theta, phi);
@@ -128,11 +134,12 @@ export class Hemispheres {
       moved(held, direction(state, x, y));
     });
     this.#box.addEventListener("pointermove", (event) => {
-      if (!held || !state) return;
+      if (!held || !state || !event.isPrimary) return;
       const { x, y } = at(event);
       moved(held, direction(state, x, y));
     });
-    for (const end of ["pointerup", "pointercancel"]) this.#box.addEventListener(end, () => (held = undefined));
+    for (const end of ["pointerup", "pointercancel"] as const)
+      this.#box.addEventListener(end, ({ isPrimary }) => (held = isPrimary ? undefined : held));
     this.#box.addEventListener("keydown", (event) => {
       const steps: Record<string, Angles> = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
       const step = steps[event.key];

@@ -3,10 +3,12 @@
 import type { Geometry, Samples } from "mmbrdf";
 
 import { type Along, fromLight } from "./scan";
-import type { State } from "./state";
+import { folded, type State } from "./state";
 
 /** How far samples may be from what is shown. */
 export const near = { wavelength: 0.05, degrees: 1 };
+
+const mostShown = 2000; // samples: the page answers in seconds to these, and the pictures have no place for more points
 
 const radians = Math.PI / 180;
 
@@ -20,13 +22,16 @@ function between(thetaA: number, phiA: number, thetaB: number, phiB: number): nu
 
 /** Samples at the light that is shown, with numbers of the file. */
 export interface Near {
+  /** Of `count` there one in `each`. */
   which: number[];
+  count: number;
+  each: number;
   geometries: Geometry[];
   /** As the worker takes them. */
   places: Float64Array;
 }
 
-export const nothing: Near = { which: [], geometries: [], places: new Float64Array() };
+export const nothing: Near = { which: [], count: 0, each: 1, geometries: [], places: new Float64Array() };
 
 /** An incident direction and a wavelength of which there are samples. */
 export interface Incidence {
@@ -42,6 +47,7 @@ export class Measured {
 
   constructor(readonly samples: Samples) {
     this.#places = samples.places;
+    for (let i = 0; i < samples.count; ++i) for (const k of [5 * i + 1, 5 * i + 3]) this.#places.set(folded(this.#places[k], this.#places[k + 1]), k);
     const found = new Map<string, Incidence>();
     for (let i = 0; i < samples.count; ++i) {
       const { wavelength, geometry } = this.place(i);
@@ -60,16 +66,16 @@ export class Measured {
   }
 
   near(state: State): Near {
-    const which: number[] = [];
-    const geometries: Geometry[] = [];
+    const all: number[] = [];
     for (let i = 0; i < this.samples.count; ++i) {
-      const { wavelength, geometry } = this.place(i);
-      if (Math.abs(wavelength - state.wavelength) > near.wavelength) continue;
-      if (between(geometry.thetaI, geometry.phiI!, state.thetaI, state.phiI) > near.degrees) continue;
-      which.push(i);
-      geometries.push(geometry);
+      const [wavelength, thetaI] = [this.#places[5 * i], this.#places[5 * i + 1]];
+      if (Math.abs(wavelength - state.wavelength) > near.wavelength || Math.abs(thetaI - state.thetaI) > near.degrees) continue;
+      if (between(thetaI, this.#places[5 * i + 2], state.thetaI, state.phiI) <= near.degrees) all.push(i);
     }
-    return { which, geometries, places: Float64Array.from(geometries.flatMap((g) => [g.thetaI, g.phiI!, g.thetaR, g.phiR!])) };
+    const each = Math.ceil(all.length / mostShown) || 1;
+    const which = all.filter((_, i) => i % each === 0);
+    const places = new Float64Array(which.flatMap((i) => [...this.#places.subarray(5 * i + 1, 5 * i + 5)]));
+    return { which, count: all.length, each, geometries: which.map((i) => this.place(i).geometry), places };
   }
 
   /** The incidence that is nearest to what is shown: of the nearest wavelength and polar angle the nearest azimuth. */
@@ -92,6 +98,6 @@ export function alongCurve(state: State, { kind }: Along, geometry: Geometry): n
 /** The nearest sample to the chosen direction, if one is near. */
 export function atCursor(state: State, { geometries }: Near): number | undefined {
   const off = geometries.map(({ thetaR, phiR }) => between(thetaR, phiR!, state.thetaR, state.phiR));
-  const least = off.indexOf(Math.min(...off));
-  return least >= 0 && off[least] <= near.degrees ? least : undefined;
+  const least = off.reduce((best, one, i) => (one < off[best] ? i : best), 0);
+  return off[least] <= near.degrees ? least : undefined;
 }

@@ -2,17 +2,18 @@
 // The page: one state, which controls, pictures, words and the link show.
 import type { Mmbrdf } from "mmbrdf";
 
+import { Address } from "./address";
 import { showMatrix, showTables } from "./answer";
 import { standalone } from "./chart";
 import { Controls } from "./controls";
-import { showCurve } from "./curves";
+import { narrow, showCurve } from "./curves";
 import { element } from "./dom";
 import { Hemispheres } from "./hemispheres";
 import { type Incidence, Measured, type Near, nothing } from "./measured";
 import { Shelf, Shown } from "./models";
 import { Residuals } from "./residuals";
 import { type Along, along } from "./scan";
-import { choices, fromLink, start, type State, toLink, understood } from "./state";
+import { type Asked, choices, fromLink, start, type State, toLink, understood } from "./state";
 import { csv, type Named, pictureWords, programLines, pythonLines, save } from "./take";
 import type { Curves, Numbers, Question, Reply } from "./worker";
 import Beside from "./worker?worker&inline";
@@ -25,6 +26,7 @@ export class Page {
   readonly #shelf: Shelf;
   readonly #hemispheres: Hemispheres;
   readonly #controls: Controls;
+  readonly #address = new Address(() => this.#calm());
   readonly #beside = new Beside();
   #shown!: Shown;
   #other?: Shown;
@@ -36,22 +38,26 @@ export class Page {
   #curves?: Curves[];
   #asked = 0; // number of the last question to the worker
   #busy = true; // the worker answers one question at a time
+  #open = true; // what is shown has not all its answers
   #drawing = false;
-  #failed = false; // to show the state
-  #chart = "";
+  #reading = Promise.resolve();
+  #failed = false; // to show what was asked for
+  #last?: State; // that was shown
+  #chart = { svg: "", words: "" };
 
   constructor(
     readonly mmbrdf: Mmbrdf,
     wasm: Uint8Array,
   ) {
-    this.state = fromLink(location.hash);
+    const asked = fromLink(location.hash);
+    this.state = asked.state;
     this.#shelf = new Shelf(mmbrdf);
     this.#hemispheres = new Hemispheres(mmbrdf, (what, [theta, phi]) =>
       this.change(what === "source" ? { thetaI: theta, phiI: phi } : { thetaR: theta, phiR: phi }),
     );
     this.#controls = new Controls(mmbrdf, this);
     this.#listen();
-    this.open(this.state.model, this.state, true);
+    this.open(this.state.model, asked, true);
     this.#beside.onmessage = ({ data }: MessageEvent<Reply>) => this.#answered(data);
     this.#beside.onerror = () => this.#trouble("Uncertainties cannot be computed: this browser starts no worker");
     this.#beside.postMessage({ wasm });
@@ -65,31 +71,64 @@ export class Page {
         element("take-state").textContent = `The curve is ${why}.`;
       });
     ofCurve("csv", () => csv(this.#drawn(this.#curves!)), () => `${this.#fileName()}.csv`, "text/csv");
-    ofCurve("svg", () => standalone(this.#chart), () => `${this.#fileName()}.svg`, "image/svg+xml");
+    ofCurve("svg", () => standalone(this.#chart.svg, this.#chart.words), () => `${this.#fileName()}.svg`, "image/svg+xml");
     ofCurve("samples-csv", () => this.#residuals!.csv(), () => "samples.csv", "text/csv");
-    element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits))));
-    element("link").addEventListener("click", async () => {
-      await navigator.clipboard?.writeText(location.href).catch(() => undefined);
-      element("link").textContent = "The link is in the address bar, and copied";
+    element("png").addEventListener("click", async () => save("hemispheres.png", await this.#hemispheres.png(pictureWords(this.state, this.limits, element("legend-points").textContent!))));
+    element("link").addEventListener("click", () => void this.#copyLink());
+    narrow.addEventListener("change", () => {
+      if (this.#curves && !this.#drawing) this.#chart = showCurve(this.#drawn(this.#curves));
     });
     addEventListener("hashchange", () => {
       if (location.hash === toLink(this.state)) return;
       const asked = fromLink(location.hash);
-      this.open(asked.model, asked);
+      this.open(asked.state.model, asked);
     });
+  }
+
+  async #copyLink() {
+    const { model, compare } = this.state;
+    const files = this.#measured || this.#shelf.files.has(model) || this.#shelf.files.has(compare);
+    const link = location.href.replace(/#.*$/, "") + toLink(this.state);
+    const where = await (navigator.clipboard?.writeText(link) ?? Promise.reject()).then(
+      () => "The link is copied.",
+      () => "The link is in the address bar: this browser does not let the page copy it.",
+    );
+    element("link-state").textContent = files ? `${where} It does not hold files: who follows it has to open them.` : where;
   }
 
   // ---- files and models ----------------------------------------------------------------------------------------------
 
-  async read(file: File) {
-    const contents = new Uint8Array(await file.arrayBuffer());
+  /** One after the other, after those that are still being read. */
+  read(files: File[]): Promise<void> {
+    this.#reading = this.#reading.then(async () => {
+      const lines = [];
+      for (const file of files) lines.push(await this.#readOne(file));
+      element("reading").textContent = "";
+      const line = lines.filter((one) => one).join(" ");
+      if (line) this.#trouble(line);
+    });
+    return this.#reading;
+  }
+
+  /** Returns what is wrong with it. */
+  async #readOne(file: File): Promise<string> {
+    element("reading").textContent = `Reading ${file.name} …`;
+    let contents: Uint8Array;
     try {
-      if (this.mmbrdf.holdsSamples(contents)) return this.#measure(contents, file.name);
-      const name = this.#shelf.add(contents, file.name);
-      this.#controls.offer(name);
-      this.open(name);
+      contents = new Uint8Array(await file.arrayBuffer());
+    } catch {
+      return `${file.name}: cannot be read: is it a file, and still there?`;
+    }
+    try {
+      if (this.mmbrdf.holdsSamples(contents)) this.#measure(contents, file.name);
+      else {
+        const name = this.#shelf.add(contents, file.name);
+        this.#controls.offer(name);
+        this.open(name);
+      }
+      return "";
     } catch (error) {
-      this.#trouble((error as Error).message);
+      return (error as Error).message;
     }
   }
 
@@ -110,7 +149,7 @@ export class Page {
   }
 
   /** Another model, and what a link asks of it; all that was shown stays where there is no such model. */
-  open(name: string, asked?: State, first = false) {
+  open(name: string, asked?: Asked, first = false) {
     let line = "";
     try {
       const shown = this.#opened(name);
@@ -133,7 +172,7 @@ export class Page {
     this.#trouble(line);
     const known = this.#shown.model.wavelengths;
     const inside = known.length && this.state.wavelength >= known[0] && this.state.wavelength <= known[known.length - 1];
-    const wavelength = first || inside || !known.length ? this.state.wavelength : known[0];
+    const wavelength = asked?.named.has("wavelength") || inside || !known.length ? this.state.wavelength : known[0];
     this.change({ model: name, wavelength });
   }
 
@@ -159,6 +198,7 @@ export class Page {
   }
 
   #trouble(words: string) {
+    this.#failed = false; // what was, is no more said
     element("trouble").textContent = words;
   }
 
@@ -175,34 +215,47 @@ export class Page {
   }
 
   #show(typed?: HTMLInputElement) {
+    const wrong = this.#draw();
+    if (wrong || this.#failed) this.#trouble(wrong);
+    this.#failed = wrong !== "";
     const { state } = this;
-    this.#numbers = this.#curves = undefined; // they were of another question
-    try {
-      this.#compare();
-      this.#near = this.#measured?.near(state) ?? nothing;
-      this.#along = along(state, this.#shown.model);
-      this.#picture();
-      this.#hemispheres.current(state);
-    } catch (error) {
-      this.#failed = true;
-      return this.#trouble((error as Error).message);
-    }
-    if (this.#failed) this.#trouble("");
-    this.#failed = false;
-    this.#controls.show(typed);
+    this.#last = { ...state };
+    this.#controls.show(wrong ? undefined : typed);
     this.#controls.showIncidences(this.#measured?.incidences ?? noIncidences, state);
     const { model } = this.#shown;
     const blocks = [...new Set(model.modes.map(({ block }) => block))];
     if (!blocks.includes(state.block)) state.block = blocks[0];
     this.#controls.showBlocks(blocks, state.block);
     element("facts").textContent = `${model.basis}. Fitted: ${model.fittedRange}.`;
-    history.replaceState(null, "", toLink(state));
+    this.#address.show(toLink(state));
+    element("link-state").textContent = ""; // that was another link
     const file = this.#shelf.files.get(state.model);
     const named = file ? { ...state, model: file.path } : state; // what the program calls it
-    element("program").textContent = programLines(named, this.#along, Boolean(file), this.#compared());
-    element("python").textContent = pythonLines(named, Boolean(file));
+    const told = { state: named, along: this.#along, ownFile: Boolean(file), hasUncertainty: model.hasUncertainty };
+    element("program").textContent = programLines(told, this.#compared());
+    element("python").textContent = pythonLines(told);
     this.#ask();
     this.#matrix();
+  }
+
+  /** Pictures of the state, or of the last that could be shown: returns why then. */
+  #draw(): string {
+    const draw = () => {
+      this.#compare();
+      this.#near = this.#measured?.near(this.state) ?? nothing;
+      this.#along = along(this.state, this.#shown.model);
+      this.#picture();
+      this.#hemispheres.current(this.state);
+    };
+    this.#numbers = this.#curves = undefined; // they were of another question
+    try {
+      draw();
+      return "";
+    } catch (error) {
+      this.state = { ...(this.#last ?? start), model: this.#shown.name };
+      draw();
+      return (error as Error).message;
+    }
   }
 
   get #ats() {
@@ -227,9 +280,16 @@ export class Page {
 
   #ask() {
     this.#asked += 1;
+    this.#open = true;
     document.body.dataset.busy = "true";
     this.#waiting(["quantities", "parts", "chart"], true);
     if (!this.#busy) this.#send("numbers");
+  }
+
+  /** Nothing more will change of itself, if nothing is open and the address bar has the link. */
+  #calm(open = this.#open) {
+    this.#open = open;
+    if (!open && !this.#address.waits) delete document.body.dataset.busy;
   }
 
   /** Whether what is computed beside is of an earlier question. */
@@ -250,11 +310,13 @@ export class Page {
   #answered({ id, error, numbers, curves }: Reply) {
     this.#busy = false;
     if (id === 0 && error !== undefined) return this.#trouble(`Uncertainties cannot be computed: ${error}`);
-    if (this.#asked === 0) return; // the worker was faster than the first picture
+    if (this.#asked === 0 || this.#drawing) return; // what is to be drawn will ask
     if (id !== this.#asked) return this.#send("numbers");
     if (error !== undefined) {
-      delete document.body.dataset.busy;
-      return this.#trouble(error);
+      this.#calm(false);
+      this.#trouble(error);
+      this.#failed = true; // until something else is shown
+      return;
     }
     if (numbers) {
       this.#numbers = numbers;
@@ -263,7 +325,7 @@ export class Page {
       this.#matrix();
       return this.#send("curves");
     }
-    delete document.body.dataset.busy;
+    this.#calm(false);
     this.#curves = curves!;
     this.#waiting(["chart"], false);
     this.#chart = showCurve(this.#drawn(curves!));

@@ -10,6 +10,8 @@ export interface Points {
   values: Float64Array;
   /** Ends of the scales of differences, one for each element; none of measured values, which have the scales of the pictures. */
   ends?: number[];
+  /** What they show, for a legend. */
+  words: string;
 }
 
 /** How many points there are in all sixteen pictures. */

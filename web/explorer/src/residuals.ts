@@ -58,9 +58,15 @@ export class Residuals {
     const of = { values: "value", residuals: "difference", over_u: "overU" } as const;
     const values = Float64Array.from(this.all, (one) => one[of[this.state.points]]);
     const { geometries } = this.near;
-    if (this.state.points === "values") return { geometries, values };
-    const ends = [...Array(16).keys()].map((e) => (this.state.points === "over_u" ? 3 : 3 * rms(Array.from(values).filter((_, i) => i % 16 === e)) || 1));
-    return { geometries, values, ends };
+    const { name } = this.measured.samples;
+    const none = geometries.length > 0 && !values.some(Number.isFinite);
+    if (this.state.points === "values") return { geometries, values, words: `points: ${name}, in the colours of the pictures` };
+    if (this.state.points === "over_u") {
+      const words = none ? `no points: ${name} does not state its uncertainties` : `points: (${name} − model) / u from −3 blue to 3 red`;
+      return { geometries, values, ends: Array(16).fill(3), words };
+    }
+    const ends = [...Array(16).keys()].map((e) => 3 * rms(Array.from(values).filter((_, i) => i % 16 === e)) || 1);
+    return { geometries, values, ends, words: `points: ${name} − model, from −3 rms blue to 3 rms red in each picture` };
   }
 
   /** The one at the chosen direction, if there is one. */
@@ -82,7 +88,7 @@ export class Residuals {
     const { samples } = this.measured;
     const missing = 16 - samples.measured.length;
     const about = [
-      `${samples.name}: ${samples.count} samples`,
+      `${samples.name}: ${samples.count} ${samples.count === 1 ? "sample" : "samples"}`,
       samples.hasUncertainty ? "with uncertainties" : "without uncertainties",
       missing ? `${missing} elements were not measured and have no points` : "",
       samples.understood,
@@ -93,7 +99,9 @@ export class Residuals {
     const off = rms(of11.map(({ difference }) => difference));
     const over = rms(of11.map(({ overU }) => overU));
     const f11 = Number.isFinite(off) ? ` rms of data − model of f11: ${toPlaceOf(off, off)} sr⁻¹${Number.isFinite(over) ? `, ${toPlaceOf(over, 0.1)} u of both` : ""}.` : "";
-    return `${said} ${this.near.which.length} at this light and wavelength.${f11}`;
+    const { count, each } = this.near;
+    const some = each > 1 ? `, of which one in ${each} is shown` : "";
+    return `${said} ${count} at this light and wavelength${some}.${f11}`;
   }
 
   /** A row for each sample that is near, with a group of columns for each element that was measured. */

@@ -70,23 +70,35 @@ export function toLink(state: State): string {
   return "#" + parameters.toString();
 }
 
-/** What of a link is understood; the rest is as at the start. Which values are allowed the page knows. */
-export function fromLink(hash: string): State {
-  const parameters = new URLSearchParams(hash.replace(/^#/, ""));
+/** What a link asks for. */
+export interface Asked {
+  /** The rest is as at the start. Which values are allowed the page knows. */
+  state: State;
+  /** What it names. */
+  named: Set<string>;
+  /** Sentences on what is not understood. */
+  lines: string[];
+}
+
+export function fromLink(hash: string): Asked {
   const state: Record<string, unknown> = { ...start };
-  for (const [name, value] of parameters) {
-    const usual = (start as unknown as Record<string, unknown>)[name];
-    if (Array.isArray(usual)) {
-      if (value) state[name] = value.split(",").map(Number);
-    } else if (typeof usual === "number") {
-      if (value !== "" && Number.isFinite(Number(value))) state[name] = Number(value);
-    } else if (typeof usual === "boolean") {
-      state[name] = value === "true";
-    } else if (typeof usual === "string") {
-      state[name] = value;
+  const named = new Set<string>();
+  const lines: string[] = [];
+  for (const [name, value] of new URLSearchParams(hash.replace(/^#/, ""))) {
+    if (!name) continue;
+    const usual = Object.hasOwn(start, name) ? start[name as keyof State] : undefined;
+    if (usual === undefined) lines.push(`${name} of the link means nothing here`);
+    else if (Array.isArray(usual)) state[name] = value ? value.split(",").map(Number) : usual;
+    else if (typeof usual === "string") state[name] = value;
+    else if (typeof usual === "boolean" && /^(true|false)$/.test(value)) state[name] = value === "true";
+    else if (typeof usual === "number" && value.trim() !== "" && Number.isFinite(Number(value))) state[name] = Number(value);
+    else {
+      lines.push(`${name} = ${value} of the link must be ${typeof usual === "number" ? "a number" : "true or false"}: ${usual} is shown`);
+      continue;
     }
+    named.add(name);
   }
-  return state as unknown as State;
+  return { state: state as unknown as State, named, lines };
 }
 
 /** Of sixteen colour scales, the lower end and the upper one, as the numbers of the pictures hold them. */
@@ -104,13 +116,15 @@ export function folded(theta: number, phi: number): [number, number] {
   return [Math.min(90, t), turned === -180 ? 180 : turned];
 }
 
-/** What of a link is not among these words is as at the start; a line says which numbers are. */
-export function understood(asked: State, known: Record<(typeof choices)[number], string[]>): { state: State; line: string } {
-  const state = { ...asked };
-  const lines: string[] = [];
-  for (const [name, values] of Object.entries(known))
-    if (!values.includes(state[name as keyof typeof known]))
-      Object.assign(state, { [name]: start[name as keyof typeof known] });
+/** What of a link is not allowed, or not among these words, is as at the start, and a sentence says so. */
+export function understood(asked: Asked, known: Record<(typeof choices)[number], string[]>): { state: State; line: string } {
+  const state = { ...asked.state };
+  const lines = [...asked.lines];
+  for (const name of choices) {
+    if (known[name].includes(state[name])) continue;
+    lines.push(`${name} = ${state[name]} of the link must be one of ${known[name].join(", ")}: ${start[name]} is shown`);
+    Object.assign(state, { [name]: start[name] });
+  }
   const refuse = (name: (typeof angles)[number] | "wavelength", allowed: string) => {
     lines.push(`${name} = ${state[name]} of the link must be ${allowed}: ${start[name]} is shown`);
     state[name] = start[name];

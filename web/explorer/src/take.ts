@@ -25,8 +25,16 @@ export interface Named {
   ownFile: boolean;
 }
 
+/** What is shown, by its names in lines for elsewhere. */
+export interface Told {
+  state: State;
+  along: Along;
+  ownFile: boolean;
+  hasUncertainty: boolean;
+}
+
 /** `others`: a model or samples beside it. */
-export function programLines(state: State, { kind, x }: Along, ownFile: boolean, others: Named[]): string {
+export function programLines({ state, along: { kind, x }, ownFile, hasUncertainty }: Told, others: Named[]): string {
   const light = `-w ${state.wavelength} -i ${state.thetaI},${state.phiI}`;
   const model = fileName(state.model, ownFile);
   const where = `${model} ${light}`;
@@ -39,7 +47,7 @@ export function programLines(state: State, { kind, x }: Along, ownFile: boolean,
     coefficients: `# Coefficients are in the file of the model: mmbrdf convert ${model} model.json`,
   };
   const lines = [
-    `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}`,
+    `mmbrdf evaluate ${where} -r ${state.thetaR},${state.phiR}${frame}${state.normalized ? " --normalized" : ""}${hasUncertainty ? " --uncertainty" : ""}`,
     `mmbrdf analyze ${where} -r ${state.thetaR},${state.phiR}${frame}`,
     curve[kind],
     ...others.map((other) => `mmbrdf compare ${model} ${fileName(other.name, other.ownFile)} -w ${state.wavelength}`),
@@ -49,22 +57,39 @@ export function programLines(state: State, { kind, x }: Along, ownFile: boolean,
   return lines.join("\n");
 }
 
-export function pythonLines(state: State, ownFile: boolean): string {
-  const angles = `theta_i_deg=${state.thetaI}, phi_i_deg=${state.phiI}, theta_r_deg=${state.thetaR}, phi_r_deg=${state.phiR}`;
-  const lines = [
+/** The list of the azimuths of a curve around the normal. */
+const turns = (phiI: number) => (Number.isInteger(phiI) ? `range(${phiI - 180}, ${phiI + 181}, 3)` : `[${phiI} + turn for turn in range(-180, 181, 3)]`);
+
+export function pythonLines({ state, along: { kind, x }, ownFile, hasUncertainty }: Told): string {
+  const { wavelength, thetaI, phiI, thetaR, phiR, frame, convention } = state;
+  const light = `${wavelength}, theta_i_deg=${thetaI}, phi_i_deg=${phiI}`;
+  const where = `${light}, theta_r_deg=${thetaR}, phi_r_deg=${phiR}`;
+  const reflectance = (of: string) => [
+    `dhr = mmbrdf.directional_hemispherical_reflectance(model, ${of})`,
+    ...(hasUncertainty ? [`u_dhr = mmbrdf.directional_hemispherical_uncertainty(model, ${of})`] : []),
+  ];
+  const curve = {
+    plane: [`curve = model.analyze(${light}, theta_r_deg=range(-85, 86), phi_r_deg=${phiI + 180})`],
+    azimuth: [`curve = model.analyze(${light}, theta_r_deg=${thetaR}, phi_r_deg=${turns(phiI)})`],
+    dhr: reflectance(`${wavelength}, range(${x[0]}, ${x.length})`),
+    dhr_wavelength: reflectance(`[${x.join(", ")}], ${thetaI}`),
+    coefficients: [],
+  };
+  return [
     "import mmbrdf",
     "",
     `model = mmbrdf.${ownFile ? "load_model" : "material"}(${JSON.stringify(state.model)})`,
-    `f = model.evaluate(${state.wavelength}, ${angles}, frame="${state.frame}")`,
-    `u = model.evaluate_uncertainty(${state.wavelength}, ${angles}, frame="${state.frame}")`,
-    `all = model.analyze(${state.wavelength}, ${angles})`,
-  ];
-  if (state.convention !== "germer2017") lines.push(`f = mmbrdf.convert(f, "germer2017", "${state.convention}")`);
-  return lines.join("\n");
+    `f = model.evaluate(${where}, frame="${frame}")`,
+    ...(hasUncertainty ? [`u = model.evaluate_uncertainty(${where}, frame="${frame}")`] : []),
+    `quantities = model.analyze(${where})`,
+    ...curve[kind],
+    ...(convention === "germer2017" ? [] : [`f = mmbrdf.convert(f, "germer2017", "${convention}")`]),
+    ...(state.normalized ? ["m = mmbrdf.normalized(f)  # but for m11; of what it is uncertain by the program tells"] : []),
+  ].join("\n");
 }
 
-/** The lines over a picture of the hemispheres. */
-export function pictureWords(state: State, limits: number[]): string[] {
+/** The lines over a picture of the hemispheres; `points`: what they show, if there are any. */
+export function pictureWords(state: State, limits: number[], points: string): string[] {
   const other = state.compare && state.shown !== "model";
   const model = !other ? state.model : state.shown === "other" ? state.compare : `${state.compare} − ${state.model}`;
   const projection = state.projection === "lambert" ? "equal solid angles" : "direction cosines";
@@ -72,6 +97,7 @@ export function pictureWords(state: State, limits: number[]): string[] {
     `${model} at ${state.wavelength} nm, light from θi = ${state.thetaI}°, φi = ${state.phiI}°; ring: θr = ${state.thetaR}°, φr = ${state.phiR}°`,
     `Frame ${state.frame}, signs of ${state.convention}, ${projection}; striped: extrapolated`,
     `f11 from ${short(limits[0])} to ${short(limits[1])} sr⁻¹; ${state.normalized ? "others are divided by f11" : "others in sr⁻¹"}`,
+    ...(points ? [points] : []),
   ];
 }
 
@@ -99,12 +125,13 @@ export function csv({ state, along, curves, mmbrdf, at, other }: Drawing): strin
   const validity = at.outside(along.geometries);
   const signed = kind === "plane" ? "theta_r_signed_deg" : "phi_r_from_light_deg";
   const group = (name: string) => [name, `u_${name}`, ...(beside ? [`other_${name}`, `u_other_${name}`] : [])];
-  const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", signed, ...names.flatMap(group), "validity"];
+  const otherValidity = beside && other?.outside(along.geometries);
+  const head = ["wavelength_nm", "theta_i_deg", "phi_i_deg", "theta_r_deg", "phi_r_deg", signed, ...names.flatMap(group), "validity", ...(beside ? ["other_validity"] : [])];
   const numbers = (of: Bands | undefined, name: string, i: number) => (of ? [of[name].values[i], of[name].uncertainties[i]] : []);
   const rows = along.geometries.map((one, i) => [
     state.wavelength, one.thetaI, one.phiI!, one.thetaR, one.phiR!, x[i],
     ...names.flatMap((name) => [...numbers(bands, name, i), ...numbers(beside, name, i)]),
-    validity[i].validity,
+    validity[i].validity, ...(otherValidity ? [otherValidity[i].validity] : []),
   ]);
   return table(head, rows);
 }

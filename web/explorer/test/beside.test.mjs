@@ -103,9 +103,14 @@ test("elements that were not measured have no points, and uncertainties that are
   assert.equal(await points(page), 33);
   assert.match(await page.textContent("#samples-words"), /without uncertainties, 15 elements were not measured and have no points/);
   assert.equal(await page.locator("#chart circle.sample").count(), 29);
+  assert.equal(await page.textContent("#legend-points"), "points: f11.csv, in the colours of the pictures");
+  await page.selectOption("#points", "residuals");
+  await settled(page);
+  assert.match(await page.textContent("#legend-points"), /^points: f11\.csv − model, from −3 rms/);
   await page.selectOption("#points", "over_u");
   await settled(page);
   assert.equal(await points(page), 0);
+  assert.equal(await page.textContent("#legend-points"), "no points: f11.csv does not state its uncertainties");
   await page.selectOption("#curve", "polarized");
   await settled(page);
   assert.equal(await page.locator("#chart circle.sample").count(), 0);
@@ -144,6 +149,46 @@ test("of many lights the list has the first, and says how many more there are", 
   assert.equal(lights.length, 501);
   assert.equal(lights[0], "another light, or one of 100 more");
   assert.equal(await points(page), 16); // the nearest of all lights is shown
+});
+
+test("of thousands of samples at a light one in so many is shown, and the page says so", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532&curve=f11" });
+  const row = (i) => `532,45,180,${(i % 700) / 10},${i % 360},0.33`;
+  const rows = [[...head, "f11"].join(","), ...[...Array(10001).keys()].map(row), ""];
+  await page.setInputFiles("#file", { name: "many.csv", mimeType: "text/csv", buffer: Buffer.from(rows.join("\n")) });
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  assert.match(await page.textContent("#samples-words"), /\. 10001 at this light and wavelength, of which one in 6 is shown\./);
+  assert.equal(await points(page), 1667);
+  assert.deepEqual(complaints, []);
+});
+
+test("a negative polar angle of a sample is the opposite azimuth", { skip }, async () => {
+  const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
+  const rows = [[...head, "f11"].join(","), "532,-45,0,30,0,0.33", "532,45,180,-30,0,0.32", "532,-45,0,-30,180,0.31", ""];
+  await page.setInputFiles("#file", { name: "negative.csv", mimeType: "text/csv", buffer: Buffer.from(rows.join("\n")) });
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  const lights = await page.$$eval("#incidence option", (all) => all.map((one) => one.textContent));
+  assert.deepEqual(lights.slice(1), ["532 nm, θi 45°, φi 180° (3)"]);
+  assert.equal(await page.inputValue("#phiI"), "180");
+  assert.equal(await points(page), 3);
+  assert.deepEqual(complaints, []);
+});
+
+test("samples at a wavelength that no model takes leave what is shown, and say why", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium, { hash: "#model=ptfe-532" });
+  const rows = [[...head, "f11"].join(","), "1e20,45,0,30,0,0.33", ""];
+  await page.setInputFiles("#file", { name: "far.csv", mimeType: "text/csv", buffer: Buffer.from(rows.join("\n")) });
+  await page.waitForFunction(() => document.querySelector("#trouble").textContent === "wavelength 1e+20 nm is more than a metre");
+  await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "532");
+  await page.fill("#thetaI", "20");
+  await settled(page);
+  const [row] = analyzed("ptfe-532", 532, [[20, 0, 30, 180]], "xy");
+  near(Number(/f11 = (\S+) sr/.exec(await page.textContent("#words"))[1]), Number(row.f11), 0.0001, "f11");
+  assert.equal(await trouble(page), "");
+  assert.deepEqual(complaints, []);
 });
 
 test("samples that cannot be read give the program's line, and those that are shown stay", { skip: skip || without_program }, async () => {
@@ -187,7 +232,12 @@ test("two models: both numbers and their difference, from a link that keeps them
     near(Number(row.f11), Number(ours[i].f11), 1e-12, "f11");
     near(Number(row.other_f11), Number(others[i].f11), 1e-12, "f11 of the other");
     near(Number(row.u_other_f11), Number(others[i].u_f11), 1e-9, "its u");
+    assert.deepEqual([row.validity, row.other_validity], [ours[i].validity, others[i].validity]);
   });
+  assert.match(rows[85].other_validity, /wavelength/);
+  assert.match(await page.textContent("#other-beyond"), /^ptfe-633 is extrapolated here: outside the fitted range \(wavelength\)/);
+  const hatched = await page.$$eval("#chart rect[fill='url(#hatch)']", (all) => all.map((one) => Number(one.getAttribute("width"))));
+  assert.deepEqual(hatched, [566]); // all of the difference
   const off = rows.map((_, i) => others[i].f11 - ours[i].f11);
   const [, low, high] = /Δ f11 from (\S+) to (\S+)\.$/.exec(await page.getAttribute("#chart svg", "aria-label"));
   near(Number(low), Math.min(...off), 1e-7, "the least of the curve of differences"); // six digits are said
@@ -195,6 +245,16 @@ test("two models: both numbers and their difference, from a link that keeps them
   assert.match(page.url(), /compare=ptfe-633&.*shown=difference|shown=difference.*compare=ptfe-633/);
   assert.match(await page.textContent("#program"), /\nmmbrdf compare ptfe-532 ptfe-633 -w 532$/);
   assert.deepEqual(complaints, []);
+});
+
+test("of another model that is extrapolated the words of the curve say so", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532&compare=ptfe-633&curve=f11" });
+  await settled(page);
+  assert.match(await page.textContent("#chart-words"), /Thin: ptfe-633, extrapolated\./);
+  await page.fill("#wavelength", "633");
+  await settled(page);
+  assert.match(await page.textContent("#chart-words"), /Thin: ptfe-633, extrapolated in part\./); // beyond 81.87 degrees
+  assert.equal(await page.textContent("#other-beyond"), "");
 });
 
 test("a model beside itself differs by nothing, and goes when it is not chosen", { skip }, async () => {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Curves, parts of uncertainties, scales and what is taken along.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 
 import { analyzed, folder, run, without_program } from "../../mmbrdf/test/program.mjs";
@@ -152,6 +152,50 @@ test("the scales of the paper are those of the paper, locked and in the link", {
   assert.doesNotMatch(await again.textContent("#legend-f11"), /paper|locked/);
 });
 
+test("the SVG says of what it is", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532&thetaI=20&curve=f11" });
+  await settled(page);
+  const words = async () => {
+    const waiting = page.waitForEvent("download");
+    await page.click("#svg");
+    const svg = readFileSync(await (await waiting).path(), "utf8");
+    const [, height] = /viewBox="0 0 \d+ (\d+)"/.exec(svg);
+    for (const [, y] of svg.matchAll(/<text x="\S+" y="([\d.]+)"/g)) assert.ok(Number(y) < height, `${y} of ${height}`);
+    return svg.replaceAll(/<text[^>]*>/g, " ");
+  };
+  const all = await words();
+  assert.match(all, /ptfe-532 at 532 nm, light from θi = 20°, φi = 0°\. Bands hold 95 % \(1\.96 u\)\./);
+  await page.selectOption("#curve", "dhr_wavelength");
+  await settled(page);
+  assert.match(await words(), /ptfe-532, light from θi = 20°\. Bands/);
+});
+
+test("what of a model is not known is said to be so: f11 alone was measured, or there are no uncertainties", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium);
+  const [data, model, published] = ["f11.csv", "f11.json", "published.csv"].map((name) => `${folder}/${name}`);
+  const rows = run("simulate", "ptfe-532", "--noise", "speckle:0.01").split("\n").map((line) => line.split(",").slice(0, 6).join(","));
+  writeFileSync(data, rows.join("\n"));
+  run("fit", data, "-o", model);
+  await page.setInputFiles("#file", model);
+  await page.waitForFunction(() => document.querySelector("#model").value === "f11.json");
+  await settled(page);
+  assert.match(await page.textContent("#chart-words"), /It is not known: elements that it takes were not measured\./);
+  assert.equal(await page.textContent("#quantities tr[data-quantity=entropy] td"), "not known");
+  assert.equal(await page.textContent("#tiles div:nth-child(2) .limit"), "not known");
+  assert.ok(await page.isVisible("#legend-unknown"));
+
+  run("convert", "ptfe-532", published);
+  await page.setInputFiles("#file", published);
+  await page.waitForFunction(() => document.querySelector("#model").value === "published.csv");
+  await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "532"); // it stays: the file says none
+  assert.match(await page.textContent("#chart-words"), /There are no bands: uncertainties are not known\./);
+  assert.equal(await page.isVisible("#legend-unknown"), false);
+  assert.doesNotMatch(await page.textContent("#python"), /uncertainty/); // which Python would refuse
+  assert.doesNotMatch(await page.textContent("#program"), /--uncertainty/);
+  assert.deepEqual(complaints, []);
+});
+
 test("the PNG says what it shows: lines above, and in each tile its name, its limits and both directions", { skip }, async () => {
   const { page } = await opened(chromium, { hash: "#model=ptfe-532" });
   await settled(page);
@@ -182,6 +226,44 @@ test("the PNG says what it shows: lines above, and in each tile its name, its li
   assert.equal(seen.width, 768 + 24);
   assert.ok(seen.words > 1000, `${seen.words} dark pixels above`);
   for (const [e, { name, limit, sun }] of seen.tiles.entries()) assert.ok(name > 30 && limit > 30 && sun > 20, `tile ${e}: ${name}, ${limit}, ${sun}`);
+});
+
+test("in a window as wide as a phone no number is broken in two", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532&curve=depolarization_ratio", viewport: { width: 360, height: 780 } });
+  await settled(page);
+  const broken = await page.$$eval("#quantities td:not(:last-child), #parts tbody td:not(:last-child)", (cells) => cells.flatMap((cell) => {
+    const words = document.createRange();
+    words.selectNodeContents(cell);
+    return words.getClientRects().length === 1 ? [] : [cell.textContent];
+  }));
+  assert.deepEqual(broken, []);
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360);
+});
+
+test("the words of a chart can be read on a phone, and are all inside it, also when it is turned", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-532", viewport: { width: 360, height: 780 } });
+  await settled(page);
+  const look = async (least) => {
+    const { small, outside } = await page.$eval("#chart svg", (svg, size) => {
+      const [all, box] = [Array.from(svg.querySelectorAll("text")), svg.getBoundingClientRect()];
+      const scale = box.width / svg.viewBox.baseVal.width;
+      const boxes = all.map((one) => [one.textContent, one.getBoundingClientRect()]);
+      return {
+        small: all.filter((one) => Number(one.getAttribute("font-size")) * scale < size).map((one) => one.textContent),
+        outside: boxes.filter(([, b]) => b.left < box.left - 1 || b.right > box.right + 1 || b.bottom > box.bottom + 1).map(([text]) => text),
+      };
+    }, least);
+    assert.deepEqual([small, outside], [[], []]);
+  };
+  for (const [curve, scan] of [["polarized", "plane"], ["polarized", "azimuth"], ["dhr_wavelength"], ["coefficients"]]) {
+    await page.selectOption("#curve", curve);
+    if (scan) await page.selectOption("#scan", scan);
+    await settled(page);
+    await look(10); // px
+  }
+  await page.setViewportSize({ width: 780, height: 360 });
+  await page.waitForFunction(() => document.querySelector("#chart svg").viewBox.baseVal.width === 640);
+  await look(13);
 });
 
 test("a window as wide as a phone has nothing to scroll to the side, whatever is shown", { skip: skip || without_program }, async () => {

@@ -4,9 +4,10 @@ import { createRequire } from "node:module";
 import { readFileSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { join } from "node:path";
+import { gzipSync } from "node:zlib";
 
 import { analyzed, folder, refusal, run, without_program } from "../../mmbrdf/test/program.mjs";
-import { answered, browser, opened, skip } from "./browser.mjs";
+import { answered, browser, opened, page_file, skip } from "./browser.mjs";
 
 let chromium;
 before(async () => {
@@ -34,6 +35,7 @@ test("f11, its uncertainty and the CSV of the in-plane curve are found by their 
   const [row] = analyzed("ptfe", 600, [[45, 0, 30, 180]], "xy");
   near(Number(f11), Number(row.f11), 0.00005, "f11");
   near(Number(u), Number(row.u_f11), 0.00005, "u");
+  assert.ok(await page.locator("#quantities").getByText("0 for a perfect depolarizer, 1 where no light is depolarized").isVisible()); // 0.04 is not "little depolarized"
 
   const waiting = page.waitForEvent("download");
   await page.getByRole("button", { name: "Curve as CSV" }).click();
@@ -50,10 +52,24 @@ test("f11, its uncertainty and the CSV of the in-plane curve are found by their 
 });
 
 test("the lines of the page give the numbers of the page", { skip: skip || without_program }, async () => {
-  const { page } = await opened(chromium, { hash: "#wavelength=600&thetaI=50&frame=sp&digits=true" });
-  const [evaluate] = (await page.textContent("#program")).split("\n");
-  const printed = JSON.parse(run(...evaluate.split(" ").slice(1), "--format", "json")).mueller.flat();
-  (await matrix(page)).forEach(([value], e) => near(Number(value), printed[e], 1e-12 * printed[0], `element ${e}`));
+  for (const normalized of [false, true]) {
+    const { page } = await opened(chromium, { hash: `#wavelength=600&thetaI=50&frame=sp&digits=true&normalized=${normalized}` });
+    await answered(page);
+    const [evaluate] = (await page.textContent("#program")).split("\n");
+    const printed = JSON.parse(run(...evaluate.split(" ").slice(1), "--format", "json"));
+    const [values, u] = [printed.mueller.flat(), printed.u_mueller.flat()];
+    if (normalized) [values[0], u[0]] = [printed.f11, printed.u_f11];
+    (await matrix(page)).forEach(([value, uncertainty], e) => {
+      near(Number(value), values[e], 1e-12, `element ${e}`);
+      near(Number(uncertainty), u[e], 1e-9, `u of element ${e}`);
+    });
+    assert.equal(/m = mmbrdf\.normalized\(f\)/.test(await page.textContent("#python")), normalized);
+  }
+});
+
+test("the page takes at most 900 kB to load, compressed", { skip }, () => {
+  const bytes = gzipSync(readFileSync(page_file), { level: 9 }).length;
+  assert.ok(bytes <= 900000, `${bytes} bytes`);
 });
 
 test("a drag of the light moves it, pictures follow, and the link says where it is", { skip }, async () => {

@@ -74,6 +74,9 @@ for (const [asked, line, shown] of [
   ["phiR=1e300", /^phiR = 1e\+300 .*: 180 is shown\.$/, { phiR: "180" }],
   [`limits=${no_limits}`, /^limits of the link must be 16 pairs/, {}],
   ["limits=1,2", /^limits of the link must be 16 pairs/, {}],
+  ["wavelength=6OO", /^wavelength = 6OO of the link must be a number: 532 is shown\.$/, { wavelength: "532" }],
+  ["wavelength=300", /^$/, { wavelength: "300" }], // beyond the fitted range, as asked for
+  ["frame=s&wave=600&digits=1", /^wave of the link means nothing here\. digits = 1 .* true or false: false .*\. frame = s .* one of xy, sp, scattering_plane: xy is shown\.$/, {}],
 ])
   test(`a link with ${asked.slice(0, 40)} shows a page that lives`, { skip }, async () => {
     const { page, complaints } = await opened(chromium, { hash: `#${asked}` });
@@ -90,6 +93,95 @@ for (const [asked, line, shown] of [
     await look();
     assert.deepEqual(complaints, []);
   });
+
+test("a link without a wavelength shows one that the model was fitted to", { skip }, async () => {
+  const { page } = await opened(chromium, { hash: "#model=ptfe-633" });
+  await settled(page);
+  assert.equal(await page.inputValue("#wavelength"), "633");
+});
+
+test("the address bar is changed a few times a second, and has the link of what is shown in the end", { skip }, async () => {
+  const { page } = await opened(chromium);
+  await settled(page);
+  const changes = await page.evaluate(async () => {
+    let count = 0;
+    const replace = history.replaceState.bind(history);
+    history.replaceState = (...to) => ((count += 1), replace(...to));
+    const field = document.getElementById("phiI");
+    for (let i = 1; i <= 40; ++i) {
+      field.value = String(i);
+      field.dispatchEvent(new Event("input", { bubbles: true }));
+      await new Promise(requestAnimationFrame);
+      await new Promise((done) => setTimeout(done, 10));
+    }
+    return { count, seconds: performance.now() / 1000 };
+  });
+  assert.ok(changes.count <= 3 * changes.seconds + 1, `${changes.count} in less than ${changes.seconds} s`);
+  await settled(page);
+  assert.match(page.url(), /[#&]phiI=40(&|$)/);
+});
+
+test("an answer that comes between a change and its picture is not taken for one of what is chosen", { skip }, async () => {
+  const { page, complaints } = await opened(chromium);
+  await settled(page);
+  await page.evaluate(async () => {
+    const change = (id, value) => {
+      const field = document.getElementById(id);
+      field.value = value;
+      for (const type of ["input", "change"]) field.dispatchEvent(new Event(type, { bubbles: true }));
+    };
+    change("thetaI", "50");
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    const draw = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (work) => setTimeout(() => draw(work), 3000); // the answer to 50 degrees comes first
+    change("curve", "dhr");
+    window.requestAnimationFrame = draw;
+    await new Promise((done) => setTimeout(done, 3100));
+  });
+  await settled(page);
+  assert.match(await page.getAttribute("#chart svg", "aria-label"), /^directional-hemispherical reflectance against/);
+  assert.deepEqual(complaints, []);
+});
+
+for (const [can, words] of [[true, /^The link is copied\.$/], [false, /^The link is in the address bar: /]])
+  test(`a link that ${can ? "is" : "cannot be"} copied is said to be so, until it is another`, { skip }, async () => {
+    const { page, complaints } = await opened(chromium, { hash: "#thetaI=20" });
+    await settled(page);
+    await page.evaluate((copies) => {
+      const clipboard = copies ? { writeText: async (text) => void (window.copied = text) } : undefined;
+      Object.defineProperty(navigator, "clipboard", { value: clipboard });
+    }, can);
+    await page.click("#link");
+    await page.waitForFunction(() => document.getElementById("link-state").textContent);
+    assert.match(await page.textContent("#link-state"), words);
+    if (can) assert.equal(await page.evaluate(() => window.copied), page.url());
+    await page.fill("#thetaI", "21");
+    await settled(page);
+    assert.equal(await page.textContent("#link-state"), "");
+    assert.deepEqual(complaints, []);
+  });
+
+test("of files that are opened together each is taken, and one that is wrong has its line", { skip: skip || without_program }, async () => {
+  const { page, complaints } = await opened(chromium);
+  await settled(page);
+  const samples = Buffer.from(run("simulate", "ptfe-633", "--grid", "random:20"));
+  const files = [file_of("ptfe-633", "one.json"), { name: "none.json", mimeType: "", buffer: Buffer.from("{") }, { name: "samples.csv", mimeType: "text/csv", buffer: samples }];
+  await page.setInputFiles("#file", files);
+  await page.waitForSelector("#samples-csv:visible");
+  await settled(page);
+  assert.equal(await page.inputValue("#model"), "one.json");
+  assert.match(await trouble(page), /^none\.json:1: not JSON[^.]*$/);
+  assert.match(await page.textContent("#samples-words"), /^samples\.csv: 20 samples/);
+  assert.equal(await page.textContent("#reading"), "");
+  await page.evaluate(() => {
+    Blob.prototype.arrayBuffer = () => Promise.reject(new DOMException("a folder")); // as Chromium has it
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([], "folder"));
+    document.body.dispatchEvent(new DragEvent("drop", { bubbles: true, dataTransfer }));
+  });
+  await page.waitForFunction(() => document.getElementById("trouble").textContent === "folder: cannot be read: is it a file, and still there?");
+  assert.deepEqual(complaints, []);
+});
 
 test("while uncertainties are computed, older numbers are marked, and no file is made of them", { skip }, async () => {
   const { page } = await opened(chromium);
@@ -181,6 +273,28 @@ test("a drag beyond the disc where it began ends at 90 degrees, on the side of t
     assert.equal(await page.inputValue("#phiI"), phi, `x = ${x}`);
   }
   await page.mouse.up();
+});
+
+test("a second finger moves nothing", { skip }, async () => {
+  const { page } = await opened(chromium);
+  await settled(page);
+  const moved = await page.evaluate(async () => {
+    const box = document.querySelector("#hemispheres");
+    const { left, top, width } = box.getBoundingClientRect();
+    const at = (type, x, more) =>
+      box.dispatchEvent(new PointerEvent(type, { bubbles: true, clientX: left + (width / 8) * (1 + x), clientY: top + width / 8, ...more }));
+    box.setPointerCapture = () => {}; // there is no pointer of that number
+    const [first, second] = [{ pointerId: 1, isPrimary: true }, { pointerId: 2, isPrimary: false }];
+    at("pointerdown", 0.5, first);
+    at("pointerdown", -0.5, second);
+    at("pointermove", -0.2, second);
+    at("pointerup", -0.2, second);
+    at("pointermove", Math.sin(Math.PI / 9), first);
+    at("pointerup", Math.sin(Math.PI / 9), first);
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    return ["thetaR", "phiR"].map((id) => document.getElementById(id).value);
+  });
+  assert.deepEqual(moved, ["20", "0"]);
 });
 
 test("a link keeps the digits that were typed", { skip }, async () => {

@@ -24,6 +24,12 @@ function models() {
   ];
 }
 
+test("a model that does not say to which wavelengths it was fitted has none", { skip: without_program }, () => {
+  const [several, , published] = models().map(([, , model]) => model);
+  assert.deepEqual(several.wavelengths, [351, 532, 633, 1064]);
+  assert.deepEqual(published.wavelengths, []);
+});
+
 test("matrices, uncertainties, ranges and quantities are those of the program", { skip: without_program }, () => {
   const where = geometries();
   for (const [name, wavelength, model] of models())
