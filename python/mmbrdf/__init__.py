@@ -28,6 +28,9 @@ _asking.install(_mmbrdf)
 _comparing.install(_mmbrdf)
 _summaries.install(_mmbrdf)
 
+from ._choices import *  # noqa: F403: what choosing gives
+from ._comparisons import *  # noqa: F403: what comparing gives
+from ._judgements import *  # noqa: F403: what judging gives
 from ._mmbrdf import *  # noqa: F403: the names of the library
 from ._mmbrdf import Dataset as Dataset
 from ._mmbrdf import Model as Model
@@ -35,7 +38,7 @@ from ._mmbrdf import __version__ as __version__
 from ._mmbrdf import _holds_samples
 from ._mmbrdf import load_model as load_model
 from ._mmbrdf import read_samples as read_samples
-from ._results import *  # noqa: F403: what choosing, judging and comparing fits gives
+from ._results import *  # noqa: F403: what questions give
 from ._transfer import py6s_surface as py6s_surface
 from ._transfer import pythonic_disort_modes as pythonic_disort_modes
 from ._warnings import ExtrapolationWarning as ExtrapolationWarning
