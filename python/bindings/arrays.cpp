@@ -270,4 +270,10 @@ Geometry geometry(const Broadcast& broadcast, std::size_t first, std::size_t pos
   return result;
 }
 
+std::vector<Geometry> geometries(const Broadcast& broadcast, std::size_t first) {
+  std::vector<Geometry> result(broadcast.size());
+  gather(broadcast, first, 0, result.size(), result.data());
+  return result;
+}
+
 }  // namespace mmbrdf::python

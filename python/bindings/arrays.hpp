@@ -177,8 +177,9 @@ std::vector<Operand> direction_operands(const Given& theta_i, const Given& phi_i
                                         const Given& phi_r);
 
 /// Geometries of the positions begin … end − 1, whose angles in degrees are the operands from `first`. Throws
-/// std::invalid_argument, with the place in the array, for invalid angles.
+/// std::invalid_argument, with the place in the array, for invalid angles. And that of one position, and those of all.
 void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, std::size_t end, Geometry* out);
 Geometry geometry(const Broadcast& broadcast, std::size_t first, std::size_t position);
+std::vector<Geometry> geometries(const Broadcast& broadcast, std::size_t first = 0);
 
 }  // namespace mmbrdf::python

@@ -157,14 +157,6 @@ py::object geometry_of(const std::vector<Geometry>& geometries) {
   return record("Geometry", angles[0], angles[1], angles[2], angles[3]);
 }
 
-std::vector<Geometry> all_geometries(const Given& theta_i, const Given& phi_i, const Given& theta_r,
-                                     const Given& phi_r) {
-  const Broadcast broadcast(direction_operands(theta_i, phi_i, theta_r, phi_r));
-  std::vector<Geometry> result(broadcast.size());
-  gather(broadcast, 0, 0, result.size(), result.data());
-  return result;
-}
-
 DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wavelengths_nm,
                          const py::sequence& angles, double speckle, unsigned long seed) {
   const std::vector<Geometry> geometries = geometries_from(angles);
@@ -372,7 +364,7 @@ std::vector<Geometry> geometries_from(const py::sequence& angles) {
   if (angles.size() != 4)
     throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
                                 " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
-  return all_geometries(angles[0], angles[1], angles[2], angles[3]);
+  return geometries(Broadcast(direction_operands(angles[0], angles[1], angles[2], angles[3])));
 }
 
 py::object geometry_object(const Geometry& g) {
