@@ -146,8 +146,8 @@ std::vector<Sample> others(const Model& model, const Other& other, const Wavelen
   if (wavelengths.empty())
     throw std::invalid_argument(
         "wavelength_nm: needed, since there is none of which both models say that they were fitted to it");
-  const std::vector<Geometry> geometries =
-      geometry ? geometries_from(*geometry) : common_geometries(model, second, germer2017_grid());
+  if (!geometry) return without_gil([&] { return samples_to_compare(model, second, wavelengths, germer2017_grid()); });
+  const std::vector<Geometry> geometries = geometries_from(*geometry);
   return without_gil([&] { return simulate(second, wavelengths, geometries); });
 }
 
