@@ -115,6 +115,7 @@ void bind_accumulators(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_selection(py::module_& m);
 void bind_plan(py::module_& m);
+void bind_comparison(py::module_& m);
 void bind_diagnostics(py::module_& m);
 void bind_mueller(py::module_& m);
 void bind_analysis(py::module_& m);

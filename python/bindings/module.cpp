@@ -49,6 +49,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_accumulators(m);
   bind_selection(m);
   bind_plan(m);
+  bind_comparison(m);
   bind_diagnostics(m);
   bind_report(m);
   bind_sampling(m);
