@@ -78,8 +78,8 @@ void require_place(const std::filesystem::path& path);
 /// so.
 void warn(const char* category, const std::string& text);
 
-/// Warns, as Python warnings do, of questions to a model outside its fitted range.
-void warn_outside(const ModelObject& model, const RangeCount& range);
+/// Warns, as Python warnings do, of questions to a model outside its fitted range; `what` they are.
+void warn_outside(const ModelObject& model, const RangeCount& range, const char* what = "question");
 
 /// The named tuple mmbrdf.<type> of these values.
 template <class... Values>

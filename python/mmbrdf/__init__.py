@@ -21,11 +21,10 @@ from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
 
-from . import _asking, _calls, _comparing, _lazy, _mmbrdf, _summaries
+from . import _asking, _calls, _lazy, _mmbrdf, _summaries
 
 _calls.install(_mmbrdf, _asking.answering(_mmbrdf))
 _asking.install(_mmbrdf)
-_comparing.install(_mmbrdf)
 _summaries.install(_mmbrdf)
 
 from ._choices import *  # noqa: F403: what choosing gives

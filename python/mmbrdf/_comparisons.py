@@ -24,20 +24,26 @@ class Difference(_NamedTuple):
 
 
 class Significance(_NamedTuple):
-    """Differences of two models over their uncertainty, that of independent fits.
+    """Differences d of one element over their standard uncertainty u, that of independent measurements.
 
-    samples       where that is not 0
-    mean          of |difference| / u: 0.8 for fits of one sample that are as uncertain as they say
-    largest       of |difference| / u, at wavelength_nm and geometry
-    within        share within 1.96 u
+    samples  where u is known, and not 0
+    u        root mean square: of f11 in sr^-1, of the other elements divided by it
+    rms      of d / u: 1 if they differ by chance
+    mean     of |d| / u: then 0.8
+    largest  of |d| / u, at wavelength_nm and geometry
+    within   share within 1.96 u: then 0.95
+    beyond   share beyond 2 u: then 0.046
     """
 
     samples: int
+    u: float
+    rms: float
     mean: float
     largest: float
     wavelength_nm: float
     geometry: Geometry
     within: float
+    beyond: float
 
 
 class Comparison(_NamedTuple):
@@ -48,7 +54,8 @@ class Comparison(_NamedTuple):
     normalized         of the 15 f_ij / f11, by element: comparison.normalized['22'].rms
     polarization_rms   root mean square over those
     largest            of all differences, relative to f11
-    significance       Significance of two models by element ('11' is f11); None: not known, or samples
+    significance       Significance by element ('11' is f11); None: the uncertainties of one are not known
+    images             of samples beside samples: how many of them are compared by their image
     """
 
     samples: int
@@ -59,6 +66,7 @@ class Comparison(_NamedTuple):
     polarization_rms: float
     largest: Difference
     significance: dict[str, Significance] | None = None
+    images: int = 0
 
     def __repr__(self) -> str:
         found = f"rms of f11 {self.f11.rms:.3g} sr^-1, of the other elements {self.polarization_rms:.3g}"

@@ -1095,6 +1095,9 @@ def compare(
     geometry: Sequence[ArrayLike] | None = None,
     *,
     theta_max_deg: float | None = None,
+    terms: dict[str, float] | None = None,
+    match_deg: float | None = None,
+    partners: Sequence[str] = (),
 ) -> mmbrdf.Comparison: ...
 @overload
 def compare(
@@ -1105,6 +1108,7 @@ def compare(
     *,
     as_printed: bool = False,
     theta_max_deg: float | None = None,
+    terms: dict[str, float] | None = None,
 ) -> mmbrdf.Comparison: ...
 def condition_number(states: ArrayLike) -> float: ...
 def convert(mueller: ArrayLike, from_convention: str, to_convention: str) -> NDArray[np.float64]: ...

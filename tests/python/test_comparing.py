@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Comparing models and samples: the numbers of the program's compare."""
 
+import json
 import re
 import warnings
 
@@ -47,10 +48,23 @@ def test_samples_beyond_the_fitted_range_are_left_out_as_by_the_program(ptfe, to
             said
             == {
                 "": ["N of N samples beyond the fitted range are left out: theta_max_deg=N takes all"],
-                "90": ["ptfe: N of N samples lie outside the fitted range (theta_i+theta_r+directions)"],
+                "90": [
+                    "ptfe: N of N samples lie outside the fitted range (theta_i+theta_r+directions): fitted are theta_i <= N, "
+                    "theta_r <= N.N degrees at N, N, N, N nm"
+                ],
                 "40.5": [],
             }[str(options.get("theta_max_deg", ""))]
         )
+
+
+def over_u(one):
+    return [one.u, one.rms, one.mean, one.largest, one.within, one.beyond]
+
+
+def as_program_has_it(row):
+    """The same of an element in `mmbrdf compare --format json`."""
+    fields = ("u_difference", "rms_over_u", "mean_over_u", "largest_over_u", "within_95", "beyond_2u")
+    return [row[field] for field in fields]
 
 
 @pytest.fixture(scope="module")
@@ -77,8 +91,7 @@ def test_a_direction_is_left_out_at_the_wavelengths_at_which_it_was_not_fitted(n
         rows = {row["element"]: row for row in there["elements"] if (row["element"], row["unit"]) != ("11", "f11")}
         assert here.significance.keys() == rows.keys()
         for name, one in here.significance.items():
-            expected = [rows[name][field] for field in ("mean_over_u", "largest_over_u", "within_95")]
-            assert [one.mean, one.largest, one.within] == pytest.approx(expected, rel=1e-9)
+            assert over_u(one) == pytest.approx(as_program_has_it(rows[name]), rel=1e-9)
 
 
 def test_two_models_that_are_compared_beyond_their_fits_warn(ptfe):
@@ -89,7 +102,7 @@ def test_two_models_that_are_compared_beyond_their_fits_warn(ptfe):
     ):
         with pytest.warns(mmbrdf.ExtrapolationWarning) as warned:
             mmbrdf.compare(first, second, 532, **options)
-        assert [str(one.message) for one in warned] == [
+        assert [str(one.message).partition(": fitted are")[0] for one in warned] == [
             f"{name}: 1 of 2 samples lies outside the fitted range (theta_r)" for name in ("ptfe", "ptfe-532")
         ]
         assert {one.filename for one in warned} == {__file__}
@@ -144,12 +157,85 @@ def test_two_models_differ_by_so_many_uncertainties(ring, told, ptfe):
     found, there = mmbrdf.compare(first, second).significance, told("compare", "ptfe", "ptfe-532")
     rows = [row for row in there["elements"] if (row["element"], row["unit"]) != ("11", "f11")]
     for row in rows:
-        one = found[row["element"]]
-        assert (one.mean, one.largest, one.within) == pytest.approx(
-            [row["mean_over_u"], row["largest_over_u"], row["within_95"]]
-        )
+        assert over_u(found[row["element"]]) == pytest.approx(as_program_has_it(row), rel=1e-9)
     assert mmbrdf.compare(first, ring).significance is None
     assert mmbrdf.compare(mmbrdf.in_published_form(first), first).significance is None  # it has no covariance
+
+
+def measured(ptfe, geometry, seed):
+    """Samples that know their noise of 1 %."""
+    samples = mmbrdf.simulate(ptfe, 532, geometry, speckle=0.01, seed=seed)
+    u = np.full((len(samples), 4, 4), 0.01)
+    u[:, 0, 0] *= samples.f11
+    return mmbrdf.Dataset(samples.wavelength_nm, *samples.geometry, samples.mueller, uncertainty=u)
+
+
+def test_samples_differ_from_a_model_by_so_many_uncertainties_and_terms_add_to_them(ptfe, program, tmp_path):
+    samples = measured(ptfe, mmbrdf.random_geometries(200, seed=4, theta_max_deg=60), 1)
+    samples.save(tmp_path / "known.csv")
+    for terms, arguments in (
+        (None, ()),
+        ({"scale": 0.003, "theta_r_deg": 0.02}, ("--term", "scale=0.3%", "--term", "theta_r=0.02deg")),
+    ):
+        there = json.loads(program("compare", "ptfe", "known.csv", *arguments, "--format", "json"))
+        found = mmbrdf.compare(ptfe, samples, terms=terms).significance
+        rows = {row["element"]: row for row in there["elements"] if (row["element"], row["unit"]) != ("11", "f11")}
+        assert found.keys() == rows.keys()
+        for name, row in rows.items():
+            assert over_u(found[name]) == pytest.approx(as_program_has_it(row), rel=1e-9)
+    more = mmbrdf.compare(ptfe, samples, terms={"scale": 0.01}).significance
+    assert more["11"].u > found["11"].u and more["22"].u < found["22"].u  # a ratio has no scale
+
+
+def test_samples_are_set_beside_samples_as_by_the_program(ptfe, program, tmp_path):
+    theta_r = np.arange(10, 71, 5)
+    monday = measured(ptfe, (30, 0, theta_r, 160), 1)
+    friday = measured(ptfe, (30, 0, theta_r, np.where(theta_r % 10, -160.05, 160.05)), 2)
+    names = ("monday.csv", "friday.csv")
+    for data, name in zip((monday, friday), names):
+        data.save(tmp_path / name)
+    for options, arguments, pairs, images in (
+        ({"match_deg": 0.1}, ("--match", 0.1), 7, 0),
+        ({"match_deg": 0.1, "partners": ["mirror"]}, ("--match", 0.1, "--partners", "mirror"), 13, 6),
+        ({"match_deg": 0.1, "theta_max_deg": 45}, ("--match", 0.1, "--theta-max", 45), 4, 0),
+    ):
+        here = mmbrdf.compare(monday, friday, **options)
+        there = json.loads(program("compare", *names, *arguments, "--format", "json"))
+        assert (here.samples, here.images) == (pairs, images)
+        assert (here.samples, here.largest.largest) == pytest.approx((there["samples"], there["largest"]), rel=1e-9)
+        rows = {row["element"]: row for row in there["elements"] if (row["element"], row["unit"]) != ("11", "f11")}
+        assert here.significance.keys() == rows.keys()
+        for name, one in here.significance.items():
+            assert over_u(one) == pytest.approx(as_program_has_it(rows[name]), rel=1e-9)
+    bare = mmbrdf.simulate(ptfe, 532, monday.geometry)
+    assert mmbrdf.compare(bare, friday, match_deg=0.1).significance is None
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"match_deg": 0.1, "terms": {"scale": 0.01}}, "match_deg: samples beside samples have no geometry, as_printed or terms"),
+        ({"match_deg": 0.1, "partners": ["twin"]}, "partners: 'twin', expected 'mirror' or 'reciprocal'"),
+        ({"match_deg": 6}, "match_deg: a tolerance of 6 degrees, must be in (0, 5]"),
+        ({"partners": ["mirror"]}, "partners: go with match_deg"),
+        ({"match_deg": 0.1, "wavelength_nm": 532}, "no sample of other is within 0.1 degrees of one of model: without match_deg their fits are compared"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_matched_is_refused(ptfe, wrong, message):
+    one, other = (mmbrdf.simulate(ptfe, 532, mmbrdf.in_plane(30, [angle])) for angle in (0, 10))
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        mmbrdf.compare(one, other, **wrong)
+    with pytest.raises(ValueError, match="^match_deg: goes with two Datasets$"):
+        mmbrdf.compare(ptfe, one, match_deg=0.1)
+
+
+def test_terms_need_the_uncertainties_of_both(ptfe, ring):
+    bare = mmbrdf.in_published_form(mmbrdf.material("ptfe-532"))
+    for pair, unknown in (((ptfe, ring), "other"), ((bare, ptfe), "model")):
+        with pytest.raises(
+            ValueError, match=f"^terms: need uncertainties of both, and those of {unknown} are not known$"
+        ):
+            mmbrdf.compare(*pair, 532, terms={"scale": 0.003})
 
 
 def test_two_data_sets_are_compared_by_their_fits(ptfe):
