@@ -26,8 +26,11 @@ using Given = py::object;
 
 using Doubles = py::array_t<double, py::array::forcecast>;
 
+/// Throws ValueError, naming the argument, where something of it is masked, also within lists: it would count.
+void require_unmasked(const char* name, const Given& given);
+
 /// An array of real numbers, with the strides it has. Throws TypeError, naming the argument, for what is not made of
-/// integers, floating-point numbers or truth values, and ValueError where something is masked: it would count.
+/// integers, floating-point numbers or truth values, and as require_unmasked() does.
 Doubles doubles(const char* name, const Given& given);
 
 /// A number, or an array of numbers, one behind the other.

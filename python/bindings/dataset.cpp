@@ -91,6 +91,7 @@ bool has_uncertainty(const Dataset& data) {
 
 /// What data[which] keeps: numpy decides, on the numbers of the samples.
 DatasetPointer chosen(const Dataset& data, const py::object& which) {
+  require_unmasked("which", which);
   const py::object numbers = py::module_::import("numpy").attr("arange")(data.samples.size());
   const auto kept = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(
       py::module_::import("numpy").attr("atleast_1d")(numbers[which]));
