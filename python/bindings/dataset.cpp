@@ -61,9 +61,9 @@ DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, con
 
 /// One number of each sample.
 template <class F>
-py::array_t<double> column(const Dataset& data, F f) {
-  py::array_t<double> result(static_cast<py::ssize_t>(data.samples.size()));
-  double* const out = result.mutable_data();
+auto column(const Dataset& data, F f) {
+  py::array_t<std::invoke_result_t<F, const Sample&>> result(static_cast<py::ssize_t>(data.samples.size()));
+  auto* const out = result.mutable_data();
   for (std::size_t i = 0; i < data.samples.size(); ++i) out[i] = f(data.samples[i]);
   return result;
 }
@@ -83,6 +83,21 @@ py::array_t<double> mueller(const Dataset& data) {
   for (const Sample& sample : data.samples)
     for (std::size_t e = 0; e < 16; ++e) *out++ = sample.f11 * sample.normalized.elements[e];
   return result;
+}
+
+/// Names of frames.
+py::object frames(const Dataset& data) {
+  const py::list names =
+      py::cast(std::array{to_string(Frame::xy), to_string(Frame::sp), to_string(Frame::scattering_plane)});
+  const auto which = column(data, [](const Sample& s) { return static_cast<std::int8_t>(own_frame(s)); });
+  return py::module_::import("numpy").attr("array")(names)[which];
+}
+
+py::array_t<double> as_measured(const Dataset& data) {
+  std::vector<Mueller> result;
+  result.reserve(data.samples.size());
+  for (const Sample& sample : data.samples) result.push_back(in_own_frame(sample).normalized);
+  return array_of(result);
 }
 
 bool has_uncertainty(const Dataset& data) {
@@ -236,6 +251,13 @@ void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
           "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
           "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1, nan for what was not measured: a view")
       .def_property_readonly("mueller", mueller, "(N, 4, 4) in sr^-1, xy frame")
+      .def_property_readonly("frame", frames,
+                             "(N,) of text: in which frame the elements of a sample were measured, 'sp' or "
+                             "'scattering_plane', if it loses\n"
+                             "some on the way to xy; else 'xy', also of what was turned there whole")
+      .def_property_readonly(
+          "as_measured", as_measured,
+          "(N, 4, 4), as `normalized`, each sample in its own `frame`: nan for what was not measured alone")
       .def_property_readonly(
           "uncertainty",
           [](Dataset& d) -> py::object {
