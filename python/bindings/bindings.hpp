@@ -111,6 +111,7 @@ void bind_answer(ModelClass& model);
 void bind_export(ModelClass& model);
 void bind_transfer(ModelClass& model);
 void bind_dataset(py::module_& m);
+void bind_geometries(py::module_& m);
 void bind_accumulators(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_selection(py::module_& m);

@@ -34,6 +34,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   py::register_exception_translator(translate);
   ModelClass model = bind_model(m);
   bind_dataset(m);
+  bind_geometries(m);
   bind_evaluation(model);
   bind_answer(model);
   bind_export(model);
