@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import importlib as _importlib
 import os as _os
+from collections.abc import Mapping as _Mapping
 from collections.abc import Sequence as _Sequence
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
@@ -154,6 +155,7 @@ def _write_report(
     paper: str = "a4",
     model_file: str | _os.PathLike[str] | None = None,
     data_file: str | _os.PathLike[str] | None = None,
+    terms: _Mapping[str, float] | _Sequence[str] | None = None,
     format: str | None = None,
 ) -> None:
     """Writes what `mmbrdf report` says of a model, and of samples beside it, as the ending of ``path`` says: .html, one
@@ -168,6 +170,8 @@ def _write_report(
     model_file, data_file
                      the files that they were read from: their names and SHA-256 are in the report; without the latter, the SHA-256
                      is that of the samples as Dataset.save() writes them
+    terms            of type B, added to all u: as those of evaluate_uncertainty(), or as `mmbrdf report --term` takes them,
+                     ["plaque:scale=0.3%,dof=12"]
     format           "markdown", "html", "pdf" or "json", whatever the ending
 
     It has the date, or that of SOURCE_DATE_EPOCH. Needs matplotlib but for .md and .json; .pdf needs Chromium, or what
@@ -179,7 +183,15 @@ def _write_report(
 
     kind = _report.kind_of(path, format)
     source = _report.Source(
-        model, data, name, data_name, wavelength_nm, theta_i_deg, model_file=model_file, data_file=data_file
+        model,
+        data,
+        name,
+        data_name,
+        wavelength_nm,
+        theta_i_deg,
+        model_file=model_file,
+        data_file=data_file,
+        terms=terms,
     )
     _report.write(path, _report.made(source, kind, _report.Look(notation, paper)))
 
