@@ -234,10 +234,13 @@ void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
           "(N,)")
       .def_property_readonly(
           "f11", [](const Dataset& d) { return column(d, [](const Sample& s) { return s.f11; }); },
-          "(N,), the unpolarized BRDF in sr^-1")
-      .def_property_readonly(
-          "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
-          "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1, nan for what was not measured: a view")
+          "(N,), the unpolarized BRDF in sr^-1");
+}
+
+void bind_matrices(py::class_<Dataset, DatasetPointer>& c) {
+  c.def_property_readonly(
+       "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
+       "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1, nan for what was not measured: a view")
       .def_property_readonly("mueller", mueller, "(N, 4, 4) in sr^-1, xy frame")
       .def_property_readonly("frame", frames,
                              "(N,) of text: in which frame the elements of a sample were measured, 'sp' or "
@@ -275,6 +278,7 @@ void bind_class(py::module_& m) {
         py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::arg("mueller"), py::arg("frame") = "xy",
         py::arg("uncertainty") = py::none());
   bind_columns(c);
+  bind_matrices(c);
   c.def("__len__", [](const Dataset& d) { return d.samples.size(); })
       .def("__getitem__", chosen, py::arg("which"))
       .def("__repr__", representation)
