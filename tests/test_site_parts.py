@@ -78,11 +78,16 @@ class Docstrings(unittest.TestCase):
 class Pages(unittest.TestCase):
     def test_each_page_is_in_the_contents_once(self):
         listed = [name for names in build.CONTENTS.values() for name in names]
-        generated = {"headers/index", "reference/python", "reference/plot"}
+        generated = {"headers/index", *(f"reference/{name}" for name in build.REFERENCE)}
         pages = {p.relative_to(build.SOURCE / "docs").with_suffix("").as_posix() for p in (build.SOURCE / "docs").rglob("*.md")}
         roots = {Path(name).stem for name in build.ROOT_PAGES.values()}
         self.assertEqual(len(listed), len(set(listed)))
         self.assertEqual(set(listed), (pages - {"index"}) | roots | generated)
+
+    def test_each_module_that_is_imported_by_its_name_has_a_page_in_the_reference(self):
+        modules = {p.stem for p in (build.SOURCE / "python/mmbrdf").iterdir() if p.is_dir() or p.suffix == ".py"}
+        private = {name for name in modules if name.startswith("_")}
+        self.assertEqual(modules - private - {"report"}, set(build.REFERENCE) - {"python"})  # report is a function, too
 
     def test_links_lead_to_pages_and_to_copies_of_files(self):
         page = build.SOURCE / "docs/for/a.md"

@@ -60,6 +60,8 @@ CONTENTS = {
         "theory",
         "reference/python",
         "reference/plot",
+        "reference/images",
+        "reference/distributed",
         "headers/index",
         "paper",
         "interoperability",
@@ -152,6 +154,10 @@ REFERENCE = {
     "```{eval-rst}\n.. automodule:: mmbrdf\n```\n",
     "plot": "# mmbrdf.plot\n\nPictures; the [gallery](../gallery.md) shows them.\n\n"
     "```{eval-rst}\n.. automodule:: mmbrdf.plot\n```\n",
+    "images": "# mmbrdf.images\n\nCameras; [scale.md](../scale.md#images) is the guide.\n\n"
+    "```{eval-rst}\n.. automodule:: mmbrdf.images\n```\n",
+    "distributed": "# mmbrdf.distributed\n\nArchives of files; [scale.md](../scale.md#archives) is the guide.\n\n"
+    "```{eval-rst}\n.. automodule:: mmbrdf.distributed\n```\n",
 }
 
 

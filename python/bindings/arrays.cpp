@@ -89,14 +89,31 @@ Geometry geometry_from(const Angles& angles, std::size_t i) {
   return result;
 }
 
+/// In nested lists too, whose masks numpy forgets when it makes an array of them.
+bool is_masked(const py::handle& given, const py::object& masked_array, int depth = 0) {
+  constexpr int most = 32;  // axes that numpy has; a list may hold itself
+  if (!PyList_Check(given.ptr()) && !PyTuple_Check(given.ptr()))
+    return py::isinstance(given, masked_array) &&
+           py::module_::import("numpy").attr("ma").attr("is_masked")(given).cast<bool>();
+  for (py::ssize_t i = 0; depth < most && i < PySequence_Fast_GET_SIZE(given.ptr()); ++i) {
+    PyObject* const one = PySequence_Fast_GET_ITEM(given.ptr(), i);
+    if (!PyFloat_CheckExact(one) && is_masked(one, masked_array, depth + 1)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+void require_unmasked(const char* name, const Given& given) {
+  if (is_masked(given, py::module_::import("numpy").attr("ma").attr("MaskedArray")))
+    throw py::value_error(std::string(name) + ": a part of it is masked; leave it out");
+}
 
 Doubles doubles(const char* name, const Given& given) {
   const std::string argument = name;
   const py::module_ numpy = py::module_::import("numpy");
   if (given.is_none()) throw py::type_error(argument + ": None is not a number");
-  if (numpy.attr("ma").attr("is_masked")(given).cast<bool>())
-    throw py::value_error(argument + ": a part of it is masked; leave it out");
+  require_unmasked(name, given);
   py::array array;
   try {
     array = numpy.attr("asarray")(given);
@@ -267,6 +284,12 @@ void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, st
 Geometry geometry(const Broadcast& broadcast, std::size_t first, std::size_t position) {
   Geometry result;
   gather(broadcast, first, position, position + 1, &result);
+  return result;
+}
+
+std::vector<Geometry> geometries(const Broadcast& broadcast, std::size_t first) {
+  std::vector<Geometry> result(broadcast.size());
+  gather(broadcast, first, 0, result.size(), result.data());
   return result;
 }
 

@@ -26,8 +26,11 @@ using Given = py::object;
 
 using Doubles = py::array_t<double, py::array::forcecast>;
 
+/// Throws ValueError, naming the argument, where something of it is masked, also within lists: it would count.
+void require_unmasked(const char* name, const Given& given);
+
 /// An array of real numbers, with the strides it has. Throws TypeError, naming the argument, for what is not made of
-/// integers, floating-point numbers or truth values, and ValueError where something is masked: it would count.
+/// integers, floating-point numbers or truth values, and as require_unmasked() does.
 Doubles doubles(const char* name, const Given& given);
 
 /// A number, or an array of numbers, one behind the other.
@@ -177,8 +180,9 @@ std::vector<Operand> direction_operands(const Given& theta_i, const Given& phi_i
                                         const Given& phi_r);
 
 /// Geometries of the positions begin … end − 1, whose angles in degrees are the operands from `first`. Throws
-/// std::invalid_argument, with the place in the array, for invalid angles.
+/// std::invalid_argument, with the place in the array, for invalid angles. And that of one position, and those of all.
 void gather(const Broadcast& broadcast, std::size_t first, std::size_t begin, std::size_t end, Geometry* out);
 Geometry geometry(const Broadcast& broadcast, std::size_t first, std::size_t position);
+std::vector<Geometry> geometries(const Broadcast& broadcast, std::size_t first = 0);
 
 }  // namespace mmbrdf::python

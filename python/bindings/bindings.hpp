@@ -78,8 +78,8 @@ void require_place(const std::filesystem::path& path);
 /// so.
 void warn(const char* category, const std::string& text);
 
-/// Warns, as Python warnings do, of questions to a model outside its fitted range.
-void warn_outside(const ModelObject& model, const RangeCount& range);
+/// Warns, as Python warnings do, of questions to a model outside its fitted range; `what` they are.
+void warn_outside(const ModelObject& model, const RangeCount& range, const char* what = "question");
 
 /// The named tuple mmbrdf.<type> of these values.
 template <class... Values>
@@ -111,10 +111,12 @@ void bind_answer(ModelClass& model);
 void bind_export(ModelClass& model);
 void bind_transfer(ModelClass& model);
 void bind_dataset(py::module_& m);
+void bind_geometries(py::module_& m);
 void bind_accumulators(py::module_& m);
 void bind_fit(py::module_& m);
 void bind_selection(py::module_& m);
 void bind_plan(py::module_& m);
+void bind_comparison(py::module_& m);
 void bind_diagnostics(py::module_& m);
 void bind_mueller(py::module_& m);
 void bind_analysis(py::module_& m);

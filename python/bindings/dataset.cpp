@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples, and the geometries they are taken at.
+// Samples.
 #include "dataset.hpp"
 
 #include <pybind11/stl.h>
@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "mmbrdf/files/samples_file.hpp"
-#include "mmbrdf/fitting/subsets.hpp"
 #include "mmbrdf/formats/foreign.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "pickles.hpp"
@@ -61,9 +60,9 @@ DatasetPointer from_arrays(const Given& wavelength_nm, const Given& theta_i, con
 
 /// One number of each sample.
 template <class F>
-py::array_t<double> column(const Dataset& data, F f) {
-  py::array_t<double> result(static_cast<py::ssize_t>(data.samples.size()));
-  double* const out = result.mutable_data();
+auto column(const Dataset& data, F f) {
+  py::array_t<std::invoke_result_t<F, const Sample&>> result(static_cast<py::ssize_t>(data.samples.size()));
+  auto* const out = result.mutable_data();
   for (std::size_t i = 0; i < data.samples.size(); ++i) out[i] = f(data.samples[i]);
   return result;
 }
@@ -85,12 +84,28 @@ py::array_t<double> mueller(const Dataset& data) {
   return result;
 }
 
+/// Names of frames.
+py::object frames(const Dataset& data) {
+  const py::list names =
+      py::cast(std::array{to_string(Frame::xy), to_string(Frame::sp), to_string(Frame::scattering_plane)});
+  const auto which = column(data, [](const Sample& s) { return static_cast<std::int8_t>(own_frame(s)); });
+  return py::module_::import("numpy").attr("array")(names)[which];
+}
+
+py::array_t<double> as_measured(const Dataset& data) {
+  std::vector<Mueller> result;
+  result.reserve(data.samples.size());
+  for (const Sample& sample : data.samples) result.push_back(in_own_frame(sample).normalized);
+  return array_of(result);
+}
+
 bool has_uncertainty(const Dataset& data) {
   return std::ranges::any_of(data.samples, [](const Sample& s) { return has_uncertainty(in_own_frame(s)); });
 }
 
 /// What data[which] keeps: numpy decides, on the numbers of the samples.
 DatasetPointer chosen(const Dataset& data, const py::object& which) {
+  require_unmasked("which", which);
   const py::object numbers = py::module_::import("numpy").attr("arange")(data.samples.size());
   const auto kept = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(
       py::module_::import("numpy").attr("atleast_1d")(numbers[which]));
@@ -144,25 +159,6 @@ DatasetPointer foreign_samples_of(const std::filesystem::path& path, const std::
     data->read_as = file.understood();
     return data;
   });
-}
-
-py::object geometry_of(const std::vector<Geometry>& geometries) {
-  std::array<py::array_t<double>, 4> angles;
-  for (py::array_t<double>& one : angles) one = py::array_t<double>(static_cast<py::ssize_t>(geometries.size()));
-  for (std::size_t i = 0; i < geometries.size(); ++i) {
-    const Geometry& g = geometries[i];
-    const std::array values{g.incident.theta, g.incident.phi, g.reflected.theta, g.reflected.phi};
-    for (std::size_t a = 0; a < 4; ++a) angles[a].mutable_data()[i] = degrees(values[a]);
-  }
-  return record("Geometry", angles[0], angles[1], angles[2], angles[3]);
-}
-
-std::vector<Geometry> all_geometries(const Given& theta_i, const Given& phi_i, const Given& theta_r,
-                                     const Given& phi_r) {
-  const Broadcast broadcast(direction_operands(theta_i, phi_i, theta_r, phi_r));
-  std::vector<Geometry> result(broadcast.size());
-  gather(broadcast, 0, 0, result.size(), result.data());
-  return result;
 }
 
 DatasetPointer simulated(const ModelObject& model, const std::vector<double>& wavelengths_nm,
@@ -238,11 +234,21 @@ void bind_columns(py::class_<Dataset, DatasetPointer>& c) {
           "(N,)")
       .def_property_readonly(
           "f11", [](const Dataset& d) { return column(d, [](const Sample& s) { return s.f11; }); },
-          "(N,), the unpolarized BRDF in sr^-1")
-      .def_property_readonly(
-          "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
-          "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1, nan for what was not measured: a view")
+          "(N,), the unpolarized BRDF in sr^-1");
+}
+
+void bind_matrices(py::class_<Dataset, DatasetPointer>& c) {
+  c.def_property_readonly(
+       "normalized", [](Dataset& d) { return matrices(d, &Sample::normalized); },
+       "(N, 4, 4), f_ij / f11 in the xy frame, element 11 is 1, nan for what was not measured: a view")
       .def_property_readonly("mueller", mueller, "(N, 4, 4) in sr^-1, xy frame")
+      .def_property_readonly("frame", frames,
+                             "(N,) of text: in which frame the elements of a sample were measured, 'sp' or "
+                             "'scattering_plane', if it loses\n"
+                             "some on the way to xy; else 'xy', also of what was turned there whole")
+      .def_property_readonly(
+          "as_measured", as_measured,
+          "(N, 4, 4), as `normalized`, each sample in its own `frame`: nan for what was not measured alone")
       .def_property_readonly(
           "uncertainty",
           [](Dataset& d) -> py::object {
@@ -272,6 +278,7 @@ void bind_class(py::module_& m) {
         py::arg("theta_r_deg"), py::arg("phi_r_deg"), py::arg("mueller"), py::arg("frame") = "xy",
         py::arg("uncertainty") = py::none());
   bind_columns(c);
+  bind_matrices(c);
   c.def("__len__", [](const Dataset& d) { return d.samples.size(); })
       .def("__getitem__", chosen, py::arg("which"))
       .def("__repr__", representation)
@@ -343,42 +350,7 @@ void bind_samples(py::module_& m) {
       "standard deviation speckle * sqrt(cos theta_i / cos theta_r). The same seed gives the same noise.");
 }
 
-void bind_geometries(py::module_& m) {
-  m.def(
-      "germer2017_grid", [] { return geometry_of(germer2017_grid()); },
-      "The 1824 geometries of the published measurement, as a Geometry of arrays.");
-  m.def(
-      "random_geometries",
-      [](int count, unsigned long seed, double most) {
-        return geometry_of(random_geometries(count, seed, radians(most)));
-      },
-      py::arg("count"), py::arg("seed"), py::arg("theta_max_deg") = 75.0,
-      "Pairs of directions, each uniform in projected direction cosines. The same seed gives the same pairs.");
-  m.def(
-      "in_plane",
-      [](double theta_i, const Given& theta_r) {
-        std::vector<double> angles = numbers("theta_r_deg", theta_r);
-        for (double& angle : angles) angle = radians(angle);
-        return geometry_of(in_plane(radians(theta_i), angles));
-      },
-      py::arg("theta_i_deg"), py::arg("theta_r_deg"),
-      "Directions in the plane of incidence: the source at azimuth 0, the detector at azimuth 180 (forward) for\n"
-      "theta_r_deg >= 0, at azimuth 0 (back) below.");
-}
-
 }  // namespace
-
-std::vector<Geometry> geometries_from(const py::sequence& angles) {
-  if (angles.size() != 4)
-    throw std::invalid_argument("geometry: " + std::to_string(angles.size()) +
-                                " arrays, expected theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg");
-  return all_geometries(angles[0], angles[1], angles[2], angles[3]);
-}
-
-py::object geometry_object(const Geometry& g) {
-  return record("Geometry", degrees(g.incident.theta), degrees(g.incident.phi), degrees(g.reflected.theta),
-                degrees(g.reflected.phi));
-}
 
 py::object dataset_object(std::vector<Sample> samples, const std::string& reduction) {
   const DatasetPointer data = pointer(std::move(samples));
@@ -389,7 +361,6 @@ py::object dataset_object(std::vector<Sample> samples, const std::string& reduct
 void bind_dataset(py::module_& m) {
   bind_class(m);
   bind_samples(m);
-  bind_geometries(m);
 }
 
 }  // namespace mmbrdf::python

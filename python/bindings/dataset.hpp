@@ -26,8 +26,9 @@ py::object dataset_object(std::vector<Sample> samples, const std::string& reduct
 /// From four arrays that broadcast: theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg.
 std::vector<Geometry> geometries_from(const py::sequence& angles);
 
-/// Directions in degrees: the Python object Geometry of numbers.
+/// Directions in degrees: the Python object Geometry of numbers, and of arrays.
 py::object geometry_object(const Geometry& geometry);
+py::object geometry_of(const std::vector<Geometry>& geometries);
 
 /// The Python object PolarizedBrdf of four arrays.
 py::object polarized(const std::vector<PolarizedBrdf>& curve);

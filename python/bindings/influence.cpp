@@ -22,23 +22,19 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 Influence influence_from(double wavelength_nm, const Given& ti, const Given& pi, const Given& tr, const Given& pr,
                          const std::string& family, std::pair<int, int> orders, const std::string& mapping,
                          const std::optional<Numbers>& weights, bool f11_only, bool minimum_norm) {
-  const Broadcast broadcast(direction_operands(ti, pi, tr, pr));
-  std::vector<Geometry> geometries(broadcast.size());
-  gather(broadcast, 0, 0, geometries.size(), geometries.data());
+  const std::vector<Geometry> at = geometries(Broadcast(direction_operands(ti, pi, tr, pr)));
   std::vector<Mueller> of_samples;
   if (weights) {
-    if (static_cast<std::size_t>(weights->size()) != 16 * geometries.size())
-      throw std::invalid_argument("weights: expected 16 for each of " + std::to_string(geometries.size()) +
-                                  " geometries");
-    of_samples.resize(geometries.size());
+    if (static_cast<std::size_t>(weights->size()) != 16 * at.size())
+      throw std::invalid_argument("weights: expected 16 for each of " + std::to_string(at.size()) + " geometries");
+    of_samples.resize(at.size());
     for (std::size_t g = 0; g < of_samples.size(); ++g)
       std::copy_n(weights->data() + 16 * g, 16, of_samples[g].elements.begin());
   }
   FitOptions options;
   options.minimum_norm = minimum_norm;
   const Basis basis = basis_from(family, orders, mapping, false);
-  return without_gil(
-      [&] { return Influence(geometries, micrometres(wavelength_nm), basis, of_samples, f11_only, options); });
+  return without_gil([&] { return Influence(at, micrometres(wavelength_nm), basis, of_samples, f11_only, options); });
 }
 
 template <class Array>

@@ -278,12 +278,12 @@ void warn(const char* category, const std::string& text) {
   py::module_::import("mmbrdf._warnings").attr("warn")(text, category);
 }
 
-void warn_outside(const ModelObject& model, const RangeCount& range) {
+void warn_outside(const ModelObject& model, const RangeCount& range, const char* what) {
   constexpr const char* category = "ExtrapolationWarning";
   const std::string unknown = unknown_range_line(model.model().name, model.model().validity);
   if (!unknown.empty() && model.is_first_of_unknown_range()) warn(category, unknown);
   if (range.outside == 0) return;
-  const std::string text = model.model().name + ": " + range.line("question") + " (" + to_string(range.reasons) +
+  const std::string text = model.model().name + ": " + range.line(what) + " (" + to_string(range.reasons) +
                            "): fitted are " + fitted_range(model.model().validity);
   warn(category, text);
 }

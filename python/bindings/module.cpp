@@ -34,6 +34,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   py::register_exception_translator(translate);
   ModelClass model = bind_model(m);
   bind_dataset(m);
+  bind_geometries(m);
   bind_evaluation(model);
   bind_answer(model);
   bind_export(model);
@@ -49,6 +50,7 @@ PYBIND11_MODULE(_mmbrdf, m) {
   bind_accumulators(m);
   bind_selection(m);
   bind_plan(m);
+  bind_comparison(m);
   bind_diagnostics(m);
   bind_report(m);
   bind_sampling(m);

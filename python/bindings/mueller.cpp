@@ -19,9 +19,8 @@ py::object changed_frame(const Given& mueller, const Given& theta_i, const Given
   std::vector<Operand> operands = direction_operands(theta_i, phi_i, theta_r, phi_r);
   operands.push_back({"mueller", mueller, {4, 4}});
   const Broadcast broadcast(operands);
-  return map(broadcast, [&](std::size_t i) {
-    return change_frame(broadcast.mueller(4, i), geometry(broadcast, 0, i), before, after);
-  });
+  const std::vector<Geometry> at = without_gil([&] { return geometries(broadcast); });
+  return map(broadcast, [&](std::size_t i) { return change_frame(broadcast.mueller(4, i), at[i], before, after); });
 }
 
 py::object converted(const Given& mueller, const std::string& from, const std::string& to) {

@@ -25,10 +25,7 @@ std::vector<Geometry> geometries_of(const std::string& what, const py::handle& a
   } catch (const py::cast_error&) {
     throw std::invalid_argument(what + ": expected (theta_i_deg, phi_i_deg, theta_r_deg, phi_r_deg)");
   }
-  const Broadcast broadcast(direction_operands(four[0], four[1], four[2], four[3]));
-  std::vector<Geometry> result(broadcast.size());
-  gather(broadcast, 0, 0, result.size(), result.data());
-  return result;
+  return geometries(Broadcast(direction_operands(four[0], four[1], four[2], four[3])));
 }
 
 VarianceComponents components(const ModelObject* like, const std::optional<double>& nm,

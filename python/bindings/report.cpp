@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <ostream>
 #include <tuple>
+#include <variant>
 
 #include "dataset.hpp"
 #include "mmbrdf/files/write_file.hpp"
@@ -15,6 +16,7 @@
 #include "mmbrdf/text/date.hpp"
 #include "mmbrdf/text/notation.hpp"
 #include "mmbrdf/text/rounding.hpp"
+#include "question.hpp"
 
 namespace mmbrdf::python {
 
@@ -69,6 +71,22 @@ ReportOrigin origin_of(const py::dict& said) {
   return origin;
 }
 
+using NamedOrTyped = std::variant<std::map<std::string, double>, std::vector<std::string>>;
+
+std::vector<TypeBTerm> terms_of(const std::optional<NamedOrTyped>& given) {
+  if (!given) return {};
+  if (const auto* named = std::get_if<std::map<std::string, double>>(&*given)) return terms_from(*named);
+  std::vector<TypeBTerm> result;
+  for (const std::string& text : std::get<std::vector<std::string>>(*given)) {
+    try {
+      result.push_back(term_from(text));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(std::string("terms: ") + error.what());
+    }
+  }
+  return result;
+}
+
 void bind_documents(py::module_& m) {
   m.def(
       "_report_document",
@@ -89,19 +107,23 @@ void bind_report(py::module_& m) {
   m.def(
       "report_json",
       [](const ModelObject& model, const std::string& name, const std::optional<std::vector<double>>& wavelengths_nm,
-         const DatasetPointer& data, const std::string& data_name) {
+         const DatasetPointer& data, const std::string& data_name, const std::optional<NamedOrTyped>& given) {
+        const std::vector<TypeBTerm> terms = terms_of(given);
         const std::vector<double> wavelengths = micrometres(wavelengths_nm.value_or(std::vector<double>{}));
         return without_gil([&] {
           return report_json(model.model(), name, wavelengths,
-                             data ? std::optional(ReportedSamples{data_name, data->samples}) : std::nullopt);
+                             data ? std::optional(ReportedSamples{data_name, data->samples}) : std::nullopt, terms);
         });
       },
       py::arg("model"), py::arg("name"), py::arg("wavelength_nm") = py::none(), py::arg("data") = py::none(),
-      py::arg("data_name") = "samples",
+      py::arg("data_name") = "samples", py::arg("terms") = py::none(),
       "What is known about a model, and about samples beside it, as the JSON text that `mmbrdf report --format json`\n"
       "prints: title, warnings, notes, model, fit, realizability, reflectances, budgets and, with samples, residuals, "
       "symmetries,\n"
-      "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to.");
+      "noise, leverage and outliers. wavelength_nm are those to report on; None: those it was fitted to. terms of type "
+      "B "
+      "are of\n"
+      "all u: as those of evaluate_uncertainty(), or as they are typed, ['plaque:scale=0.3%,dof=12'].");
   m.def(
       "inspect", [](const Dataset& data) { return inspection_object(data); }, py::arg("data"),
       "What is wrong with samples, as far as they betray it, before they are fitted: an Inspection. Fill values, "

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import importlib as _importlib
 import os as _os
+from collections.abc import Mapping as _Mapping
 from collections.abc import Sequence as _Sequence
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 from typing import Any as _Any
@@ -21,13 +22,15 @@ from typing import NamedTuple as _NamedTuple
 
 import numpy as _np
 
-from . import _asking, _calls, _comparing, _lazy, _mmbrdf, _summaries
+from . import _asking, _calls, _lazy, _mmbrdf, _summaries
 
 _calls.install(_mmbrdf, _asking.answering(_mmbrdf))
 _asking.install(_mmbrdf)
-_comparing.install(_mmbrdf)
 _summaries.install(_mmbrdf)
 
+from ._choices import *  # noqa: F403: what choosing gives
+from ._comparisons import *  # noqa: F403: what comparing gives
+from ._judgements import *  # noqa: F403: what judging gives
 from ._mmbrdf import *  # noqa: F403: the names of the library
 from ._mmbrdf import Dataset as Dataset
 from ._mmbrdf import Model as Model
@@ -35,7 +38,7 @@ from ._mmbrdf import __version__ as __version__
 from ._mmbrdf import _holds_samples
 from ._mmbrdf import load_model as load_model
 from ._mmbrdf import read_samples as read_samples
-from ._results import *  # noqa: F403: what choosing, judging and comparing fits gives
+from ._results import *  # noqa: F403: what questions give
 from ._transfer import py6s_surface as py6s_surface
 from ._transfer import pythonic_disort_modes as pythonic_disort_modes
 from ._warnings import ExtrapolationWarning as ExtrapolationWarning
@@ -152,6 +155,7 @@ def _write_report(
     paper: str = "a4",
     model_file: str | _os.PathLike[str] | None = None,
     data_file: str | _os.PathLike[str] | None = None,
+    terms: _Mapping[str, float] | _Sequence[str] | None = None,
     format: str | None = None,
 ) -> None:
     """Writes what `mmbrdf report` says of a model, and of samples beside it, as the ending of ``path`` says: .html, one
@@ -166,6 +170,8 @@ def _write_report(
     model_file, data_file
                      the files that they were read from: their names and SHA-256 are in the report; without the latter, the SHA-256
                      is that of the samples as Dataset.save() writes them
+    terms            of type B, added to all u: as those of evaluate_uncertainty(), or as `mmbrdf report --term` takes them,
+                     ["plaque:scale=0.3%,dof=12"]
     format           "markdown", "html", "pdf" or "json", whatever the ending
 
     It has the date, or that of SOURCE_DATE_EPOCH. Needs matplotlib but for .md and .json; .pdf needs Chromium, or what
@@ -177,7 +183,15 @@ def _write_report(
 
     kind = _report.kind_of(path, format)
     source = _report.Source(
-        model, data, name, data_name, wavelength_nm, theta_i_deg, model_file=model_file, data_file=data_file
+        model,
+        data,
+        name,
+        data_name,
+        wavelength_nm,
+        theta_i_deg,
+        model_file=model_file,
+        data_file=data_file,
+        terms=terms,
     )
     _report.write(path, _report.made(source, kind, _report.Look(notation, paper)))
 

@@ -42,6 +42,8 @@ class Source(NamedTuple):
     data_file: str | os.PathLike[str] | None = None
     command: str = ""
     digests: Mapping[str, str] = {}
+    terms: Mapping[str, float] | Sequence[str] | None = None
+    """Of type B, by their names or as they are typed."""
 
 
 class Look(NamedTuple):
@@ -131,6 +133,8 @@ def _checked(source: Source, look: Look) -> Source:
     """With samples of the wavelengths that were asked for. Raises TypeError and ValueError."""
     if source.model is not None or source.data is None:
         require("model", source.model, Model)
+    elif source.terms:
+        raise ValueError("terms: they are of the u of a model, and there is none")
     if source.data is not None:
         require("data", source.data, Dataset)
         if len(source.data) == 0:
@@ -150,7 +154,7 @@ def _made(source: Source, look: Look) -> Report:
     assert model is not None
     name = source.name or model.name or "the model"
     chosen = source.wavelength_nm or _wavelengths(model, source.data)
-    text = report_json(model, name, chosen, source.data, source.data_name)
+    text = report_json(model, name, chosen, source.data, source.data_name, source.terms)
     origin = _origin(source._replace(name=name))
     whole = _report_document(model, text, origin, look.notation, source.theta_i_deg)
     files = [{"what": what, "name": file, "sha256": sha256 or None} for what, file, sha256 in origin["files"]]
@@ -278,6 +282,7 @@ def _parser(prog: str) -> _Parser:
         help="angle of incidence of the pictures of a model [45]",
     )
     add("--format", choices=tuple(dict.fromkeys(KINDS.values())), help="whatever the ending of REPORT")
+    add("--term", dest="terms", metavar="[NAME:]KIND=U[,dof=N]", action="append", help="of type B, added to all u")
     add("--notation", choices=NOTATIONS, default="brackets", help="0.98412(32), or 0.98412 ± 0.00032 [brackets]")
     add("--paper", choices=tuple(PAPERS), default="a4", help="of a PDF [a4]")
     add("--columns", metavar="NAME=THEIRS[,...]", type=_columns, default={}, help="of DATA.csv that have other names")
@@ -324,7 +329,7 @@ def _source_of(options: argparse.Namespace, command: str) -> Source:
     model = _opened(options.model, options, digests)
     if isinstance(model, Dataset) and options.data is None:
         source = Source(None, model, "", Path(options.model).name, options.wavelength, data_file=options.model)
-        return source._replace(command=command, digests=digests)
+        return source._replace(command=command, digests=digests, terms=options.terms)
     data = _opened(options.data, options, digests) if options.data else None
     for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
         if thing is not None and not isinstance(thing, kind):
@@ -332,7 +337,7 @@ def _source_of(options: argparse.Namespace, command: str) -> Source:
     assert isinstance(model, Model) and not isinstance(data, Model)
     names = Path(options.model).name, Path(options.data or "").name
     source = Source(model, data, *names, options.wavelength, options.theta_i, options.model, options.data)
-    return source._replace(command=command, digests=digests)
+    return source._replace(command=command, digests=digests, terms=options.terms)
 
 
 def _command(prog: str, words: Sequence[str], paths: Sequence[str | None]) -> str:

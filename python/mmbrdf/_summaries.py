@@ -98,7 +98,11 @@ def _dataset(data: Any) -> Rows:
     theta_i, theta_r = data.theta_i_deg, data.theta_r_deg
     yield "directions", f"theta_i {theta_i.min():.4g} to {theta_i.max():.4g}, theta_r {theta_r.min():.4g} to {theta_r.max():.4g} degrees"
     yield "f11", f"{data.f11.min():.3g} to {data.f11.max():.3g} sr^-1, median {np.median(data.f11):.3g} sr^-1"
-    missing = np.isnan(data.normalized).mean(axis=0)
+    frames, counts = np.unique(data.frame, return_counts=True)
+    if frames.tolist() != ["xy"]:
+        told = [f"{name} ({count} sample{'s' * (count != 1)})" for name, count in zip(frames, counts.tolist())]
+        yield "frame", ", ".join(told) if len(told) > 1 else str(frames[0])
+    missing = np.isnan(data.as_measured).mean(axis=0)
     names = [(i, j, f"{i + 1}{j + 1}") for i in range(4) for j in range(4)]
     never = [name for i, j, name in names if missing[i, j] == 1]
     sometimes = [name for i, j, name in names if 0 < missing[i, j] < 1]

@@ -118,12 +118,18 @@ struct ExtremesUncertainty {
 ExtremesUncertainty uncertainty_of_extremes(const ReportSubject& reported, const ModelDiagnostics& d) {
   const Model& model = reported.model;
   if (!knows_uncertainty(model)) return {};
-  const UncertainModel u = uncertain(model, d.wavelength);
+  const UncertainModel u = reported.uncertain_at(d.wavelength);
   ExtremesUncertainty result;
-  result.f11 = u.fit.standard_uncertainty(d.f11.geometry)(0, 0);
+  const bool unlimited = std::cos(d.f11.geometry.reflected.theta) < grazing_limit &&
+                         std::ranges::any_of(u.terms, [](const TypeBTerm& t) { return t.what == ErrorOf::theta_r; });
+  if (u.terms.empty())
+    result.f11 = u.fit.standard_uncertainty(d.f11.geometry)(0, 0);
+  else if (!unlimited)
+    result.f11 = standard_uncertainty(budget(u.model, u.fit, u.terms, d.f11.geometry).total)(0, 0);
   result.dhr = standard_uncertainty(directional_hemispherical_budget(u, {d.dhr_theta_i, 0}));
   if (!d.whole) return result;
-  for (const Answered& one : Answers(model, {.parts = false}).at(d.wavelength).at(d.margin.geometry).quantities)
+  const AnswerOptions options{.terms = u.terms, .parts = false};
+  for (const Answered& one : Answers(model, options).at(d.wavelength).at(d.margin.geometry).quantities)
     if (one.quantity->name == "eigenvalue_min" && one.uncertainty) result.margin = *one.uncertainty;
   return result;
 }
@@ -156,10 +162,11 @@ ReportField realizability(const ReportSubject& reported) {
 }
 
 /// Throws unless there is something to report on.
-ReportSubject reported(const Model& model, const std::string& name, std::span<const double> wavelengths) {
+ReportSubject reported(const Model& model, const std::string& name, std::span<const double> wavelengths,
+                       std::span<const TypeBTerm> terms) {
   require_valid(model);
   ReportSubject result{
-      model, name, {wavelengths.begin(), wavelengths.end()}, !wavelengths.empty() || knows_wavelength(model)};
+      model, name, {wavelengths.begin(), wavelengths.end()}, !wavelengths.empty() || knows_wavelength(model), terms};
   if (wavelengths.empty()) result.wavelengths = known_wavelengths(model);
   if (result.wavelengths.empty())
     throw std::invalid_argument(name + " does not say to which wavelengths it was fitted: give some");
@@ -170,8 +177,8 @@ ReportSubject reported(const Model& model, const std::string& name, std::span<co
 }  // namespace
 
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths,
-                        const std::optional<ReportedSamples>& samples) {
-  const ReportSubject what = reported(model, name, wavelengths);
+                        const std::optional<ReportedSamples>& samples, std::span<const TypeBTerm> terms) {
+  const ReportSubject what = reported(model, name, wavelengths, terms);
   Json report{{"title", "Report on " + name}, {"warnings", range_warnings(what)}, {"notes", range_notes(what)}};
   report["model"] = model_json(what);
   report["fit"] = fit_json(model);

@@ -78,6 +78,7 @@ struct Drawn {
   const ReportOrigin& origin;
   std::vector<double> wavelengths;  ///< nm; empty: its only one, which nobody knows
   double theta_i_deg, phi_i_deg;
+  Json terms = Json::object();  ///< of u, as mmbrdf.plot takes them: {"scale": 0.003}
 };
 void add_reflectance_figures(Document& document, const Drawn& drawn);
 void add_model_figures(Document& document, const Drawn& drawn);

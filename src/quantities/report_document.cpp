@@ -198,8 +198,18 @@ void add_words(Document& document, const std::string& heading, const std::string
   document.table(caption, {"", ""}, {false, false}, rows);
 }
 
+/// u by kind of error, each of all terms of the kind together.
+Json terms_of(const Json& facts) {
+  Json terms = Json::object();
+  for (const Json& row : facts.value("terms", Json::array())) {
+    Json& all = terms[row["kind"].get<std::string>()];
+    all = std::hypot(all.is_null() ? 0 : all.get<double>(), row["u"].get<double>());
+  }
+  return terms;
+}
+
 Drawn drawn_of(const Model& model, const Json& facts, const ReportOrigin& origin, const ReportStyle& style) {
-  Drawn drawn{model, origin, {}, style.theta_i_deg, 180};
+  Drawn drawn{model, origin, {}, style.theta_i_deg, 180, terms_of(facts)};
   for (const Json& row : rows_of(facts["reflectances"], "bhr"))
     if (!row["wavelength_nm"].is_null()) drawn.wavelengths.push_back(row["wavelength_nm"]);
   if (facts.contains("directions")) drawn.phi_i_deg = facts["directions"]["phi_i_deg"];

@@ -10,6 +10,7 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/report.hpp"
 #include "mmbrdf/quantities/trust.hpp"
+#include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 
 namespace mmbrdf {
 
@@ -28,9 +29,13 @@ struct ReportSubject {
   const std::string& name;
   std::vector<double> wavelengths;  // micrometres
   bool known_wavelengths;           // no: there is one, and it stands for a wavelength that nobody has said
+  std::span<const TypeBTerm> terms = {};
 
   Json wavelength_json(double wavelength) const {
     return known_wavelengths ? Json(nanometres(wavelength)) : Json(nullptr);
+  }
+  UncertainModel uncertain_at(double wavelength) const {
+    return uncertain(model, wavelength, {terms.begin(), terms.end()});
   }
 };
 
@@ -48,7 +53,7 @@ inline void add(Json& report, const std::string& name, ReportField field) {
   for (std::string& note : field.notes) report["notes"].push_back(std::move(note));
 }
 
-/// The fields uncertainty, reflectances and budgets.
+/// The fields uncertainty, terms, reflectances and budgets.
 void add_reflectances(Json& report, const ReportSubject& subject);
 
 /// All that samples say of a model, and of themselves.

@@ -53,6 +53,10 @@ std::string plot_command(const Drawn& drawn, const std::string& kind, const Json
   };
   for (const auto& [name, value] : arguments.items()) {
     if (value.is_null()) continue;
+    if (name == "terms") {
+      for (const auto& [error, u] : value.items()) text += " --term " + error + "=" + shortest(u.get<double>());
+      continue;
+    }
     text += (name == "wavelength_nm" ? " -w"
              : name == "theta_i_deg" ? " -i"
              : name == "phi_i_deg"   ? " --phi-i"
@@ -88,23 +92,22 @@ void add_reflectance_figures(Document& document, const Drawn& drawn) {
   const std::vector<double> nm = some_of(drawn.wavelengths, most_columns);
   const std::string at = nm.empty() ? "" : ", " + listed(nm),
                     bands = knows_uncertainty(drawn.model) ? ", bands k = 2" : "";
-  const Json wavelengths = wavelength_argument(nm, nm.size() > 1);
+  Json arguments{{"wavelength_nm", wavelength_argument(nm, nm.size() > 1)}};
+  if (!drawn.terms.empty()) arguments["terms"] = drawn.terms;
+  add_picture(
+      document, drawn,
+      {"reflectance-against-angle", "DHR against the angle of incidence" + at + bands + ".", arguments, half_page});
   add_picture(document, drawn,
-              {"reflectance-against-angle",
-               "DHR against the angle of incidence" + at + bands + ".",
-               {{"wavelength_nm", wavelengths}},
-               half_page});
-  add_picture(document, drawn,
-              {"reflectance-factor",
-               "Reflectance factor towards the normal, R(theta_i:0°)" + at + bands + ".",
-               {{"wavelength_nm", wavelengths}},
-               half_page});
+              {"reflectance-factor", "Reflectance factor towards the normal, R(theta_i:0°)" + at + bands + ".",
+               arguments, half_page});
 }
 
 void add_model_figures(Document& document, const Drawn& drawn) {
   const std::vector<double> one = middle_of(drawn.wavelengths), some = some_of(drawn.wavelengths, most_columns);
   const double theta = drawn.theta_i_deg;
-  const std::string bands = knows_uncertainty(drawn.model) ? ", bands k = 2" : "";
+  const std::string bands = !knows_uncertainty(drawn.model) ? ""
+                            : drawn.terms.empty()           ? ", bands k = 2"
+                                                            : ", bands k = 2 without terms";
   const bool curves = measures(drawn.model, {1, 4, 5}), all = drawn.model.not_measured.none();
   if (some.size() > 1) {
     const bool few = some.size() < drawn.wavelengths.size();

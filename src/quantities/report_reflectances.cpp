@@ -58,8 +58,9 @@ Reflected factor_at(const Reflector& from, const std::string& name, const Geomet
   if (!from.u) return result;
   Mueller gradient;
   gradient(0, 0) = reflectance_factor(1);
-  result.u = reflectance_factor(from.u->fit.standard_uncertainty(geometry)(0, 0));
-  result.budget = contributions(budget(from.u->model, from.u->fit, {}, geometry, Frame::sp), gradient);
+  result.budget = contributions(budget(from.u->model, from.u->fit, from.u->terms, geometry, Frame::sp), gradient);
+  result.u = from.u->terms.empty() ? reflectance_factor(from.u->fit.standard_uncertainty(geometry)(0, 0))
+                                   : standard_uncertainty(result.budget);
   return result;
 }
 
@@ -91,6 +92,30 @@ void add_budget(Json& rows, const Json& wavelength, const Reflected& one) {
   add_row("together", all.uncertainty, all.freedom, reported_coverage * all.uncertainty);
 }
 
+bool is_angle(ErrorOf what) { return what != ErrorOf::scale && what != ErrorOf::calibration; }
+
+Json terms_json(std::span<const TypeBTerm> terms) {
+  Json rows = Json::array();
+  for (const TypeBTerm& term : terms)
+    rows.push_back({{"cause", term.name},
+                    {"kind", to_string(term.what) + (is_angle(term.what) ? "_deg" : "")},
+                    {"u", is_angle(term.what) ? degrees(term.uncertainty) : term.uncertainty},
+                    {"degrees_of_freedom", freedom_or_null(term.freedom)}});
+  return rows;
+}
+
+/// What u is of.
+std::string words_of_uncertainty(const ReportSubject& subject) {
+  std::string text = uncertain_of(subject.model);
+  for (std::size_t i = 0; i < subject.terms.size(); ++i)
+    text += (i > 0                      ? ", "
+             : subject.terms.size() > 1 ? " and of the terms "
+                                        : " and of the term ") +
+            subject.terms[i].name;
+  const std::string missing = missing_from_uncertainty(subject.model);
+  return text + (missing.empty() ? "" : "; " + missing);
+}
+
 }  // namespace
 
 void add_reflectances(Json& report, const ReportSubject& subject) {
@@ -99,7 +124,7 @@ void add_reflectances(Json& report, const ReportSubject& subject) {
   for (const double wavelength : subject.wavelengths) {
     const Json shown = subject.wavelength_json(wavelength);
     Reflector from{subject, wavelength, prepare(subject.model, wavelength), {}};
-    if (known) from.u = uncertain(subject.model, wavelength);
+    if (known || !subject.terms.empty()) from.u = subject.uncertain_at(wavelength);
     for (const Reflected& one : reflected_by(from)) {
       reflectances.push_back({{"wavelength_nm", shown},
                               {"quantity", one.quantity},
@@ -109,9 +134,8 @@ void add_reflectances(Json& report, const ReportSubject& subject) {
       add_budget(budgets, shown, one);
     }
   }
-  const std::string missing = missing_from_uncertainty(subject.model);
-  report["uncertainty"] =
-      known ? uncertain_of(subject.model) + (missing.empty() ? "" : "; " + missing) : std::string("not known");
+  report["uncertainty"] = known ? words_of_uncertainty(subject) : std::string("not known");
+  if (!subject.terms.empty()) report["terms"] = terms_json(subject.terms);
   report["reflectances"] = std::move(reflectances);
   report["budgets"] = std::move(budgets);
 }

@@ -56,6 +56,16 @@ Comparison divided(Comparison total, const std::string& first) {
   return total;
 }
 
+bool is_beyond(double theta_max, const Geometry& geometry) {
+  constexpr double rounding = 1e-9;  // files give degrees
+  return std::max(geometry.incident.theta, geometry.reflected.theta) > theta_max + rounding;
+}
+
+bool is_beyond(const Model& model, double wavelength, const Geometry& geometry, std::optional<double> theta_max) {
+  constexpr unsigned angles = outside_theta_i | outside_theta_r | outside_directions;
+  return theta_max ? is_beyond(*theta_max, geometry) : (outside(model.validity, wavelength, geometry) & angles) != 0;
+}
+
 }  // namespace
 
 std::vector<Mueller> residuals(const Model& model, std::span<const Sample> samples) {
@@ -119,12 +129,26 @@ std::vector<double> common_wavelengths(const Model& first, const Model& second) 
   return common;
 }
 
-std::vector<Geometry> common_geometries(const Model& first, const Model& second, std::vector<Geometry> geometries) {
-  constexpr unsigned angles = outside_theta_i | outside_theta_r;
-  std::erase_if(geometries, [&](const Geometry& g) {
-    return ((outside(first.validity, 1, g) | outside(second.validity, 1, g)) & angles) != 0;
-  });
-  return geometries;
+std::size_t leave_out_beyond(const Model& model, std::vector<Sample>& samples, std::optional<double> theta_max) {
+  return std::erase_if(samples, [&](const Sample& s) { return is_beyond(model, s.wavelength, s.geometry, theta_max); });
+}
+
+std::size_t leave_out_beyond(double theta_max, std::vector<Sample>& samples) {
+  return std::erase_if(samples, [=](const Sample& s) { return is_beyond(theta_max, s.geometry); });
+}
+
+std::vector<Sample> samples_to_compare(const Model& first, const Model& second, std::span<const double> wavelengths,
+                                       std::span<const Geometry> geometries, std::optional<double> theta_max) {
+  std::vector<Sample> result;
+  for (const double wavelength : wavelengths) {
+    std::vector<Geometry> here(geometries.begin(), geometries.end());
+    std::erase_if(here, [&](const Geometry& g) {
+      return is_beyond(first, wavelength, g, theta_max) || is_beyond(second, wavelength, g, theta_max);
+    });
+    const std::vector<Sample> samples = simulate(second, {&wavelength, 1}, here);
+    result.insert(result.end(), samples.begin(), samples.end());
+  }
+  return result;
 }
 
 double polarization_rms(const Comparison& comparison) {

@@ -2,6 +2,7 @@
 """What the tests of the Python package share."""
 
 import functools
+import json
 import os
 import subprocess
 from pathlib import Path
@@ -87,3 +88,22 @@ def camera():
 @pytest.fixture(scope="session")
 def calibrated(camera):
     return mmbrdf.images.calibrate(camera.references, camera.stacks, wavelength_nm=532)
+
+
+@pytest.fixture(scope="session")
+def ring():
+    """1200 samples at 532 nm, mirror images among them, that two azimuths and five angles of the source have."""
+    theta_i, phi_i, theta_r, turn = (
+        axis.ravel()
+        for axis in np.meshgrid([0, 15, 30, 45, 60], [0, 40], [10, 25, 40, 55, 70], np.arange(7.5, 360, 15))
+    )
+    lot = np.random.default_rng(1).permutation(len(turn))  # else each third would have a third of the azimuths
+    geometry = (theta_i[lot], phi_i[lot], theta_r[lot], (phi_i + turn)[lot])
+    return mmbrdf.simulate(mmbrdf.material("ptfe"), 532, geometry, speckle=0.01, seed=3)
+
+
+@pytest.fixture
+def told(ring, program, tmp_path):
+    """Runs a command of the program on those samples in data.csv, and reads the JSON that it prints."""
+    ring.save(tmp_path / "data.csv")
+    return lambda *command: json.loads(program(*command, "--format", "json"))

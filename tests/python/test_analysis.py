@@ -92,6 +92,12 @@ def test_frames_change_back_and_forth(ptfe):
             np.testing.assert_allclose(changed, f[after], rtol=0, atol=1e-14)
 
 
+def test_the_place_of_an_angle_that_is_refused_is_said_once():
+    with pytest.raises(ValueError) as error:
+        mmbrdf.change_frame(np.eye(4), [[30], [95]], 0, [20, 30], 0, "xy", "sp")
+    assert str(error.value) == "direction 95,0: the polar angle is not in [-90, 90] degrees, at [1, 0]"
+
+
 def test_conventions_and_rotators():
     np.testing.assert_allclose(mmbrdf.rotator(45) @ [1, 1, 0, 0], [1, 0, -1, 0], atol=1e-15)
     assert mmbrdf.rotator([0, 30, 60]).shape == (3, 4, 4)

@@ -78,9 +78,24 @@ def test_what_is_no_real_number_is_refused_by_name(ptfe, wrong):
         ptfe.evaluate(532, 45, 0, wrong, 180)
 
 
-def test_masked_numbers_are_refused_not_used(ptfe):
+def test_masked_numbers_are_refused_not_used(ptfe, samples):
     with pytest.raises(ValueError, match="theta_r_deg: a part of it is masked"):
         ptfe.evaluate(532, 45, 0, np.ma.masked_array([30.0, 40.0], mask=[False, True]), 180)
+    for within in ([np.ma.masked, 30.0], ((30.0, 40.0), [20.0, np.ma.masked]), [[np.ma.masked_array([3, 4], [0, 1])]]):
+        with pytest.raises(ValueError, match="^theta_r_deg: a part of it is masked; leave it out$"):
+            ptfe.evaluate(532, 45, 0, within, 180)
+    np.testing.assert_array_equal(
+        ptfe.evaluate(532, 45, 0, [np.ma.masked_array([30.0, 40.0])], 180), ptfe.evaluate(532, 45, 0, [[30, 40]], 180)
+    )
+    bright = np.ma.masked_array(samples.f11 > 0.3, np.arange(len(samples)) % 2)
+    for which in (bright, list(bright[:3]), np.ma.masked_array([0, 1], [False, True])):
+        with pytest.raises(ValueError, match="^which: a part of it is masked; leave it out$"):
+            samples[which]
+    assert len(samples[bright.filled(False)]) == np.count_nonzero(samples.f11[::2] > 0.3)
+    endless = []
+    endless.append(endless)
+    with pytest.raises((TypeError, ValueError)):
+        ptfe.evaluate(532, 45, 0, endless, 180)
 
 
 def test_arguments_are_left_as_they_were(ptfe):

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What was not measured is nan, in data and in models."""
 
+import pickle
+import re
+
 import numpy as np
 import pytest
 
@@ -59,3 +62,21 @@ def test_f11_must_be_there():
     mueller = np.full((4, 4), np.nan)
     with pytest.raises(ValueError, match="M11 = nan"):
         mmbrdf.Dataset(532, 45, 0, 30, 180, mueller)
+
+
+def test_a_data_set_says_in_which_frame_its_samples_were_measured(ptfe, tmp_path):
+    geometry = (45, 10, [20, 30, 40], [50, 60, 70])
+    f = ptfe.evaluate(532, *geometry, frame="sp")
+    f[:2, 2:] = f[:2, :, 2:] = np.nan  # s and p alone; the last is whole
+    data = mmbrdf.Dataset(532, *geometry, f, frame="sp")
+    data.save(tmp_path / "data.csv")
+    for same in (data, pickle.loads(pickle.dumps(data)), mmbrdf.load(tmp_path / "data.csv"), data.at_wavelengths(532)):
+        assert same.frame.tolist() == ["sp", "sp", "xy"]
+        assert same[1:].frame.tolist() == ["sp", "xy"]
+        np.testing.assert_allclose(same.as_measured[:2], f[:2] / f[:2, :1, :1], rtol=0, atol=1e-14)
+        np.testing.assert_array_equal(same.as_measured[2], same.normalized[2])
+        assert np.isnan(same.normalized[0, 0, 1])  # which 13 would be needed for
+        assert re.search(r"^  frame +sp \(2 samples\), xy \(1 sample\)$", same.summary(), re.MULTILINE)
+        assert "12" not in re.search("not measured(.*)", same.summary())[1]
+    assert re.search(r"^  frame +sp$", data[:2].summary(), re.MULTILINE)
+    assert "frame" not in data[2].summary() and data[[]].frame.shape == (0,)

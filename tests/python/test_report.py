@@ -102,6 +102,23 @@ def test_the_facts_are_those_of_the_program(ptfe, program, tmp_path):
     assert ours == printed
 
 
+def test_terms_are_in_all_u_as_by_the_program(ptfe, program, tmp_path):
+    typed = ["plaque:scale=0.3%,dof=12", "theta_r=0.02deg"]
+    words = [word for term in typed for word in ("--term", term)]
+    printed = json.loads(program("report", "ptfe", "-w", 532, *words, "--format", "json"))
+    del printed["origin"]
+    assert printed == json.loads(mmbrdf.report_json(ptfe, "ptfe", [532], terms=typed))
+    named = json.loads(mmbrdf.report_json(ptfe, "ptfe", [532], terms={"scale": 0.003, "theta_r_deg": 0.02}))
+    assert [row["u"] for row in named["reflectances"]] == pytest.approx([row["u"] for row in printed["reflectances"]])
+    mmbrdf.report(ptfe, None, tmp_path / "r.html", wavelength_nm=532, terms=typed)
+    text = shown((tmp_path / "r.html").read_text())
+    assert "of the sample with declared errors and of the terms plaque, θᵣ" in text
+    with pytest.raises(ValueError, match="^terms: 'scale': expected \\[NAME:\\]KIND=VALUE"):
+        mmbrdf.report(ptfe, None, tmp_path / "r.md", terms=["scale"])
+    with pytest.raises(ValueError, match="^terms: they are of the u of a model, and there is none$"):
+        mmbrdf.report(None, mmbrdf.simulate(ptfe, 532, mmbrdf.in_plane(0, [20])), tmp_path / "r.html", terms=typed)
+
+
 def test_it_begins_with_the_sample_its_reflectances_and_chi_squared(page):
     text = shown(page[2].read_text())
     first = text[text.index("sample & co at 532 nm") :].replace("\n", "")

@@ -86,6 +86,45 @@ TEST(Report, HasItsFieldsInOrder) {
   EXPECT_EQ(beside["residuals"].size(), 17U);
 }
 
+/// A scale that is 1 % uncertain adds 1 % of each value to its u.
+TEST(Report, AddsTermsToAllThatIsUncertain) {
+  const Model model = least_squares("ptfe-532");
+  const std::vector<TypeBTerm> plaque{{"plaque", ErrorOf::scale, 0.01, 12}};
+  const Json plain = report(model), all = Json::parse(report_json(model, "it", {}, {}, plaque));
+  const auto expect_more = [](const Json& before, const Json& after, const char* value, const char* u) {
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t i = 0; i < before.size(); ++i)
+      EXPECT_NEAR(after[i][u].get<double>(),
+                  std::hypot(before[i][u].get<double>(), 0.01 * after[i][value].get<double>()), 1e-9)
+          << value << i;
+  };
+  expect_more(plain["reflectances"], all["reflectances"], "value", "u");
+  expect_more(plain["realizability"], all["realizability"], "smallest_f11", "u_smallest_f11");
+  expect_more(plain["realizability"], all["realizability"], "largest_dhr", "u_largest_dhr");
+  EXPECT_FALSE(plain.contains("terms"));
+  EXPECT_EQ(all["terms"],
+            Json::parse(R"([{"cause": "plaque", "kind": "scale", "u": 0.01, "degrees_of_freedom": 12}])"));
+  EXPECT_NE(all["uncertainty"].get<std::string>().find(" and of the term plaque"), std::string::npos);
+  const Json& cause = all["budgets"][1];
+  EXPECT_EQ(cause["cause"], "plaque");
+  EXPECT_EQ(cause["degrees_of_freedom"], 12);
+}
+
+// A measurement at 90 degrees tells nothing of f11: the term of an angle has no limit there.
+TEST(Report, HasNoUncertaintyOfATermThatHasNoLimit) {
+  const std::vector<TypeBTerm> arm{{"arm", ErrorOf::theta_r, radians(0.1)}};
+  const Json all = Json::parse(report_json(least_squares("ptfe-532"), "it", {}, {}, arm));
+  for (const Json& row : all["realizability"])
+    EXPECT_EQ(row["u_smallest_f11"].is_null(), row["theta_max_deg"] == 90) << row.dump();
+  EXPECT_NEAR(all["terms"][0]["u"].get<double>(), 0.1, 1e-15);
+  EXPECT_EQ(all["terms"][0]["kind"], "theta_r_deg");
+}
+
+TEST(Report, RefusesTermsOfAnUncertaintyThatIsNotKnown) {
+  const std::vector<TypeBTerm> terms{{"plaque", ErrorOf::scale, 0.01}};
+  EXPECT_THROW(report_json(diffuser({0.3}), "it", green, {}, terms), std::invalid_argument);
+}
+
 TEST(Report, SaysOfAFitOfTheSampleWhatTheSampleIsLike) {
   const Model model = fit_sample(measured(material("ptfe-532"))).model;
   const std::vector<SampleTraits> traits = sample_traits(*model.posterior, 0);

@@ -83,6 +83,28 @@ TEST(ReportDocument, BeginsWithTheSampleItsReflectancesAndWhatIsLeft) {
   EXPECT_TRUE(std::regex_match(first["text"].get<std::string>(), said)) << first["text"];
 }
 
+// Pictures know kinds of errors alone: those of one kind go together, √(0.3² + 0.4²) = 0.5.
+TEST(ReportDocument, DrawsBandsWithTheTerms) {
+  const Model model = material("ptfe-532");
+  const std::vector<TypeBTerm> terms{
+      {"plaque", ErrorOf::scale, 0.003}, {"lamp", ErrorOf::scale, 0.004}, {"arm", ErrorOf::theta_r, radians(0.02)}};
+  const Json json = Json::parse(report_document(model, report_json(model, "it", green, {}, terms)));
+  std::size_t with_terms = 0;
+  for (const Json& figure : of_kind(json, "figure")) {
+    const bool banded = figure["plot"] == "reflectance-against-angle" || figure["plot"] == "reflectance-factor";
+    EXPECT_EQ(figure["arguments"].contains("terms"), banded) << figure["plot"];
+    if (!banded) continue;
+    ++with_terms;
+    EXPECT_NEAR(figure["arguments"]["terms"]["scale"].get<double>(), 0.005, 1e-15);
+    EXPECT_NEAR(figure["arguments"]["terms"]["theta_r_deg"].get<double>(), 0.02, 1e-15);
+    EXPECT_NE(figure["command"].get<std::string>().find(" --term scale=0.005 --term theta_r_deg=0.02"),
+              std::string::npos);
+  }
+  EXPECT_EQ(with_terms, 2U);
+  EXPECT_NE(json["blocks"][0]["text"].get<std::string>().find("and of the terms plaque, lamp, arm."),
+            std::string::npos);
+}
+
 TEST(ReportDocument, SaysWhatItDoesNotKnow) {
   const std::string alone = document(least_squares("ptfe-532"))["blocks"][0]["text"];
   EXPECT_NE(alone.find("χ²/ν is not known, for no samples are beside it"), std::string::npos);

@@ -10,7 +10,6 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/polarization/covariance.hpp"
-#include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
@@ -113,16 +112,6 @@ TEST(Significance, NeedsTheUncertaintiesOfBoth) {
   Model unknown = least_squares("ptfe-532");
   for (FittedBlock& block : unknown.blocks) block.covariance.clear();
   EXPECT_THROW(between(least_squares("ptfe-532"), unknown, {Geometry{}}), std::invalid_argument);
-}
-
-TEST(Significance, IsAskedWhereBothModelsWereFitted) {
-  Model narrow = least_squares("ptfe-532");
-  narrow.validity.theta_r_max = radians(50);
-  const Geometry in{{0.8, 0}, {0.8, 0}}, out{{0.8, 0}, {1.0, 0}};
-  EXPECT_EQ(common_geometries(narrow, least_squares("ptfe-532"), {in, out}).size(), 1U);
-  EXPECT_EQ(common_geometries(material("ptfe-532"), narrow, {in, out}).size(), 1U);
-  narrow.validity = {};
-  EXPECT_EQ(common_geometries(narrow, narrow, {in, out}).size(), 2U);
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "given/cases.hpp"
@@ -15,6 +17,7 @@
 #include "mmbrdf/files/coefficients_file.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/samples_file.hpp"
+#include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
 namespace mmbrdf {
@@ -38,6 +41,65 @@ TEST(Comparison, OfSamplesIsThatOfAModelThatHasTheFirst) {
   EXPECT_NEAR(polarization_rms(pairs), polarization_rms(of_model), 1e-14);
   EXPECT_EQ(largest(pairs).geometry, samples[17].geometry);
   EXPECT_THROW(compare(std::span(first).first(3), samples), std::invalid_argument);
+}
+
+/// Fitted to 50 degrees of the detector.
+Model fitted_to_50_degrees() {
+  Model result = material("ptfe-532");
+  result.validity.theta_r_max = radians(50);
+  return result;
+}
+
+const Geometry inner{{0.8, 0}, {0.8, 0}}, outer{{0.8, 0}, {1.0, 0}};
+
+TEST(Comparison, LeavesOutWhatIsBeyondTheFit) {
+  const std::vector<Sample> all = simulate(material("ptfe-532"), green, std::vector{inner, outer});
+  std::vector<Sample> samples = all;
+  EXPECT_EQ(leave_out_beyond(fitted_to_50_degrees(), samples), 1U);
+  ASSERT_EQ(samples.size(), 1U);
+  EXPECT_EQ(samples[0].geometry, inner);
+  Model unknown = fitted_to_50_degrees();
+  unknown.validity = {};
+  EXPECT_EQ(leave_out_beyond(unknown, samples = all), 0U);
+}
+
+// Files give degrees: 57.295779513 of them are a little more than a radian.
+TEST(Comparison, GoesAsFarAsItIsSaidWhereverTheFitEnds) {
+  const std::vector<Sample> all = simulate(material("ptfe-532"), green, std::vector{inner, outer});
+  std::vector<Sample> samples = all;
+  for (const double theta_max : {radians(90), 1.0, 1 - 1e-12}) {
+    EXPECT_EQ(leave_out_beyond(fitted_to_50_degrees(), samples = all, theta_max), 0U);
+    EXPECT_EQ(leave_out_beyond(theta_max, samples = all), 0U);
+  }
+  EXPECT_EQ(leave_out_beyond(fitted_to_50_degrees(), samples = all, 0.9), 1U);
+  EXPECT_EQ(leave_out_beyond(0.9, samples = all), 1U);
+  EXPECT_EQ(samples[0].geometry, inner);
+}
+
+TEST(Comparison, OfModelsIsWhereBothWereFitted) {
+  const Model wide = material("ptfe-532"), narrow = fitted_to_50_degrees();
+  for (const auto& [first, second] : {std::pair(wide, narrow), std::pair(narrow, wide)}) {
+    const std::vector<Sample> samples = samples_to_compare(first, second, green, std::vector{inner, outer});
+    ASSERT_EQ(samples.size(), 1U);
+    EXPECT_EQ(samples[0].geometry, inner);
+    EXPECT_EQ(samples[0].f11, simulate(second, green, std::vector{inner})[0].f11);
+    EXPECT_EQ(samples_to_compare(first, second, green, std::vector{inner, outer}, radians(90)).size(), 2U);
+  }
+}
+
+// At 633 nm there are no samples of directions beyond 30 degrees; the angles of the validity are those of all wavelengths.
+TEST(Comparison, OfModelsLeavesOutADirectionAtTheWavelengthsAtWhichItWasNotFitted) {
+  const std::vector<double> both{0.532, 0.633};
+  std::vector<Sample> samples = simulate(material("ptfe"), both, random_geometries(600, 1, radians(80)), 0.01);
+  std::erase_if(samples, [](const Sample& s) {
+    return s.wavelength > 0.6 && std::max(s.geometry.incident.theta, s.geometry.reflected.theta) > radians(30);
+  });
+  const Model narrow = fit(samples, {.orders = {3, 2}}).model;
+  const std::vector<Sample> found =
+      samples_to_compare(narrow, material("ptfe"), both, std::vector{Geometry{{0.3, 0}, {0.3, 2}}, inner});
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[1].geometry, inner);
+  EXPECT_EQ(found[2].wavelength, 0.633);
 }
 
 TEST(Comparison, FindsWhatWasAddedToOneSampleAndWhere) {

@@ -30,6 +30,21 @@ struct Ptfe {
 
 double relative(const MuellerCovariance& v, const Mueller& f) { return std::sqrt(v(0, 0)) / f(0, 0); }
 
+TEST(Term, IsReadAsPeopleTypeIt) {
+  const TypeBTerm plaque = term_from("plaque: white:scale=0.3%,dof=12");
+  EXPECT_EQ(plaque.name, "plaque: white");
+  EXPECT_EQ(plaque.what, ErrorOf::scale);
+  EXPECT_DOUBLE_EQ(plaque.uncertainty, 0.003);
+  EXPECT_EQ(plaque.freedom, 12);
+  EXPECT_EQ(term_from("calibration=0.001").name, "calibration");
+  EXPECT_TRUE(std::isinf(term_from("calibration=0.001").freedom));
+  for (const char* angle : {"theta_i=2deg", "theta_r=2", "azimuth=+2deg"})
+    EXPECT_DOUBLE_EQ(term_from(angle).uncertainty, radians(2));
+  for (const char* wrong : {"scale", "detector=1", "scale=", "scale=1deg", "theta_r=1%", "scale=-1%", "scale=nan",
+                            "scale=1%,dof=0.5", "scale=1%,dof=", "scale=0.003,free=2"})
+    EXPECT_THROW(term_from(wrong), std::invalid_argument) << wrong;
+}
+
 TEST(Budget, IsTheSumOfItsTermsAndKeepsThem) {
   const Ptfe ptfe;
   const std::vector<TypeBTerm> terms{{"plaque", ErrorOf::scale, 0.003}, {"aperture", ErrorOf::scale, 0.004}};

@@ -12,7 +12,6 @@
 #include "mmbrdf/quantities/significance.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "mmbrdf/samples/matching.hpp"
-#include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
@@ -45,16 +44,13 @@ std::vector<double> wavelengths_of(const Model& first, const Model& second, cons
   return common;
 }
 
-double theta_max(const Options& options) { return radians(options.theta_max_deg.value_or(90)); }
-
-bool within(const Geometry& geometry, double theta) {
-  constexpr double rounding = 1e-9;  // files give degrees
-  return std::max(geometry.incident.theta, geometry.reflected.theta) <= theta + rounding;
+std::optional<double> theta_max(const Options& options) {
+  return options.theta_max_deg ? std::optional(radians(*options.theta_max_deg)) : std::nullopt;
 }
 
 /// How far random directions go: where both models were fitted, as far as that is known, and not beyond 75 degrees.
 double random_theta_max(const Model& first, const Model& second, const Options& options) {
-  if (options.theta_max_deg) return theta_max(options);
+  if (options.theta_max_deg) return *theta_max(options);
   double result = radians(75);
   for (const Validity& validity : {first.validity, second.validity})
     for (const std::optional<double>& theta : {validity.theta_i_max, validity.theta_r_max})
@@ -65,14 +61,12 @@ double random_theta_max(const Model& first, const Model& second, const Options& 
 /// What the second model gives where the first is to be compared with it.
 std::vector<Sample> samples_of(const Model& first, const Model& second, const Options& options) {
   const Grid grid = options.grid.value_or(Grid{});
-  std::vector<Geometry> at =
+  const std::vector<Geometry> at =
       grid.random > 0 ? random_geometries(grid.random, options.seed, random_theta_max(first, second, options))
                       : geometries(grid, options.seed);
-  std::erase_if(at, [&](const Geometry& g) { return !within(g, theta_max(options)); });
-  if (!options.theta_max_deg) at = common_geometries(first, second, std::move(at));
   const std::vector<double> wavelengths = wavelengths_of(first, second, options);
   try {
-    return simulate(second, wavelengths, at);
+    return samples_to_compare(first, second, wavelengths, at, theta_max(options));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(base_name(options.second) + ": " + error.what());
   }
@@ -87,14 +81,6 @@ Model model_of(const std::string& name, const Options& options) {
     throw std::runtime_error(data_name(name) + ": " + error.what() +
                              "; to set two files sample beside sample: --match");
   }
-}
-
-/// Without what lies beyond the fitted angles of a model, unless --theta-max says how far to go. Counts it.
-std::size_t leave_out_beyond(const Model& model, std::vector<Sample>& samples, const Options& options) {
-  if (options.theta_max_deg) return 0;
-  constexpr unsigned beyond = outside_theta_i | outside_theta_r | outside_directions;
-  return std::erase_if(samples,
-                       [&](const Sample& s) { return outside(model.validity, s.wavelength, s.geometry) & beyond; });
 }
 
 void require_some(const std::vector<Sample>& samples, const Options& options) {
@@ -139,8 +125,8 @@ CompareReport with_samples(const Model& first, const Options& options) {
   if (options.grid) throw WrongUsage("--grid", "goes with two models; " + name + " has its own geometries");
   std::vector<Sample> samples = samples_at(options.second, options.wavelengths_nm, options.table);
   const std::size_t all = samples.size();
-  std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
-  if (const std::size_t left_out = leave_out_beyond(first, samples, options); left_out > 0)
+  const std::size_t left_out = leave_out_beyond(first, samples, theta_max(options));
+  if (left_out > 0 && !options.theta_max_deg)
     note(std::to_string(left_out) + " of " + counted(static_cast<long>(all), "sample") + " beyond the fitted range, " +
          fitted_range(first.validity) + ", left out: --theta-max 90 takes all");
   require_some(samples, options);
@@ -159,9 +145,7 @@ CompareReport with_samples(const Model& first, const Options& options) {
 CompareReport with_model(const Model& first, const Options& options) {
   const Model second = model_of(options.second, options);
   const std::string name = data_name(options.second);
-  std::vector<Sample> samples = samples_of(first, second, options);
-  leave_out_beyond(first, samples, options);
-  leave_out_beyond(second, samples, options);
+  const std::vector<Sample> samples = samples_of(first, second, options);
   require_some(samples, options);
   warn_if_outside(second, samples, name);
   CompareReport report{.first = data_name(options.first), .second = name + if_printed(second)};
@@ -191,7 +175,7 @@ CompareReport matched_samples(const Options& options) {
     throw WrongUsage("--match", "samples beside samples have no --grid, --as-printed or --term");
   const auto read = [&](const std::string& name) {
     std::vector<Sample> samples = samples_at(name, options.wavelengths_nm, options.table);
-    std::erase_if(samples, [&](const Sample& s) { return !within(s.geometry, theta_max(options)); });
+    if (options.theta_max_deg) leave_out_beyond(*theta_max(options), samples);
     return samples;
   };
   const std::vector<Sample> of_second = read(options.second);

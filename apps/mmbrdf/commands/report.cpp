@@ -10,8 +10,10 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/quantities/report.hpp"
 #include "mmbrdf/text/date.hpp"
+#include "mmbrdf/uncertainty/prediction.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
+#include "options/terms.hpp"
 #include "pages/describe.hpp"
 #include "pages/digest.hpp"
 #include "pages/table.hpp"
@@ -27,6 +29,7 @@ struct Options {
   std::string model, data, output;
   std::optional<std::vector<double>> wavelengths_nm;
   SampleTable table;
+  Terms terms;
   std::optional<Kind> kind;
   ReportStyle style;
   bool letter = false;
@@ -99,6 +102,7 @@ void report(const Options& options, const CommandLine& line) {
   require_model_kept(options.model, options.output);
   require_kept(options.data, options.output, "data");
   const Kind kind = kind_of(options);
+  const std::vector<TypeBTerm> terms = terms_from(options.terms);
   if (kind == Kind::html || kind == Kind::pdf) report_by_python(options, line);
   if (options.data.empty() && !is_built_in(options.model) && is_samples(options.model))
     throw std::invalid_argument(options.model + ": holds samples: mmbrdf inspect says what they are, and a report of " +
@@ -115,7 +119,9 @@ void report(const Options& options, const CommandLine& line) {
     samples = samples_at(options.data, options.wavelengths_nm, options.table, &bytes_of_data);
     data = {data_name(options.data), samples};
   }
-  const std::string facts = report_json(model, name, wavelengths, data);
+  if (!terms.empty() && !knows_uncertainty(model))
+    throw WrongUsage("--term", "needs an uncertainty to be added to, and that of " + name + " is not known");
+  const std::string facts = report_json(model, name, wavelengths, data, terms);
   const ReportOrigin origin = origin_of(options, line, bytes_of_model, bytes_of_data);
   if (kind == Kind::json) return write_text(options.output, printed(with_origin(Json::parse(facts), origin)));
   write_text(options.output, report_markdown(report_document(model, facts, origin, options.style)));
@@ -133,6 +139,10 @@ constexpr const char* footer =
     "digits\n"
     "that their uncertainties leave; .json has all. Date (SOURCE_DATE_EPOCH counts), files, SHA-256 and command are in "
     "it.\n"
+    "\n"
+    "--term adds an error to all u, with a row of its own in budgets: KIND is scale (relative), theta_i, theta_r or "
+    "azimuth\n"
+    "(degrees), calibration (of each element divided by f11), each the same at all geometries.\n"
     "\n"
     "The ending of REPORT says what it is: .md, .html, .pdf or .json. Pages with pictures, .html and .pdf, are made by "
     "the\n"
@@ -155,6 +165,8 @@ Run report_command(CLI::App& app, const CommandLine& line) {
   add_file(app, "-o,--output", o->output, "REPORT", "Where the report goes; - is standard output [-]");
   add_option(app, "--format", o->kind, kind_from, "FORMAT",
              "markdown, html, pdf or json, whatever the ending of\nREPORT [markdown]");
+  add_term(app, o->terms,
+           "Add a standard uncertainty that the fit cannot know, as in\nscale=0.3%, theta_r=0.02deg; repeatable");
   add_option(app, "--notation", o->style.notation, notation_from, "NAME",
              "brackets, as in 0.98412(32), or plus-minus, as in\n0.98412 ± 0.00032 [brackets]");
   add_option(app, "-i,--incident", o->style.theta_i_deg, number, "DEG", "Angle of incidence of the pictures [45]");

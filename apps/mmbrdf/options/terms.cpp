@@ -7,22 +7,6 @@ namespace mmbrdf::program {
 
 namespace {
 
-/// VALUE with the unit that belongs to the error: a part of 1 or %, or degrees. As a part of 1, or in radians.
-double uncertainty_from(const std::string& text, ErrorOf what) {
-  const bool angle = what == ErrorOf::theta_i || what == ErrorOf::theta_r || what == ErrorOf::azimuth;
-  const std::string unit = angle ? "deg" : "%";
-  const bool with_unit = text.ends_with(unit);
-  const double value = number(with_unit ? text.substr(0, text.size() - unit.size()) : text);
-  if (value < 0) throw std::invalid_argument("\"" + text + "\": expected 0 or more");
-  return angle ? radians(value) : with_unit ? value / 100 : value;
-}
-
-double freedom_from(const std::string& text) {
-  const double freedom = number(text);
-  if (freedom < 1) throw std::invalid_argument("\"dof=" + text + "\": expected 1 or more");
-  return freedom;
-}
-
 /// k, which nobody has below 1, nor at 20 or more: who types 0.95 or 95 means a probability.
 double coverage_from(const std::string& text) {
   constexpr double least = 1, per_cent = 20;
@@ -31,19 +15,6 @@ double coverage_from(const std::string& text) {
     throw std::invalid_argument("\"" + text +
                                 "\": expected a coverage factor k, as 2; U of 95 % coverage is in the budget anyway");
   return factor;
-}
-
-TypeBTerm term_from(const std::string& text) {
-  const std::size_t equals = text.find('='), dof = text.find(",dof=");
-  if (equals == std::string::npos)
-    throw std::invalid_argument("\"" + text + "\": expected [NAME:]KIND=VALUE, as in scale=0.3% or plaque:scale=0.003");
-  const std::string name = text.substr(0, equals);
-  const std::size_t colon = name.rfind(':');
-  const ErrorOf what = error_from(colon == std::string::npos ? name : name.substr(colon + 1));
-  TypeBTerm term{colon == std::string::npos ? name : name.substr(0, colon), what,
-                 uncertainty_from(text.substr(equals + 1, dof - equals - 1), what)};
-  if (dof != std::string::npos) term.freedom = freedom_from(text.substr(dof + 5));
-  return term;
 }
 
 }  // namespace

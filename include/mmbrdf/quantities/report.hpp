@@ -18,6 +18,8 @@
 ///                         f11_not_positive, smallest_f11, u_smallest_f11, largest_dhr, u_largest_dhr,
 ///                         dhr_at_theta_i_deg (model_diagnostics)
 ///   uncertainty           what u holds, in words (uncertain_of), or "not known"
+///   terms                 where some are given, row by term: cause, kind ("scale", "theta_i_deg", … "calibration"), u,
+///                         degrees_of_freedom
 ///   reflectances          row by wavelength and quantity: wavelength_nm, quantity, value, u, validity (to_string(Outside)).
 ///                         Quantities are "dhr, theta_i 0", 8, 45, 60 and 75 degrees, "bhr", "reflectance factor 0:45" and
 ///                         "… 45:0"
@@ -65,6 +67,7 @@
 #include "mmbrdf/model/model.hpp"
 #include "mmbrdf/samples/samples.hpp"
 #include "mmbrdf/text/notation.hpp"
+#include "mmbrdf/uncertainty/budget.hpp"
 
 namespace mmbrdf {
 
@@ -90,10 +93,12 @@ struct ReportedSamples {
 
 /// Of the model called `name`, at these wavelengths (micrometres); none given: at known_wavelengths(model). Residuals
 /// and noise are those of the model as it is; chi^2, conventions, symmetries, leverage and outliers are of fits of its
-/// basis to the samples, without weights but for chi^2. Throws std::invalid_argument for an invalid model or wavelength,
-/// if there is no wavelength to report on, and for samples as compare(), symmetry_tests() and fit() do.
+/// basis to the samples, without weights but for chi^2. `terms` are of all u of reflectances and of the extremes of
+/// realizability, which have none at the horizon of the receiver with a term theta_r. Throws std::invalid_argument for an invalid
+/// model or wavelength, if there is no wavelength to report on, for samples as compare(), symmetry_tests() and fit() do,
+/// and for terms where the uncertainty of the model is not known.
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths = {},
-                        const std::optional<ReportedSamples>& samples = {});
+                        const std::optional<ReportedSamples>& samples = {}, std::span<const TypeBTerm> terms = {});
 
 /// Where a report comes from: nothing of it is looked up.
 struct ReportOrigin {

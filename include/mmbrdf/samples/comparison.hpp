@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,8 +58,18 @@ std::string dark_line(const Comparison& comparison);
 /// or they share none.
 std::vector<double> common_wavelengths(const Model& first, const Model& second);
 
-/// Those of the geometries whose polar angles are within the fitted ranges of both, as far as these are known.
-std::vector<Geometry> common_geometries(const Model& first, const Model& second, std::vector<Geometry> geometries);
+/// How far a comparison goes: to where both polar angles are at most theta_max (radians); where that is not said, to the
+/// angles to which a model was fitted at the wavelength of each sample, as far as these are known. Takes out the samples
+/// beyond, and returns how many they were.
+std::size_t leave_out_beyond(const Model& model, std::vector<Sample>& samples, std::optional<double> theta_max = {});
+
+/// The same of samples that are compared with samples.
+std::size_t leave_out_beyond(double theta_max, std::vector<Sample>& samples);
+
+/// What the second model gives where both are compared: at each of the wavelengths (micrometres), and those of the
+/// geometries that are not beyond for either. Throws std::invalid_argument as simulate() does.
+std::vector<Sample> samples_to_compare(const Model& first, const Model& second, std::span<const double> wavelengths,
+                                       std::span<const Geometry> geometries, std::optional<double> theta_max = {});
 
 /// Root mean square over the 15 normalised elements, or those of them that are known; 0 of none.
 double polarization_rms(const Comparison& comparison);

@@ -37,6 +37,10 @@ struct TypeBTerm {
 };
 inline constexpr double largest_term = 10;
 
+/// As people type it, [NAME:]KIND=U[,dof=N], angles in degrees: "scale=0.3%", "theta_r=0.02deg", "plaque:scale=0.003,dof=12".
+/// Throws std::invalid_argument for another text.
+TypeBTerm term_from(const std::string& text);
+
 /// How F in sr⁻¹ changes with errors of one standard uncertainty: one matrix for each error, 15 for calibration. Where
 /// the polarimeter sits on the arms, an error of an angle turns its axes along: slopes are of the matrix in the sp
 /// frame, by central differences (relative error 1e-7), one-sided within 1e-4 of 90 degrees (5e-5).
