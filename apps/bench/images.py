@@ -130,9 +130,9 @@ def files(pixels):
 
 
 def calibrations():
-    camera = images.simulate((32, 32), seed=1)
+    camera = images.simulate((64, 64), seed=1)
     run = lambda: images.calibrate(camera.references, camera.stacks, wavelength_nm=532)  # noqa: E731
-    say("calibrate each pixel, 54 references of 4 x 4 states", best(run, 32 * 32, 2), "pixel")
+    say("calibrate each pixel, 54 references of 4 x 4 states", best(run, 64 * 64, 2), "pixel")
     dials = mmbrdf.dial_angles(5, 6.0, 61)
     camera = images.simulate((16, 32), dials_deg=dials, repeats=2, seed=1)
     run = lambda: images.calibrate(camera.references, camera.stacks, wavelength_nm=532, dials_deg=dials)  # noqa: E731
