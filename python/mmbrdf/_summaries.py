@@ -97,7 +97,8 @@ def _dataset(data: Any) -> Rows:
         return
     theta_i, theta_r = data.theta_i_deg, data.theta_r_deg
     yield "directions", f"theta_i {theta_i.min():.4g} to {theta_i.max():.4g}, theta_r {theta_r.min():.4g} to {theta_r.max():.4g} degrees"
-    yield "f11", f"{data.f11.min():.3g} to {data.f11.max():.3g} sr^-1, median {np.median(data.f11):.3g} sr^-1"
+    if (f11 := data.f11[~np.isnan(data.f11)]).size:
+        yield "f11", f"{f11.min():.3g} to {f11.max():.3g} sr^-1, median {np.median(f11):.3g} sr^-1"
     frames, counts = np.unique(data.frame, return_counts=True)
     if frames.tolist() != ["xy"]:
         told = [f"{name} ({count} sample{'s' * (count != 1)})" for name, count in zip(frames, counts.tolist())]

@@ -79,12 +79,15 @@ bool MeasuredKinds::any_as_measured() const {
   return std::ranges::any_of(at_, [&](const auto& one) { return any(one.second); });
 }
 
+bool is_complete(const Sample& sample, const Elements& known) {
+  return sample.as_measured == nullptr && (not_measured(sample) & known).none();
+}
+
 Series complete(const Series& series, const MeasuredKinds& kinds) {
   Series result;
   for (const Elements known = kinds.known(); const auto& [wavelength, list] : series)
-    std::ranges::copy_if(list, std::back_inserter(result[wavelength]), [&](const Sample& sample) {
-      return sample.as_measured == nullptr && (not_measured(sample) & known).none();
-    });
+    std::ranges::copy_if(list, std::back_inserter(result[wavelength]),
+                         [&](const Sample& sample) { return is_complete(sample, known); });
   return result;
 }
 

@@ -39,6 +39,7 @@ class MeasuredKinds {
   using Counts = std::map<unsigned long, long>;  // by bits of elements, and one of as_measured
   std::map<double, Counts> at_;
 };
+bool is_complete(const Sample& sample, const Elements& known);
 /// Those that are complete.
 Series complete(const Series& series, const MeasuredKinds& kinds);
 /// Why there is no mixed model of these; empty if there may be: of those that are complete, if few are not.

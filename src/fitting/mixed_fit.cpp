@@ -141,16 +141,18 @@ BlockFits block_fits(const MixedRounds& rounds, const Model& evaluated, const st
   return result;
 }
 
-/// Of samples that are not complete; empty if all are.
-std::string left_out(const MeasuredKinds& kinds) {
+/// That rounds did without samples that are not complete, in the model and its warnings.
+void say_left_out(const MixedRounds& rounds, FitResult& result) {
+  if (!rounds.leaves_out()) return;
   long all = 0, incomplete = 0;
-  for (const double wavelength : kinds.wavelengths()) {
-    all += kinds.samples(wavelength);
-    incomplete += kinds.incomplete(wavelength);
+  for (const double wavelength : rounds.kinds().wavelengths()) {
+    all += rounds.kinds().samples(wavelength);
+    incomplete += rounds.kinds().incomplete(wavelength);
   }
-  if (incomplete == 0) return "";
-  return "left out of the fit of the sample: " + std::to_string(incomplete) + " of " + std::to_string(all) +
-         " samples, in which elements are missing";
+  const std::string few =
+      std::to_string(incomplete) + " of " + std::to_string(all) + " samples, in which elements are missing";
+  result.model.provenance["left_out"] = few;
+  result.warnings.push_back("left out of the fit: " + few);
 }
 
 /// What is kept of them.
@@ -180,6 +182,7 @@ Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const 
 
 FitResult noise_fit(const MixedRounds& rounds, const FitOptions& options, const std::string& reason) {
   FitResult result = least_squares(rounds, options).result;
+  say_left_out(rounds, result);
   result.warnings.push_back(only_noise(reason));
   return result;
 }
@@ -202,7 +205,7 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
     }
     model.posterior = posterior_of(rounds, model, options.declared, std::move(fits), sums);
   });
-  if (std::string few = left_out(rounds.kinds()); !few.empty()) result.warnings.push_back(std::move(few));
+  say_left_out(rounds, result);
   result.elements = squares.misfit(model);
   model.reflectance.covariance.clear();
   model.reflectance.covariance_with_f11.clear();
@@ -228,13 +231,14 @@ FitResult sample_fit(std::span<const Sample> samples, const Basis& basis, const 
   });
   if (rounds.finished()) throw MixedFailure(rounds.reason());
   const std::vector<MixedColumns> columns = mixed_columns(basis, ~rounds.kinds().known());
-  const Series with_all = complete(series, rounds.kinds());
+  const Series whole = rounds.leaves_out() ? complete(series, rounds.kinds()) : Series();
+  const Series& used = rounds.leaves_out() ? whole : series;
   const auto gram = [&](double wavelength, std::size_t block) {
-    return sums_of(columns[block], with_all.at(wavelength), rounds.first().at(wavelength));
+    return sums_of(columns[block], used.at(wavelength), rounds.first().at(wavelength));
   };
   const auto directions = [&](double wavelength) {
     DirectionCounts result;
-    result.add(with_all.at(wavelength));
+    result.add(used.at(wavelength));
     return result;
   };
   FitResult result = mixed_fit(rounds, options, {gram, directions});
@@ -243,6 +247,10 @@ FitResult sample_fit(std::span<const Sample> samples, const Basis& basis, const 
   std::map<double, std::vector<Mueller>> lists;
   for (const auto& [wavelength, list] : series)
     lists[wavelength] = rounds.weights(list, rounds.first().at(wavelength), result.model.reflectance.at(wavelength));
+  if (rounds.leaves_out())
+    for (const Elements known = rounds.kinds().known(); const auto& [wavelength, list] : series)
+      for (std::size_t s = 0; s < list.size(); ++s)
+        if (!is_complete(list[s], known)) lists[wavelength][s].elements.fill(0);
   result.sample_weights = in_order_of(samples, lists);
   result.residuals = residuals(result.model, samples);
   return result;

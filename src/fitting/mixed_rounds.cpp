@@ -155,7 +155,9 @@ void MixedRounds::add(const Series& series, int threads) {
   if (finished_) throw std::invalid_argument("all rounds over the samples have ended");
   for (const auto& [wavelength, list] : series)
     if (round_ > 1) known(wavelength);  // or nothing is added
-  for (const auto& [wavelength, list] : series) {
+  const Series whole = leaves_out() ? complete(series, kinds_) : Series();
+  const Series& used = leaves_out() ? whole : series;
+  for (const auto& [wavelength, list] : used) {
     Sums& sums = sums_at(wavelength);
     for (std::size_t begin = 0; begin < list.size() && round_ < 3; begin += readings_at_once) {
       const auto some = std::span(list).subspan(begin, std::min(readings_at_once, list.size() - begin));
@@ -163,11 +165,13 @@ void MixedRounds::add(const Series& series, int threads) {
       if (round_ == 2) add_second(some, first_.at(known(wavelength)), sums);
     }
     if (round_ == 3) add_third(list, known(wavelength), sums);
+  }
+  for (const auto& [wavelength, list] : series) {
     samples_ += static_cast<long>(list.size());
     for (const Sample& sample : list) digest_ += digest_of(sample);
   }
   if (round_ == 1) kinds_.add(series);
-  if (round_ == 4) add_fourth(series, threads);
+  if (round_ == 4) add_fourth(used, threads);
 }
 
 void MixedRounds::add_first(std::span<const Sample> samples, const ReadingLaw& law, Sums& sums) const {
@@ -211,24 +215,24 @@ std::vector<Mueller> MixedRounds::weights(std::span<const Sample> samples, const
 
 void MixedRounds::add_third(std::vector<Sample> samples, double wavelength, Sums& sums) {
   const FirstPass& first = first_.at(wavelength);
-  if (first.law.relative)
+  if (first.law.relative && !samples.empty())
     sums.least = std::min(sums.least, first_f11(first.f11, basis_.mapping, geometries_of(samples)).minCoeff());
   for (Sample& sample : samples) sample.wavelength = wavelength;
   squares_.try_emplace(wavelength, basis_).first->second.add(samples, weights(samples, first, 1));
 }
 
-void MixedRounds::add_fourth(const Series& all, int threads) {
-  const Series series = complete(all, kinds_);
+void MixedRounds::add_fourth(const Series& series, int threads) {
   std::vector<std::pair<const std::vector<Sample>*, const FirstPass*>> list;
   std::vector<Sums*> sums;
   for (const auto& [wavelength, samples] : series) {
-    if (samples.empty()) continue;
-    list.emplace_back(&samples, &first_.at(known(wavelength)));
-    sums.push_back(&sums_at(wavelength));
-    sums.back()->directions.add(samples);
-    if (sums.back()->grams.empty())
+    Sums& here = sums_at(wavelength);
+    if (here.grams.empty())
       for (const MixedColumns& columns : *columns_)
-        sums.back()->grams.emplace_back(columns.size(), static_cast<Index>(declared_errors));
+        here.grams.emplace_back(columns.size(), static_cast<Index>(declared_errors));
+    if (samples.empty()) continue;  // none of them was complete
+    list.emplace_back(&samples, &first_.at(known(wavelength)));
+    sums.push_back(&here);
+    here.directions.add(samples);
   }
   const std::size_t blocks = columns_->size();
   const auto add_block = [&](std::size_t i) {  // the largest first
@@ -324,6 +328,12 @@ void MixedRounds::begin_fourth() {
   options.minimum_norm = true;
   options.rank_tolerance = first_tolerance;
   for (auto& [wavelength, first] : first_) first.model = squares_.at(wavelength).solve(options).model;
+}
+
+bool MixedRounds::leaves_out() const {
+  if (round_ < 3 && !finished_) return false;
+  const auto incomplete = [&](double wavelength) { return kinds_.incomplete(wavelength) > 0; };
+  return std::ranges::any_of(kinds_.wavelengths(), incomplete) && no_mixed_model(kinds_, basis_).empty();
 }
 
 std::string MixedRounds::reason() const {

@@ -5,8 +5,8 @@
 ///   1  number and mean of f11, what was measured; f°, f11 of first_order, weighed by the law alone
 ///   2  where the law is relative: least f° and the sizes of f11 − f°, which say whether noise is relative to f11; f^,
 ///      f11 of first_order weighed as if the readings were without noise
-///   3  least f^; least squares of the evaluated modes with the weights of the mixed model
-///   4  where there is a mixed model: sums of each block (mixed/evidence.hpp), and directions, of complete samples
+///   3  (of complete samples alone, if that makes a mixed model) least f^; least squares of the evaluated modes with the weights of the mixed model
+///   4  where there is a mixed model: sums of each block (mixed/evidence.hpp), and directions
 #pragma once
 
 #include <cstdint>
@@ -61,6 +61,8 @@ class MixedRounds {
   long samples() const { return samples_; }  ///< of this round
   const Basis& basis() const { return basis_; }
   const MeasuredKinds& kinds() const { return kinds_; }
+  /// Whether a mixed model is to be had of complete samples alone, which is what rounds 3 and 4 are of.
+  bool leaves_out() const;
   /// Why there is no mixed model, as far as the rounds that are over tell; empty if there may be.
   std::string reason() const;
 
@@ -90,7 +92,7 @@ class MixedRounds {
   void add_first(std::span<const Sample> samples, const ReadingLaw& law, Sums& sums) const;
   void add_second(std::span<const Sample> samples, const FirstPass& first, Sums& sums) const;
   void add_third(std::vector<Sample> samples, double wavelength, Sums& sums);
-  void add_fourth(const Series& all, int threads);
+  void add_fourth(const Series& series, int threads);
   double known(double wavelength) const;
   void settle_first();
   void settle_second();

@@ -318,12 +318,12 @@ TEST(SampleFit, LeavesOutAFewSamplesThatLackElements) {
   const Case one{{Family::isotropic, {3, 2}}};
   const FitResult found = in_memory(some, one), expected = in_memory(others, one);
   ASSERT_TRUE(found.model.posterior);
-  EXPECT_EQ(found.warnings.back(),
-            "left out of the fit of the sample: " + std::to_string(whole.size() - others.size()) +
-                " of 300 samples, in which elements are missing");
+  EXPECT_EQ(found.warnings.back(), "left out of the fit: " + std::to_string(whole.size() - others.size()) +
+                                       " of 300 samples, in which elements are missing");
   EXPECT_EQ(expected.warnings.size() + 1, found.warnings.size());
-  EXPECT_EQ(found.elements[0].rows, 300);
-  EXPECT_EQ(found.elements[5].rows, 300 - 15);
+  for (const ElementFit& element : found.elements) EXPECT_EQ(element.rows, 280);
+  EXPECT_EQ(found.sample_weights[3](0, 0), 0);
+  EXPECT_GT(found.sample_weights[5](0, 0), 0);
   const PreparedModel a = prepare(found.model, 0.532), b = prepare(expected.model, 0.532);
   const PreparedUncertainty u = prepare_uncertainty(expected.model, 0.532), v = prepare_uncertainty(found.model, 0.532);
   for (const Geometry& g : halton_directions(20, 0, 70)) {
@@ -335,6 +335,37 @@ TEST(SampleFit, LeavesOutAFewSamplesThatLackElements) {
     }
   }
   expect_same_fit(some, one);
+}
+
+// What they do not support is outside the fit: the range is that of the others.
+TEST(SampleFit, HasTheRangeOfTheSamplesThatItDoesNotLeaveOut) {
+  std::vector<Sample> samples;
+  for (Sample& sample : simulated(500)) {
+    const bool far = std::max(sample.geometry.incident.theta, sample.geometry.reflected.theta) > 0.9;
+    if (far) sample.normalized(2, 1) = std::nan("");
+    if (!far || samples.size() % 12 == 5) samples.push_back(sample);
+  }
+  const FitResult found = in_memory(samples, {{Family::isotropic, {3, 2}}});
+  ASSERT_TRUE(found.model.posterior);
+  EXPECT_NE(found.warnings.back().find("left out"), std::string::npos);
+  EXPECT_LE(found.model.validity.theta_r_max, 0.9);
+  EXPECT_LE(found.model.validity.theta_i_max, 0.9);
+}
+
+// Of a part of which nothing is complete there are sums of nothing, which are sent and merged as others are.
+TEST(SampleFit, TakesPartsOfWhichAllIsLeftOut) {
+  const std::vector<Sample> samples = with_gaps(simulated(300), 5, 280, 1);
+  const Basis low{Family::isotropic, {3, 2}};
+  SampleFitAccumulator sums(low);
+  do {
+    SampleFitAccumulator whole = sums, gaps = sums;
+    whole.add(std::span(samples).first(280));
+    gaps.add(std::span(samples).subspan(280));
+    sums = SampleFitAccumulator::from_state(low, Weights::speckle, gaps.state());
+    EXPECT_EQ(sums.state(), gaps.state()) << sums.round();
+    sums.merge(whole);
+  } while (sums.next_round());
+  expect_same(sums.solve(), in_memory(samples, {low}));
 }
 
 TEST(SampleFit, RefusesWhatIsNotARoundOverTheSameSamples) {

@@ -93,6 +93,25 @@ def test_masked_chunks_are_unknown_too(camera):
         np.testing.assert_array_equal(lazy.compute(), images.reduce(stack, instrument, dark=0.0, saturation=99.0))
 
 
+def test_dark_frames_and_masks_count_alike_in_chunks(camera):
+    da = pytest.importorskip("dask.array")
+    instrument = camera.instrument.at(0, 0)
+    row, dark = camera.stack[0], np.linspace(0.0, 0.01, camera.stack.shape[-1], dtype=np.float32)
+    mask = np.arange(len(row)) % 2 == 0
+    expected = images.reduce(row, instrument, dark=dark, mask=mask, saturation=99.0)
+    assert np.isnan(expected).any()
+    for given in (dark, da.from_array(dark, chunks=-1)):
+        for lazy_mask in (mask, da.from_array(mask, chunks=2)):
+            lazy = images.reduce(
+                da.from_array(row, chunks=(3, -1)), instrument, dark=given, mask=lazy_mask, saturation=99.0
+            )
+            np.testing.assert_array_equal(lazy.compute(), expected)
+    square = np.tile(camera.stack.reshape(-1, 16), (2, 1))[:16]  # as many pixels as frames: a mask is no dark frame
+    mask = np.arange(16) % 3 == 0
+    lazy = images.reduce(da.from_array(square, chunks=(4, -1)), instrument, mask=mask)
+    np.testing.assert_array_equal(lazy.compute(), images.reduce(square, instrument, mask=mask))
+
+
 def test_masked_readings_of_references_are_not_calibrated_with(camera, calibrated):
     stacks = masked(camera.stacks, (3, 1, 2, 0))
     for given in (stacks, list(stacks)):

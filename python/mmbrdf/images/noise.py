@@ -76,6 +76,8 @@ def uncertainty(
 
 
 class _Noise:
+    function = "uncertainty"  # as Dask shows it
+
     def __init__(self, own: Polarimeter | PixelInstrument, noise: dict[str, float], quantity: str | None):
         self.own, self.noise, self.quantity = own, noise, quantity
 

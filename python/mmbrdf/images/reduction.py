@@ -124,7 +124,7 @@ def _reduced_lazily(stack: Any, own: Polarimeter | PixelInstrument, dark: Any, s
     for name, array in (("dark", dark), ("mask", mask)):
         if array is None:
             continue
-        if array.ndim == 0 or array.shape == stack.shape[-1:]:
+        if name == "dark" and not _chunks.is_lazy(array) and (array.ndim == 0 or array.shape == stack.shape[-1:]):
             continue
         whole = dask.array.asarray(array)
         if name == "dark":
@@ -145,6 +145,8 @@ def _reduced_lazily(stack: Any, own: Polarimeter | PixelInstrument, dark: Any, s
 
 class _Block:
     """The reduction of a chunk: it can be sent."""
+
+    function = "reduce"  # as Dask shows it
 
     def __init__(self, own: Polarimeter | None, dark: Any, saturation: Any, names: Sequence[str]):
         self.own, self.dark, self.saturation, self.names = own, dark, saturation, list(names)
