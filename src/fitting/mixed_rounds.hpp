@@ -5,8 +5,10 @@
 ///   1  number and mean of f11, what was measured; f°, f11 of first_order, weighed by the law alone
 ///   2  where the law is relative: least f° and the sizes of f11 − f°, which say whether noise is relative to f11; f^,
 ///      f11 of first_order weighed as if the readings were without noise
-///   3  (of complete samples alone, if that makes a mixed model) least f^; least squares of the evaluated modes with the weights of the mixed model
+///   3  least f^; least squares of the evaluated modes with the weights of the mixed model
 ///   4  where there is a mixed model: sums of each block (mixed/evidence.hpp), and directions
+///
+/// Rounds 3 and 4 are of complete samples alone, if that makes a mixed model.
 #pragma once
 
 #include <cstdint>
