@@ -130,18 +130,12 @@ Mean mean(const PreparedModel& model, const std::vector<WeightedDirection>& sour
   return result;
 }
 
-/// mean_rule(nodes), and what its weights had missed of the closed form of their sum, relative.
-struct Rule {
-  std::vector<WeightedDirection> nodes;
-  double miss = 0;
-};
-
-Rule rule_of(const Aperture& aperture, int nodes) {
-  Rule rule{aperture.quadrature(nodes)};
+/// Nodes of an aperture whose weights add up to 1.
+std::vector<WeightedDirection> mean_rule(const Aperture& aperture, int nodes) {
+  std::vector<WeightedDirection> rule = aperture.quadrature(nodes);
   double total = 0;
-  for (const WeightedDirection& node : rule.nodes) total += node.weight;
-  for (WeightedDirection& node : rule.nodes) node.weight /= total;
-  if (const double exact = aperture.projected_solid_angle(); exact > 0) rule.miss = std::abs(total / exact - 1);
+  for (const WeightedDirection& node : rule) total += node.weight;
+  for (WeightedDirection& node : rule) node.weight /= total;
   return rule;
 }
 
@@ -159,12 +153,11 @@ Average average(const PreparedModel& model, const Aperture& source, const Apertu
     throw std::invalid_argument("tolerance " + shortest(options.tolerance) + ": must be at least 1e-13 and below 1");
   Average result{};
   for (int nodes = 2; nodes <= Aperture::most_nodes; nodes += 1 + nodes / 5) {
-    const Rule incident = rule_of(source, nodes), reflected = rule_of(receiver, nodes);
-    const long geometries = static_cast<long>(incident.nodes.size()) * static_cast<long>(reflected.nodes.size());
+    const auto incident = mean_rule(source, nodes), reflected = mean_rule(receiver, nodes);
+    const long geometries = static_cast<long>(incident.size()) * static_cast<long>(reflected.size());
     if (nodes > 3 && geometries > options.most_geometries) break;  // two rules at least
-    const auto [finer, magnitude] = mean(model, incident.nodes, reflected.nodes);
-    const double difference = largest(finer - result.mueller) + (incident.miss + reflected.miss) * magnitude,
-                 rounding = evaluation_error * magnitude;
+    const auto [finer, magnitude] = mean(model, incident, reflected);
+    const double difference = largest(finer - result.mueller), rounding = evaluation_error * magnitude;
     const bool converged = nodes > 2 && difference <= std::max(options.tolerance * largest(finer), rounding);
     result = {finer, difference + rounding, nodes, geometries, converged};
     if (converged) break;
