@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "given/checkout.hpp"
 #include "given/halton.hpp"
 #include "given/published.hpp"
 #include "mmbrdf/files/model_file.hpp"
@@ -53,7 +54,7 @@ TEST(Materials, ReflectAsPtfeDoes) {
 // Their posteriors are kept apart from the rest of the file, and read later.
 TEST(Materials, AreWhatTheirFilesHold) {
   for (const std::string& name : materials()) {
-    const Model there = load_model(MMBRDF_SOURCE_DIR "/materials/" + name + ".json");
+    const Model there = load_model(in_checkout("materials/" + name + ".json"));
     EXPECT_EQ(to_json(material(name)), to_json(there)) << name;
   }
 }

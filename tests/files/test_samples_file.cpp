@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "given/cases.hpp"
+#include "given/checkout.hpp"
 #include "given/files.hpp"
 #include "given/published.hpp"
 
@@ -463,7 +464,7 @@ TEST(Coefficients, HaveNoPlaceForOtherMappingsOrAnisotropy) {
 // ---- docs/formats.md ------------------------------------------------------------------------------------------------
 
 TEST(Formats, AreAsTheirExamplesInTheDocumentationShow) {
-  std::istringstream page(contents(MMBRDF_SOURCE_DIR "/docs/formats.md"));
+  std::istringstream page(contents(in_checkout("docs/formats.md")));
   std::vector<std::string> examples;
   bool inside_example = false;
   for (std::string line; std::getline(page, line);) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "given/checkout.hpp"
 #include "given/first_pass.hpp"
 #include "given/published_samples.hpp"
 #include "mixed/block_fit.hpp"
@@ -28,7 +29,7 @@ const char* const grid = "PTFE.data.csv";
 const char* const random_set = "PTFE.data.random.csv";
 
 json golden() {
-  std::ifstream file(MMBRDF_SOURCE_DIR "/tests/data/mixed_model.json");
+  std::ifstream file(in_checkout("tests/data/mixed_model.json"));
   return json::parse(file);
 }
 

@@ -12,25 +12,27 @@
 #include <string>
 #include <vector>
 
+#include "given/checkout.hpp"
+
 namespace mmbrdf {
 
-/// Path of `file` in the folder named by an environment variable or, without that, in `beside`; empty if there is none.
-inline std::string existing(const char* variable, const char* beside, const std::string& file) {
+/// Path of `file` in the folder named by an environment variable or, without that, in `beside`, seen from the checkout; empty if there is none.
+inline std::string existing(const char* variable, const std::string& beside, const std::string& file) {
   const char* folder = std::getenv(variable);
-  const std::filesystem::path path = std::filesystem::path(folder ? folder : beside) / file;
+  const std::filesystem::path path = std::filesystem::path(folder ? folder : in_checkout(beside)) / file;
   return std::filesystem::exists(path) ? path.string() : "";
 }
 
 /// The data and coefficients of Germer 2017 (figshare 10.6084/m9.figshare.5417410).
 inline std::string published(const std::string& file) {
-  return existing("MMBRDF_DATA", MMBRDF_SOURCE_DIR "/../shared/data/germer2017", file);
+  return existing("MMBRDF_DATA", "../shared/data/germer2017", file);
 }
 
 /// Values computed by other programs: SCATMECH, an independent prototype. The whole file in the folder MMBRDF_REFERENCE
 /// or beside the repository, else what of it is in tests/data/; empty if nothing is.
 inline std::string reference(const std::string& file) {
-  const std::string whole = existing("MMBRDF_REFERENCE", MMBRDF_SOURCE_DIR "/../shared/reference", file);
-  const std::string here = std::string(MMBRDF_SOURCE_DIR "/tests/data/") + file;
+  const std::string whole = existing("MMBRDF_REFERENCE", "../shared/reference", file);
+  const std::string here = in_checkout("tests/data/" + file);
   return !whole.empty() ? whole : std::filesystem::exists(here) ? here : "";
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "given/checkout.hpp"
 #include "given/first_pass.hpp"
 #include "given/halton.hpp"
 #include "given/published_samples.hpp"
@@ -23,7 +24,7 @@ using nlohmann::json;
 constexpr std::array<const char*, 6> block_names{"11", "g", "14", "uv", "h", "44"};
 
 json golden() {
-  std::ifstream file(MMBRDF_SOURCE_DIR "/tests/data/mixed_model.json");
+  std::ifstream file(in_checkout("tests/data/mixed_model.json"));
   return json::parse(file);
 }
 
