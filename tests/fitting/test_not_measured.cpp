@@ -289,6 +289,18 @@ TEST(NotMeasured, PartsOfABlockMakeTheUncertaintyThatOfTheNoise) {
             std::string::npos);
 }
 
+// Their variance is none, and the evidence of the mixed model has no largest value.
+TEST(NotMeasured, ZerosInPlaceOfElementsMakeTheUncertaintyThatOfTheNoise) {
+  std::vector<Sample> samples = of_ptfe();
+  for (Sample& sample : samples) sample.normalized(0, 3) = sample.normalized(3, 0) = 0;
+  const FitResult fitted = fit_sample(samples);
+  EXPECT_FALSE(fitted.model.posterior);
+  ASSERT_FALSE(fitted.warnings.empty());
+  EXPECT_NE(fitted.warnings[0].find("some elements are exactly 0 in all samples"), std::string::npos)
+      << fitted.warnings[0];
+  EXPECT_TRUE(std::isfinite(prepare_uncertainty(fitted.model, 0.532).evaluate(in_degrees(45, 0, 30, 150))(0, 0)));
+}
+
 // ---- published measurements -----------------------------------------------------------------------------------------
 
 TEST(NotMeasured, ElementsOfThePublishedGridLeaveTheBlocksOfTheOthersAsTheyAre) {
