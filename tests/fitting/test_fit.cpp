@@ -365,12 +365,12 @@ TEST(Fit, ProjectionOfAPublishedFormIsTheModelItCameFrom) {
 
 // ---- refusals ------------------------------------------------------------------------------------------------------
 
-TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesTheModes) {
+TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesFewModes) {
   std::vector<Sample> samples = samples_of(material("ptfe-532"));
   std::erase_if(samples, [](const Sample& s) { return s.geometry.incident.theta > radians(20); });
   const std::string message = message_of([&] { fit(samples); });
   EXPECT_NE(message.find("; block 11: rank "), std::string::npos) << message;
-  EXPECT_NE(message.find(" combinations are free of the modes (n,m,k,l) 11(0,0,0,0)"), std::string::npos) << message;
+  EXPECT_EQ(message.find("the modes"), std::string::npos) << message;  // dozens
   EXPECT_NE(message.find("; block 22,23,32,33: rank "), std::string::npos)
       << message;  // all blocks, not the first alone
   FitOptions options;
