@@ -9,6 +9,7 @@
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
 #include "mmbrdf/quantities/trust.hpp"
+#include "quantities/angle_unit.hpp"
 #include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
@@ -108,6 +109,8 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
                                       std::span<const long> numbers) {
   std::vector<std::string> warnings = result.warnings;
   for (const Finding& finding : row_findings(samples, numbers)) add(warnings, to_string(finding));
+  if (may_be_radians(samples))
+    if (const Finding unit = radian_finding(samples); !unit.fault.empty()) add(warnings, to_string(unit));
   std::ranges::move(data_warnings(result), std::back_inserter(warnings));
   const Model& model = result.model;
   const std::vector<double>& wavelengths = model.validity.wavelengths;

@@ -260,9 +260,9 @@ std::string span_line(const Angles& a) { return rounded(a.smallest, 4) + " ... "
 
 }  // namespace
 
-Inspection inspect(std::span<const Sample> samples) {
+Inspection inspect(std::span<const Sample> samples, std::span<const long> numbers) {
   Inspection result;
-  result.findings = row_findings(samples);
+  result.findings = row_findings(samples, numbers);
   if (samples.empty()) throw std::invalid_argument("there are no samples");
   result.residuals.assign(samples.size(), not_known);
   Looked at{without_fills(samples), {}};

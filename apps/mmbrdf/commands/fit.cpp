@@ -150,6 +150,13 @@ class Spread {
   std::size_t seen_ = 0, stride_ = 1;
 };
 
+/// Of samples that cannot be fitted: what is wrong with them may be the reason.
+void warn_of_faults(const Spread& some) {
+  if (some.some().empty()) return;
+  for (const Finding& finding : inspect(some.some(), some.numbers()).findings)
+    if (finding.fault != "no fit") warn(to_string(finding));
+}
+
 FitResult fitted(const Options& options, long& rows, Spread& some, SaidOfTable& said) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
@@ -169,6 +176,7 @@ FitResult fitted(const Options& options, long& rows, Spread& some, SaidOfTable& 
     if (!options.instrument.empty()) add_instrument(result, all, options);
     return result;
   } catch (const std::invalid_argument& error) {
+    warn_of_faults(some);
     throw std::runtime_error(data_name(options.data) + ": " + error.what());
   }
 }
