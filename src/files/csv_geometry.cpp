@@ -46,6 +46,7 @@ void require_polar(const CsvReader& reader, int column, double theta) {
 /// Where a column is missing: whether its name lacks a unit, or how to name another.
 std::string unit_hint(const CsvReader& reader, const std::string& bare, const std::string& own) {
   const int column = reader.find(std::string_view(bare));
+  if (column < 0 && reader.may_be_title()) return "; is this line a title? Leave it out, or begin it with #";
   if (column < 0) return reader.layout().foreign ? "; if it has another name, give that: columns " + own + "=NAME" : "";
   const std::string name = shown_name(reader.columns()[static_cast<std::size_t>(column)]);
   return own == "wavelength_nm"
