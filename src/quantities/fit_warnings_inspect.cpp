@@ -29,10 +29,10 @@ const char* const frame = "frame or signs";
 
 /// Of the first wavelength, evenly spread.
 std::vector<Sample> without_fills(std::span<const Sample> samples) {
-  const double typical = typical_f11(samples);
+  const FillValues fill_values(samples);
   std::vector<Sample> here;
   std::ranges::copy_if(samples, std::back_inserter(here), [&](const Sample& s) {
-    return same_wavelength(s.wavelength, samples.front().wavelength) && !is_fill(s, typical);
+    return same_wavelength(s.wavelength, samples.front().wavelength) && !fill_values.include(s);
   });
   const std::size_t count = std::min(here.size(), most_tried);
   for (std::size_t i = 0; i < count; ++i) here[i] = here[i * here.size() / count];
@@ -205,11 +205,11 @@ void look_at_frame(Inspection& result, const Looked& at) {
 
 /// Of all samples of the wavelength of the fit.
 std::vector<double> residuals_of(std::span<const Sample> samples, const Looked& at) {
-  const double typical = typical_f11(samples);
+  const FillValues fill_values(samples);
   std::vector<Sample> fitted;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (same_wavelength(samples[i].wavelength, samples.front().wavelength) && !is_fill(samples[i], typical)) {
+    if (same_wavelength(samples[i].wavelength, samples.front().wavelength) && !fill_values.include(samples[i])) {
       fitted.push_back(samples[i]);
       places.push_back(i);
     }

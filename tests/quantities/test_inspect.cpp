@@ -128,6 +128,28 @@ TEST(Inspect, NamesFillValuesHoweverManyThereAre) {
     EXPECT_EQ(row_findings(one).front().evidence, "f11 = -999 in 134 samples: 1, 4, 7, 10, 13, 16, 19, 22, ...");
 }
 
+TEST(Inspect, NamesFillValuesOfF11AloneByTheirStandingAlone) {
+  for (const bool scalar : {false, true})
+    for (const double fill : {-1.0, 0.0, -0.01, 9.0}) {
+      Samples samples = measured(1);
+      if (scalar)
+        each(samples, [](Sample& s) { s.normalized.elements.fill(std::numeric_limits<double>::quiet_NaN()); });
+      for (std::size_t i = 0; i < 5; ++i) samples[17 * i].f11 = fill;
+      const Inspection seen = inspect(samples);
+      ASSERT_EQ(found(samples), "fill values") << scalar << fill;
+      EXPECT_EQ(seen.findings[0].samples.size(), 5U);
+      EXPECT_LT(seen.f11_residual, 0.02);
+    }
+  Samples two = measured(1), noise = measured(1), dark = measured(1);
+  two[0].f11 = two[1].f11 = 0;  // chance
+  noise[0].f11 = noise[1].f11 = noise[2].f11 = 0, noise[3].f11 = -0.001;
+  EXPECT_EQ(found(two).find("fill"), std::string::npos);
+  EXPECT_EQ(found(noise).find("fill"), std::string::npos);
+  for (std::size_t i = 0; i < dark.size(); ++i)
+    dark[i].f11 = std::round(static_cast<double>(i % 40)) * 1e-4;  // counted
+  EXPECT_EQ(found(dark).find("fill"), std::string::npos);
+}
+
 TEST(Inspect, TellsElementsInPercentFromFillValuesAmongThem) {
   Samples samples = measured(1);
   for (Sample& s : samples)
