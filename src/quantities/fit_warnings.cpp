@@ -10,6 +10,7 @@
 #include "mmbrdf/quantities/conventions.hpp"
 #include "mmbrdf/quantities/trust.hpp"
 #include "quantities/angle_unit.hpp"
+#include "quantities/cosine.hpp"
 #include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
@@ -83,6 +84,10 @@ void add(std::vector<std::string>& warnings, std::string line) {
   if (!line.empty()) warnings.push_back(std::move(line));
 }
 
+void add_finding(std::vector<std::string>& warnings, const Finding& finding) {
+  if (!finding.fault.empty()) warnings.push_back(to_string(finding));
+}
+
 }  // namespace
 
 ReducedChiSquared chi_squared_per_dof(const FitResult& result) {
@@ -109,8 +114,7 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
                                       std::span<const long> numbers) {
   std::vector<std::string> warnings = result.warnings;
   for (const Finding& finding : row_findings(samples, numbers)) add(warnings, to_string(finding));
-  if (may_be_radians(samples))
-    if (const Finding unit = radian_finding(samples); !unit.fault.empty()) add(warnings, to_string(unit));
+  if (may_be_radians(samples)) add_finding(warnings, radian_finding(samples));
   std::ranges::move(data_warnings(result), std::back_inserter(warnings));
   const Model& model = result.model;
   const std::vector<double>& wavelengths = model.validity.wavelengths;
@@ -133,7 +137,9 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
   add(warnings, energy_line(brightest, where(brightest)));
   add(warnings, not_positive_line(darkest, where(darkest)));
   add(warnings, range_warning(model.validity, samples));
-  if (!samples.empty()) add(warnings, convention_warning(samples, orders(model), model.mapping));
+  if (samples.empty()) return warnings;
+  add_finding(warnings, cosine_finding(samples));
+  add(warnings, convention_warning(samples, orders(model), model.mapping));
   return warnings;
 }
 

@@ -12,6 +12,7 @@
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "quantities/angle_unit.hpp"
+#include "quantities/cosine.hpp"
 #include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
@@ -151,6 +152,18 @@ void look_at_cosine(Inspection& result, const Looked& at) {
                                            " after it is " + (too_many ? "divided" : "multiplied") +
                                            " by cos theta_r: it takes several theta_i, and less noise"});
 }
+
+}  // namespace
+
+Finding cosine_finding(std::span<const Sample> samples) {
+  Looked at{without_fills(samples), {}};
+  at.fitted = fit_of_low_order(at.samples);
+  Inspection seen;
+  look_at_cosine(seen, at);
+  return seen.findings.empty() ? Finding{} : seen.findings.front();
+}
+
+namespace {
 
 void look_at_azimuths(Inspection& result, const Looked& at) {
   for (const std::string& line : data_warnings(at.fitted))

@@ -67,6 +67,13 @@ TEST(FitWarnings, AreNoneForGoodData) {
             Warnings{});
 }
 
+TEST(FitWarnings, NameACosineTooMany) {
+  const std::vector<Sample> samples = measured([](Sample& s) { s.f11 *= std::cos(s.geometry.reflected.theta); });
+  EXPECT_TRUE(std::ranges::any_of(fit_warnings(fit(samples), samples), [](const std::string& line) {
+    return line.starts_with("cosine: a reciprocal f11 leaves ");
+  }));
+}
+
 TEST(FitWarnings, NameTheScaleOfF11) {
   const std::string reaches = "the directional-hemispherical reflectance reaches ";
   const auto times = [](double factor) { return measured([=](Sample& s) { s.f11 *= factor; }); };
