@@ -264,7 +264,10 @@ bool CsvReader::next() {
   else if (!read_row())
     return false;
   if (fields_.size() != columns_.size())
-    throw error(std::to_string(columns_.size()) + " fields (" + shown_name(columns_.front()) + " ... " +
+    throw error((layout_.foreign && layout_.separator == ',' && fields_.size() == 2 * columns_.size()
+                     ? "decimal commas, and commas between the numbers? Separate them by semicolons; "
+                     : "") +
+                std::to_string(columns_.size()) + " fields (" + shown_name(columns_.front()) + " ... " +
                 shown_name(columns_.back()) + ") are needed, there are " + std::to_string(fields_.size()) + ": " +
                 in_quotes(text_));
   return true;

@@ -231,6 +231,17 @@ TEST(TablesOfOthers, SayWhatALineIsThatIsNoRow) {
            {"d.csv:3: wavelength_nm: 'wavelength_nm' is not a number; is this line a header again? Leave it out"}));
 }
 
+TEST(TablesOfOthers, SayWhereCommasAreDecimalAndSeparate) {
+  EXPECT_TRUE(says(refusal(header + "532,0,45,0,0,0,30,0,180,0,0,31,0,1\n"),
+                   {"d.csv:2: decimal commas, and commas between the numbers? Separate them by semicolons; 7 fields"}));
+}
+
+TEST(TablesOfOthers, WithoutAzimuthsSayWhichThoseOfOnePlaneAre) {
+  EXPECT_TRUE(
+      says(refusal("wavelength_nm,theta_i_deg,theta_r_deg,f11\n532,45,30,0.3\n"),
+           {"d.csv:1: no column phi_i_deg (nor phi); in the plane of incidence it is 0, or 180 on the other side"}));
+}
+
 TEST(TablesOfOthers, SayWhatAFileIsThatIsNoText) {
   const auto starts = [](const std::string& bytes) { return refusal(bytes + std::string("\x03\0\n", 3)); };
   EXPECT_TRUE(says(starts("PK\x03\x04"), {"d.csv:1: a workbook of a spreadsheet", "save the table as CSV"}));
