@@ -113,15 +113,15 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
       columns_.assign(fields_.begin(), fields_.end());
     } else {
       split(header, layout_.separator, fields_);
-      if (columns.empty() && !unnamed.empty() && count != unnamed.size())
-        throw error("no header line, and " + std::to_string(count) + " columns; without one they are " +
+      if (columns.empty() && !unnamed.empty() && count > unnamed.size())
+        throw error("no header line, and " + std::to_string(count) + " columns; without one they are at most " +
                     std::to_string(unnamed.size()) + ": " + unnamed.front() + " ... " + unnamed.back());
       if (unnamed.empty() && (columns.empty() || !std::ranges::all_of(columns, [](const auto& c) {
                                 return is_positive_integer(c.second);
                               })))
         throw error("no header line: instead of a column's name there is the number " + printable(fields_[0], 40) +
                     "; without one, columns need their numbers: wavelength_nm=1,theta_i_deg=2,...");
-      columns_ = unnamed;
+      columns_.assign(unnamed.begin(), unnamed.begin() + static_cast<std::ptrdiff_t>(std::min(count, unnamed.size())));
       for (std::size_t c = columns_.size() + 1; c <= count; ++c) columns_.push_back(std::to_string(c));
     }
     split(text_, layout_.separator, fields_);

@@ -245,7 +245,7 @@ void add_basis_options(CLI::App& app, const std::shared_ptr<Options>& o) {
 void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Fit these wavelengths only, in nm");
   add_table_options(app, o->table);
-  add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,...]|FILE",
+  add_option(app, "--reflectance", o->fit.reflectance, reflectance_of_fit, "NM:R[,...]|FILE",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_option(app, "--uncertainty", o->given_uncertainty, uncertainty_from, "NAME",
              "sample: holds for a real sample, its anisotropy and\nwhat the basis misses included; noise: of the noise "

@@ -44,8 +44,8 @@ class CsvReader {
   /// not, names in any case, with units in brackets or behind _; decimal commas where commas do not separate; exponents
   /// with D; a header in a comment before the first row; row names that the header leaves out. `columns` has names for
   /// columns that are called otherwise, or the numbers of all that are needed where there is no header. Throws
-  /// std::runtime_error as above, and for a column of `columns` that is not there. `unnamed` are the names of all columns
-  /// where there is no header and nothing else is said; empty: a table needs one.
+  /// std::runtime_error as above, and for a column of `columns` that is not there. `unnamed` are the names of the
+  /// first columns, and there are no others, where there is no header and nothing else is said; empty: a table needs one.
   CsvReader(std::istream& in, std::string name, const ColumnNames& columns,
             const std::vector<std::string>& unnamed = {});
 
