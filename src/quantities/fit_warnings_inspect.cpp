@@ -182,9 +182,18 @@ void look_at_azimuths(Inspection& result, const Looked& at) {
     result.untested.push_back({azimuths, few});
 }
 
+const std::string& best_read_as(std::span<const ConventionFit> fits) {
+  return std::ranges::min_element(fits, {}, &ConventionFit::rms)->read_as;
+}
+
+std::string frame_option(std::span<const ConventionFit> fits) {
+  const std::string& best = best_read_as(fits);
+  return best.starts_with("frame ") ? "--frame " + best.substr(6) : "";
+}
+
 std::string convention_remedy(std::span<const ConventionFit> fits) {
-  const std::string& best = std::ranges::min_element(fits, {}, &ConventionFit::rms)->read_as;
-  if (best.starts_with("frame ")) return "frame " + best.substr(6) + " (--frame)";
+  const std::string& best = best_read_as(fits);
+  if (best.starts_with("frame ")) return best + " (--frame)";
   if (best.find("transposed") != std::string::npos)
     return "exchange m12 and m21, m13 and m31 ..., or change the signs of 13, 31, 23, 32, 34 and 43";
   return "change the signs in the table; where both beams have another convention: --convention";
@@ -208,7 +217,7 @@ void look_at_frame(Inspection& result, const Looked& at) {
   if (why.empty()) {
     const auto fits = convention_fits(at.samples, inspected_orders);
     if (const std::string line = convention_warning(fits); !line.empty()) {
-      result.findings.push_back({frame, line, convention_remedy(fits), {}});
+      result.findings.push_back({frame, line, convention_remedy(fits), {}, frame_option(fits)});
       return;
     }
     why = fits.empty() ? "of the elements that frames mix, some were not measured" : as_good(fits);

@@ -102,6 +102,17 @@ TEST(Inspect, FindsEachPlantedFault) {
     }
 }
 
+TEST(Inspect, NamesTheOptionThatMendsAFrame) {
+  for (const Frame frame : {Frame::sp, Frame::scattering_plane}) {
+    Samples samples = measured(1);
+    read_as(samples, frame);
+    EXPECT_EQ(inspect(samples).findings.at(0).option, "--frame " + to_string(frame));
+  }
+  Samples samples = measured(1);
+  each(samples, [](Sample& s) { s.f11 *= 100; });
+  EXPECT_EQ(inspect(samples).findings.at(0).option, "");
+}
+
 TEST(Inspect, FindsMatricesThatCannotExist) {
   Samples samples = measured(1);
   for (Sample& s : samples) s.normalized = diagonal(1, 0.9, -0.9, 0.9);

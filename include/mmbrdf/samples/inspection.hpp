@@ -17,6 +17,7 @@ struct Finding {
   std::string evidence;                ///< "f11 = -999 in 20 samples: 3, 17, 18, …"
   std::string remedy;                  ///< "leave these rows out"; empty where that depends
   std::vector<std::size_t> samples{};  ///< which, counted from 0; none: all, or it depends
+  std::string option{};                ///< "--frame sp": of the program, where one mends it
 };
 
 /// "fill values: f11 = -999 in 20 samples: 3, 17, …: leave these rows out"
