@@ -181,7 +181,8 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance, &known);
     if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
-      require_determined("the data at " + nanometre_number(wavelength) + " nm alone do not determine f11, whose " +
+      require_determined("the data at " + nanometre_number(wavelength) + " nm alone, one of " +
+                             std::to_string(wavelengths_.size()) + " wavelengths, do not determine f11, whose " +
                              "reflectance it is to be divided by; give a reflectance table",
                          free, options);
     if (solution.rows == 0)

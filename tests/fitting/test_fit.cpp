@@ -487,10 +487,11 @@ TEST(Fit, RefusesWhatItCannotFit) {
   EXPECT_EQ(message_of([&] { fit(four, {}, options); }), "the reflectance table does not reach 1064 nm");
   std::vector<Sample> few = four;
   std::erase_if(few, [](const Sample& s) { return s.wavelength > 1 && s.geometry.incident.theta > 0.1; });
-  EXPECT_EQ(message_of([&] { fit(few); })
-                .find("the data at 1064 nm alone do not determine f11, whose reflectance it is to "
-                      "be divided by; give a reflectance table; block 11: rank "),
-            0u);
+  EXPECT_EQ(
+      message_of([&] { fit(few); })
+          .find("the data at 1064 nm alone, one of 4 wavelengths, do not determine f11, whose reflectance it is to "
+                "be divided by; give a reflectance table; block 11: rank "),
+      0u);
   options = {};
   options.powers = 10;
   std::vector<Sample> many;
