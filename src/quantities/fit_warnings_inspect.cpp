@@ -85,12 +85,14 @@ bool is_better(double as_is, double other) { return as_is > better_convention * 
 
 /// Why a fit of low order says little of a reflectance; empty if it says enough.
 std::string no_reflectance(const Inspection& seen, const Looked& at) {
-  constexpr double most_missing = 0.2;
+  constexpr double most_missing = 0.2, most_left = 0.5;
   const long rows = at.fitted.elements[0].rows;
   if (rows < enough_samples)
     return counted(rows, "sample") + ", of " + std::to_string(enough_samples) + " that it takes to know a reflectance";
   if (seen.unsupported > most_missing)
     return rounded(100 * seen.unsupported, 2) + " % of the pairs of directions are not covered";
+  if (seen.f11_residual > most_left)
+    return "a fit of low order leaves " + rounded(100 * seen.f11_residual, 2) + " % of f11: is there a narrow peak?";
   return "";
 }
 

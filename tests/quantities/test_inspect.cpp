@@ -263,6 +263,22 @@ TEST(Inspect, SaysThatACosineCannotBeToldFromOneAngleOfIncidence) {
   EXPECT_NE(untested(samples).find("cosine"), std::string::npos);
 }
 
+// 0.1 + 20 exp(-(angle of the half direction / 2 degrees)^2) / (4 cos cos) reflects 0.4, and up to 0.8 at 80 degrees. A fit
+// of low order leaves 87 % of it, and makes up to 1.4 of it on other grids.
+TEST(Inspect, TakesNoReflectanceFromANarrowPeak) {
+  Samples peak = on_grid();
+  each(peak, [](Sample& s) {
+    const auto [i, r] = s.geometry;
+    const double across = std::cos(r.phi - i.phi), ci = std::cos(i.theta), cr = std::cos(r.theta),
+                 both = ci * cr + std::sin(i.theta) * std::sin(r.theta) * across,
+                 half = std::acos(std::min(1.0, (ci + cr) / std::sqrt(2 + 2 * both)));
+    s.f11 = 0.1 + 20 * std::exp(-std::pow(half / radians(2), 2)) / (4 * ci * cr);
+    s.normalized.elements.fill(std::numeric_limits<double>::quiet_NaN());
+  });
+  EXPECT_EQ(found(peak), "");
+  EXPECT_NE(untested(peak).find("scale of f11"), std::string::npos);
+}
+
 TEST(Inspect, TakesNoReflectanceFromHalfAHemisphere) {
   Samples half = on_grid();
   std::erase_if(half,

@@ -80,7 +80,7 @@ struct Inspection {
 ///
 /// Each with the option or column that mends it. A fault that is not found is untested if it, planted in these data, would
 /// not be found either; and so are the last three with fewer samples than twice the coefficients of the fit, and the scale
-/// with fewer than 60, a fifth of the pairs of directions missing, or theta_r below 30 degrees. `numbers` are those of
+/// with fewer than 60, a fifth of the pairs of directions missing, half of f11 left by the fit, or theta_r below 30 degrees. `numbers` are those of
 /// row_findings(). Throws std::invalid_argument for invalid samples, or none.
 Inspection inspect(std::span<const Sample> samples, std::span<const long> numbers = {});
 inline constexpr Orders inspected_orders{4, 3};
