@@ -8,7 +8,7 @@
 
 namespace mmbrdf {
 
-/// The finding `cosine` of inspect(), or one without a fault. Of samples in which f11 is known.
+/// The finding `cosine` of inspect(), or one without a fault. Throws std::invalid_argument as fit() does.
 Finding cosine_finding(std::span<const Sample> samples);
 
 }  // namespace mmbrdf

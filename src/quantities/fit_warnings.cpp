@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
@@ -84,8 +85,12 @@ void add(std::vector<std::string>& warnings, std::string line) {
   if (!line.empty()) warnings.push_back(std::move(line));
 }
 
-void add_finding(std::vector<std::string>& warnings, const Finding& finding) {
-  if (!finding.fault.empty()) warnings.push_back(to_string(finding));
+/// What fits of low order to samples show; nothing of samples that cannot be fitted, as fill values alone.
+void add_findings(std::vector<std::string>& warnings, std::span<const Sample> samples) try {
+  for (const Finding& finding :
+       {may_be_radians(samples) ? radian_finding(samples) : Finding(), cosine_finding(samples)})
+    if (!finding.fault.empty()) warnings.push_back(to_string(finding));
+} catch (const std::invalid_argument&) {
 }
 
 }  // namespace
@@ -114,7 +119,6 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
                                       std::span<const long> numbers) {
   std::vector<std::string> warnings = result.warnings;
   for (const Finding& finding : row_findings(samples, numbers)) add(warnings, to_string(finding));
-  if (may_be_radians(samples)) add_finding(warnings, radian_finding(samples));
   std::ranges::move(data_warnings(result), std::back_inserter(warnings));
   const Model& model = result.model;
   const std::vector<double>& wavelengths = model.validity.wavelengths;
@@ -138,7 +142,7 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
   add(warnings, not_positive_line(darkest, where(darkest)));
   add(warnings, range_warning(model.validity, samples));
   if (samples.empty()) return warnings;
-  add_finding(warnings, cosine_finding(samples));
+  add_findings(warnings, samples);
   add(warnings, convention_warning(samples, orders(model), model.mapping));
   return warnings;
 }

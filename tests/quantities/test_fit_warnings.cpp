@@ -72,6 +72,11 @@ TEST(FitWarnings, NameACosineTooMany) {
   EXPECT_TRUE(std::ranges::any_of(fit_warnings(fit(samples), samples), [](const std::string& line) {
     return line.starts_with("cosine: a reciprocal f11 leaves ");
   }));
+  const std::vector<Sample> fills = measured([](Sample& s) {
+    s.f11 = -999;
+    s.normalized.elements.fill(-999);
+  });
+  EXPECT_FALSE(fit_warnings(fit(samples), fills).empty());  // of which no fit is made
 }
 
 TEST(FitWarnings, NameTheScaleOfF11) {
