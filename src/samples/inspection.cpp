@@ -128,7 +128,8 @@ std::vector<double> repeated_f11(std::span<const Sample> samples, double typical
   std::ranges::sort(values);
   if (values.empty() || values.front() == values.back()) return result;
   const double lowest = values.front(), highest = values.back();
-  const auto next = std::ranges::upper_bound(values, lowest), top = std::ranges::lower_bound(values, highest);
+  const auto next = std::upper_bound(values.begin(), values.end(), lowest),
+             top = std::lower_bound(values.begin(), values.end(), highest);
   if (lowest <= 0 && *next > 0 && next - values.begin() >= fewest && (lowest < 0 || *next > apart * typical))
     result.push_back(lowest);
   if (const double before = *std::prev(top);
