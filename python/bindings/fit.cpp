@@ -14,6 +14,7 @@
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/common_errors.hpp"
 #include "mmbrdf/mixed/sample_traits.hpp"
+#include "mmbrdf/quantities/conventions.hpp"
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "pickles.hpp"
 
@@ -41,12 +42,34 @@ void sign(FitResult& result, const Request& request, std::size_t rows, const Dat
   if (!request.attribution.empty()) model.provenance["attribution"] = request.attribution;
 }
 
+/// Those of the first wavelength, evenly spread: what warnings are of.
+void keep_some(std::span<const Sample> samples, Fitted& fitted) {
+  std::vector<std::size_t> here;
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    if (same_wavelength(samples[s].wavelength, samples.front().wavelength)) here.push_back(s);
+  const std::size_t count = std::min(here.size(), most_tried);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t s = here[i * here.size() / count];
+    fitted.some.push_back(samples[s]);
+    fitted.numbers.push_back(static_cast<long>(s) + 1);
+  }
+}
+
 }  // namespace
 
 FittedPointer signed_result(FitResult result, const Request& request, std::size_t rows, const Dataset* data) {
   sign(result, request, rows, data);
   auto model = std::make_shared<ModelObject>(result.model);
-  return std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
+  auto fitted = std::make_shared<Fitted>(std::move(result), std::move(model), request.basis, request.weights);
+  if (data) keep_some(data->samples, *fitted);
+  return fitted;
+}
+
+const std::vector<std::string>& Fitted::warnings() {
+  std::call_once(asked_, [&] {
+    if (warnings_.empty()) warnings_ = fit_warnings(result, some, numbers);
+  });
+  return warnings_;
 }
 
 DeclaredErrors declared_from(const std::map<std::string, double>& named) {
@@ -118,7 +141,7 @@ std::string representation(const Fitted& fitted) {
 
 using Elements = std::array<ElementFit, 16>;
 
-py::tuple pickled(const Fitted& fitted) {
+py::tuple pickled(Fitted& fitted) {
   const FitResult& r = fitted.result;
   const auto solution = [](const Solution& s) {
     return py::make_tuple(s.x, s.singular_values, s.rank, s.residual_norm, s.rows, s.inverse, s.null_space);
@@ -127,7 +150,8 @@ py::tuple pickled(const Fitted& fitted) {
                         bits<Elements>("FitResult", {&r.elements, 1}), bits<Mueller>("FitResult", r.residuals),
                         bits<NoiseEstimate>("FitResult", r.noise), bits<Basis>("FitResult", {&fitted.basis, 1}),
                         to_string(fitted.weights), r.warnings, static_cast<unsigned>(r.sides),
-                        bits<Mueller>("FitResult", r.sample_weights));
+                        bits<Mueller>("FitResult", r.sample_weights),
+                        fitted.some.empty() ? std::vector<std::string>{} : fitted.warnings());
 }
 
 FittedPointer unpickled(const py::tuple& state) {
@@ -148,7 +172,8 @@ FittedPointer unpickled(const py::tuple& state) {
   }
   const Basis basis = from_bits<Basis>("FitResult", state[5]).at(0);
   auto model = std::make_shared<ModelObject>(r.model);
-  return std::make_shared<Fitted>(std::move(r), std::move(model), basis, weights_from(state[6].cast<std::string>()));
+  return std::make_shared<Fitted>(std::move(r), std::move(model), basis, weights_from(state[6].cast<std::string>()),
+                                  state[10].cast<std::vector<std::string>>());
 }
 
 void bind_result(py::module_& m) {
@@ -167,17 +192,19 @@ void bind_result(py::module_& m) {
                              "Of 'f11', of 'others', the 15 other elements together, and of each block by its name: "
                              "near 1 if\nweights='data' and the uncertainties are right. 0 without degrees of freedom")
       .def_property_readonly(
-          "warnings", [](const Fitted& f) { return without_gil([&] { return fit_warnings(f.result); }); },
+          "warnings", [](Fitted& f) { return without_gil([&] { return f.warnings(); }); },
           "What there is to be wary of, a sentence each: one plane or side only, chi^2, condition, reflectances above "
           "1,\n"
-          "f11 that is not positive. Computed when asked for")
+          "f11 that is not positive, and what the samples show: fill values, radians, a cosine, frame and signs. "
+          "Computed when\n"
+          "first asked for")
       .def(
           "summary",
-          [](const Fitted& f) {
+          [](Fitted& f) {
             std::string text = representation(f);
             if (f.result.model.posterior)
               for (const std::string& line : described_sample(*f.result.model.posterior)) text += "\n" + line;
-            for (const std::string& line : fit_warnings(f.result)) text += "\nwarning: " + line;
+            for (const std::string& line : without_gil([&] { return f.warnings(); })) text += "\nwarning: " + line;
             return text;
           },
           "What was found, in words: of the fit, of the sample, and what there is to heed.")

@@ -5,9 +5,11 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "dataset.hpp"
 #include "instrument.hpp"
@@ -16,12 +18,27 @@ namespace mmbrdf::python {
 
 /// A fit as Python holds it, and what was asked for.
 struct Fitted : std::enable_shared_from_this<Fitted> {
-  Fitted(FitResult its_result, ModelPointer its_model, const Basis& its_basis, Weights its_weights)
-      : result(std::move(its_result)), model(std::move(its_model)), basis(its_basis), weights(its_weights) {}
+  /// `known_warnings` are those of samples that are no longer there.
+  Fitted(FitResult its_result, ModelPointer its_model, const Basis& its_basis, Weights its_weights,
+         std::vector<std::string> known_warnings = {})
+      : result(std::move(its_result)),
+        model(std::move(its_model)),
+        basis(its_basis),
+        weights(its_weights),
+        warnings_(std::move(known_warnings)) {}
   FitResult result;
   ModelPointer model;
   Basis basis;
   Weights weights;
+  std::vector<Sample> some;   ///< of the first wavelength, most_tried at most, evenly spread
+  std::vector<long> numbers;  ///< theirs, from 1
+
+  /// fit_warnings(), found when they are first asked for.
+  const std::vector<std::string>& warnings();
+
+ private:
+  std::once_flag asked_;
+  std::vector<std::string> warnings_;
 };
 using FittedPointer = std::shared_ptr<Fitted>;
 

@@ -38,6 +38,18 @@ bool is_spreadsheet_error(std::string_view text) {
   return std::ranges::any_of(words, [&](std::string_view word) { return text.starts_with(word); });
 }
 
+/// What a file that is no text is, by its first bytes, and what to do; or empty.
+std::string_view known_binary(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kinds = {
+      {{"PK\x03\x04", "a workbook of a spreadsheet, or another archive; save the table as CSV"},
+       {"\xd0\xcf\x11\xe0", "a workbook of a spreadsheet; save the table as CSV"},
+       {"\x1f\x8b", "a file compressed by gzip; decompress it"},
+       {"\x93NUMPY", "an array of numpy; write it as text, with the names of its columns (numpy.savetxt)"}}};
+  for (const auto& [bytes, what] : kinds)
+    if (text.starts_with(bytes)) return what;
+  return "";
+}
+
 /// Whether a column whose name has a unit is to be one that has another, or none.
 bool contradicts(const std::string& key, const std::string& own) {
   constexpr std::array<std::string_view, 5> units = {"_percent", "_rad", "_deg", "_um", "_nm"};
@@ -101,15 +113,15 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
       columns_.assign(fields_.begin(), fields_.end());
     } else {
       split(header, layout_.separator, fields_);
-      if (columns.empty() && !unnamed.empty() && count != unnamed.size())
-        throw error("no header line, and " + std::to_string(count) + " columns; without one they are " +
+      if (columns.empty() && !unnamed.empty() && count > unnamed.size())
+        throw error("no header line, and " + std::to_string(count) + " columns; without one they are at most " +
                     std::to_string(unnamed.size()) + ": " + unnamed.front() + " ... " + unnamed.back());
       if (unnamed.empty() && (columns.empty() || !std::ranges::all_of(columns, [](const auto& c) {
                                 return is_positive_integer(c.second);
                               })))
         throw error("no header line: instead of a column's name there is the number " + printable(fields_[0], 40) +
                     "; without one, columns need their numbers: wavelength_nm=1,theta_i_deg=2,...");
-      columns_ = unnamed;
+      columns_.assign(unnamed.begin(), unnamed.begin() + static_cast<std::ptrdiff_t>(std::min(count, unnamed.size())));
       for (std::size_t c = columns_.size() + 1; c <= count; ++c) columns_.push_back(std::to_string(c));
     }
     split(text_, layout_.separator, fields_);
@@ -117,7 +129,10 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
   } else {
     columns_.assign(fields_.begin(), fields_.end());
     if (read_row()) {
-      pending_ = line_number_;
+      first_row_ = pending_ = line_number_;
+      std::vector<std::string_view> below;  // a title may have no separator
+      split(text_, separator_of(text_), below);
+      may_be_title_ = below.size() != columns_.size();
       // What writes row names gives them no name in the header, and quotes or counts them. A field too many that is
       // empty is a separator at the end.
       layout_.row_names = fields_.size() == columns_.size() + 1 && !fields_[0].empty() && !fields_.back().empty() &&
@@ -213,6 +228,8 @@ bool CsvReader::read_line() {
   if (text_.ends_with('\r')) text_.remove_suffix(1);
   if (line_number_ == 1 && (text_.starts_with("\xff\xfe") || text_.starts_with("\xfe\xff")))
     throw error("text in UTF-16; save it as UTF-8");
+  if (const std::string_view kind = known_binary(text_); line_number_ == 1 && !kind.empty())
+    throw error(std::string(kind));
   if (const auto control = std::find_if(text_.begin(), text_.end(), is_control); control != text_.end())
     throw error(*control == '\r'
                     ? std::string("lines that end in CR alone; save it with LF or CR LF")
@@ -247,14 +264,19 @@ bool CsvReader::next() {
   else if (!read_row())
     return false;
   if (fields_.size() != columns_.size())
-    throw error(std::to_string(columns_.size()) + " fields (" + shown_name(columns_.front()) + " ... " +
+    throw error((layout_.foreign && layout_.separator == ',' && fields_.size() == 2 * columns_.size()
+                     ? "decimal commas, and commas between the numbers? Separate them by semicolons; "
+                     : "") +
+                std::to_string(columns_.size()) + " fields (" + shown_name(columns_.front()) + " ... " +
                 shown_name(columns_.back()) + ") are needed, there are " + std::to_string(fields_.size()) + ": " +
                 in_quotes(text_));
   return true;
 }
 
 bool CsvReader::is_missing(int column) const {
-  constexpr std::array<std::string_view, 5> words = {"", "NA", "N/A", "NAN", "-NAN"};
+  constexpr std::array<std::string_view, 15> words = {"",     "NA",       "N/A",     "<NA>",    "NAN",
+                                                      "-NAN", "NAN(IND)", "-",       "--",      "NULL",
+                                                      "NONE", "1.#IND",   "-1.#IND", "1.#QNAN", "-NAN(IND)"};
   const std::string_view text = field(column);
   const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == b; };
   return is_spreadsheet_error(text) ||
@@ -279,6 +301,14 @@ double CsvReader::foreign_number(std::string_view field) const {
   }
 }
 
+/// What a row may be whose field is no number.
+std::string CsvReader::row_hint(int column) const {
+  if (!layout_.foreign) return "";
+  if (field(column) == columns_[static_cast<std::size_t>(column)]) return "; is this line a header again? Leave it out";
+  const bool digits = field(column).find_first_of("0123456789") != std::string_view::npos;
+  return line_number_ == first_row_ && !digits ? "; is this a line of units? Leave it out" : "";
+}
+
 double CsvReader::number(int column) const {
   try {
     return layout_.foreign ? foreign_number(field(column)) : parse_number(field(column));
@@ -288,7 +318,7 @@ double CsvReader::number(int column) const {
       throw error(name + ": " + in_quotes(field(column)) +
                   ": no value; complete it, or skip incomplete rows; of an element that was not measured the field "
                   "is empty");
-    throw error(name + ": " + e.what());
+    throw error(name + ": " + e.what() + row_hint(column));
   }
 }
 

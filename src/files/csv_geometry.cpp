@@ -46,7 +46,11 @@ void require_polar(const CsvReader& reader, int column, double theta) {
 /// Where a column is missing: whether its name lacks a unit, or how to name another.
 std::string unit_hint(const CsvReader& reader, const std::string& bare, const std::string& own) {
   const int column = reader.find(std::string_view(bare));
-  if (column < 0) return reader.layout().foreign ? "; if it has another name, give that: columns " + own + "=NAME" : "";
+  if (column < 0 && reader.may_be_title()) return "; is this line a title? Leave it out, or begin it with #";
+  if (column < 0 && !reader.layout().foreign) return "";
+  if (column < 0)
+    return std::string(own.starts_with("phi_") ? "; in the plane of incidence it is 0, or 180 on the other side" : "") +
+           "; if it has another name, give that: columns " + own + "=NAME";
   const std::string name = shown_name(reader.columns()[static_cast<std::size_t>(column)]);
   return own == "wavelength_nm"
              ? "; is " + name + " in nanometres or micrometres? Call it wavelength_nm or wavelength_um"

@@ -75,6 +75,17 @@ std::string like_an_element(const std::string& column) {
              : "";
 }
 
+/// The column of element 11 in a table that has others, too, under such names; or -1.
+int undivided_11(const CsvReader& reader) {
+  int found = -1, others = 0;
+  for (std::size_t c = 0; c < reader.keys().size(); ++c) {
+    const std::string digits = like_an_element(reader.keys()[c]);
+    if (digits == "11") found = static_cast<int>(c);
+    others += !digits.empty() && digits != "11";
+  }
+  return others > 0 ? found : -1;
+}
+
 /// Refuses such a column of an element which else is not measured, or of none.
 void require_no_likeness(const CsvReader& reader, const std::array<int, 16>& columns) {
   for (std::size_t c = 0; c < reader.columns().size(); ++c) {
@@ -169,13 +180,15 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
                            ", which is made of them: one of the two is needed");
   } else if (polarized > 0) {
     throw reader.error("of f_ss, f_sp, f_ps and f_pp all four are needed, there are " + std::to_string(polarized));
-  } else if (elements_[0] < 0 && m11_ >= 0) {
-    throw reader.error(
-        "column m11, but no f11: samples need the unpolarized BRDF f11 in 1/sr, and m12 ... m44 divided "
-        "by it; a table of elements that are not divided cannot be read as samples");
+  } else if (const int undivided = m11_ >= 0 ? m11_ : undivided_11(reader); elements_[0] < 0 && undivided >= 0) {
+    throw reader.error("column " + shown_name(column_name(reader, undivided)) +
+                       ", but no f11: samples need the unpolarized BRDF f11 in 1/sr, and m12 ... m44 divided "
+                       "by it; a table of elements that are not divided cannot be read as samples");
   } else if (elements_[0] < 0) {
     throw reader.error(
-        "no column f11 (nor f_r11), the unpolarized BRDF in 1/sr; if it has another name, give that: columns f11=NAME");
+        "no column f11 (nor brdf, brf = pi f, f_cos; nor f_ss, f_sp, f_ps and f_pp), the unpolarized BRDF in 1/sr; if "
+        "it has "
+        "another name, give that: columns f11=NAME");
   }
   std::array<int, 16> there = elements_;
   if (polarized == 4)

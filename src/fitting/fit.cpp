@@ -180,9 +180,9 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
       directional_hemispherical_slopes(blocks_.front(), basis_.family, basis_.mapping, {});
   for (const auto& [wavelength, at] : wavelengths_) {
     const Solution solution = at.elements[0].solve(options.rank_tolerance, &known);
-    if (const std::string free = undetermined(blocks_[0], solution, sides_);
-        !free.empty() && !accepts_minimum_norm(options))
-      require_determined("the data at " + nanometre_number(wavelength) + " nm alone do not determine f11, whose " +
+    if (const std::string free = undetermined(blocks_[0], solution); !free.empty() && !accepts_minimum_norm(options))
+      require_determined("the data at " + nanometre_number(wavelength) + " nm alone, one of " +
+                             std::to_string(wavelengths_.size()) + " wavelengths, do not determine f11, whose " +
                              "reflectance it is to be divided by; give a reflectance table",
                          free, options);
     if (solution.rows == 0)
@@ -280,7 +280,7 @@ FitResult FitAccumulator::solved(const FitOptions& options, SvdCache& known, boo
     for (const Element& element : blocks_[b].elements)
       result.elements[element.index()] = element_fit(element.index(), solution.x, model.reflectance);
     if (leave_out_undetermined(blocks_[b], solution, result)) continue;
-    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution, sides_);
+    if (!accepts_minimum_norm(options)) complaints += undetermined(blocks_[b], solution);
     FittedBlock fitted{blocks_[b],           solution.x,          {},           solution.rank,
                        solution.condition(), solution.null_space, solution.rows};
     if (const std::optional<double> variance = row_variance(solution, options.covariance); covariances && variance) {

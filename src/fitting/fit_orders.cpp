@@ -108,11 +108,13 @@ std::string FitAccumulator::determined_orders(const FitOptions& options) const {
 void FitAccumulator::require_determined(const std::string& refusal, const std::string& free,
                                         const FitOptions& options) const {
   if (free.empty()) return;
-  const std::string orders = determined_orders(options);
-  throw std::invalid_argument((sides_ == plane_of_incidence ? "measured in one plane only, that of incidence: " : "") +
-                              refusal + free + "; choose lower orders" +
-                              (orders.empty() ? "" : " (up to " + orders + " they do)") +
-                              ", or ask for the solution of minimum norm");
+  const std::string up_to = determined_orders(options);
+  const std::string lower = "choose lower orders" + (up_to.empty() ? "" : " (up to " + up_to + " they do)"),
+                    minimum_norm = "ask for the solution of minimum norm";
+  if (sides_ == plane_of_incidence)
+    throw std::invalid_argument("measured in one plane only, that of incidence: " + refusal + free + "; " +
+                                minimum_norm + ", which holds in that plane, or " + lower);
+  throw std::invalid_argument(refusal + free + "; " + lower + ", or " + minimum_norm);
 }
 
 }  // namespace mmbrdf

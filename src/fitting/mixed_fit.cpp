@@ -135,6 +135,7 @@ BlockFits block_fits(const MixedRounds& rounds, const Model& evaluated, const st
     const std::size_t at = i / columns.size(), b = columns.size() - 1 - i % columns.size();
     const auto& [wavelength, first] = list[at];
     Gram gram = sums.gram(wavelength, b);
+    if (gram.yy == 0) throw MixedFailure("some elements are exactly 0 in all samples of a wavelength, without noise");
     if (feeds_f11(columns[b].isotropic())) divide_f11(gram, first->law.relative, evaluated.reflectance.at(wavelength));
     result[at][b] = fit_block(columns[b], gram, evaluated.blocks[b].block);
   });

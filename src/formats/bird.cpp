@@ -17,6 +17,8 @@
 namespace mmbrdf {
 namespace {
 
+bool is_per_steradian(const std::string& unit) { return unit == "1/sr" || unit == "sr^-1" || unit == "sr-1"; }
+
 using nlohmann::json;
 
 constexpr double off_unit_length = 1e-9;  // of a length of 1, by rounding
@@ -61,7 +63,8 @@ class Data {
   const json& list(const char* name, std::size_t& count) const {
     const json& values = variable(name)["values"];
     if (count == 0) count = values.size();
-    if (values.size() != count || count == 0)
+    if (count == 0) throw error(name, "no values");
+    if (values.size() != count)
       throw error(name, std::to_string(values.size()) + " values, but theta_i has " + std::to_string(count));
     return values;
   }
@@ -161,13 +164,12 @@ class BirdReader : public ForeignFile::Reader {
 
   void find_values() {
     const std::string unit = data_.text("BRDF", "unit");
-    if (unit != "1/sr" && unit != "sr^-1")
-      throw data_.error("BRDF", "unit " + in_quotes(unit) + " is none of 1/sr, sr^-1");
+    if (!is_per_steradian(unit)) throw data_.error("BRDF", "unit " + in_quotes(unit) + " is none of 1/sr, sr^-1, sr-1");
     for (const double brdf : data_.numbers("BRDF", rows_)) values_.push_back({.brdf = brdf});
     if (!data_.has("uBRDF")) return;
     const std::string u_unit = data_.text("uBRDF", "unit");
-    if (u_unit != "%" && u_unit != "1/sr" && u_unit != "sr^-1")
-      throw data_.error("uBRDF", "unit " + in_quotes(u_unit) + " is none of 1/sr, sr^-1, %");
+    if (u_unit != "%" && !is_per_steradian(u_unit))
+      throw data_.error("uBRDF", "unit " + in_quotes(u_unit) + " is none of 1/sr, sr^-1, sr-1, %");
     const std::vector<double> all = data_.numbers("uBRDF", rows_);
     for (std::size_t row = 0; row < rows_; ++row) {
       if (all[row] < 0) throw data_.error("uBRDF", "value " + std::to_string(row + 1) + " is negative");

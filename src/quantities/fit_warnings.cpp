@@ -5,10 +5,13 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
 #include "mmbrdf/quantities/trust.hpp"
+#include "quantities/angle_unit.hpp"
+#include "quantities/cosine.hpp"
 #include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
@@ -82,6 +85,14 @@ void add(std::vector<std::string>& warnings, std::string line) {
   if (!line.empty()) warnings.push_back(std::move(line));
 }
 
+/// What fits of low order to samples show; nothing of samples that cannot be fitted, as fill values alone.
+void add_findings(std::vector<std::string>& warnings, std::span<const Sample> samples) try {
+  for (const Finding& finding :
+       {may_be_radians(samples) ? radian_finding(samples) : Finding(), cosine_finding(samples)})
+    if (!finding.fault.empty()) warnings.push_back(to_string(finding));
+} catch (const std::invalid_argument&) {
+}
+
 }  // namespace
 
 ReducedChiSquared chi_squared_per_dof(const FitResult& result) {
@@ -130,7 +141,9 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
   add(warnings, energy_line(brightest, where(brightest)));
   add(warnings, not_positive_line(darkest, where(darkest)));
   add(warnings, range_warning(model.validity, samples));
-  if (!samples.empty()) add(warnings, convention_warning(samples, orders(model), model.mapping));
+  if (samples.empty()) return warnings;
+  add_findings(warnings, samples);
+  add(warnings, convention_warning(samples, orders(model), model.mapping));
   return warnings;
 }
 

@@ -12,6 +12,7 @@
 #include "mmbrdf/quantities/fit_warnings.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "quantities/angle_unit.hpp"
+#include "quantities/cosine.hpp"
 #include "quantities/fit_limits.hpp"
 #include "text/numbers.hpp"
 
@@ -29,10 +30,10 @@ const char* const frame = "frame or signs";
 
 /// Of the first wavelength, evenly spread.
 std::vector<Sample> without_fills(std::span<const Sample> samples) {
-  const double typical = typical_f11(samples);
+  const FillValues fill_values(samples);
   std::vector<Sample> here;
   std::ranges::copy_if(samples, std::back_inserter(here), [&](const Sample& s) {
-    return same_wavelength(s.wavelength, samples.front().wavelength) && !is_fill(s, typical);
+    return same_wavelength(s.wavelength, samples.front().wavelength) && !fill_values.include(s);
   });
   const std::size_t count = std::min(here.size(), most_tried);
   for (std::size_t i = 0; i < count; ++i) here[i] = here[i * here.size() / count];
@@ -84,12 +85,14 @@ bool is_better(double as_is, double other) { return as_is > better_convention * 
 
 /// Why a fit of low order says little of a reflectance; empty if it says enough.
 std::string no_reflectance(const Inspection& seen, const Looked& at) {
-  constexpr double most_missing = 0.2;
+  constexpr double most_missing = 0.2, most_left = 0.5;
   const long rows = at.fitted.elements[0].rows;
   if (rows < enough_samples)
     return counted(rows, "sample") + ", of " + std::to_string(enough_samples) + " that it takes to know a reflectance";
   if (seen.unsupported > most_missing)
     return rounded(100 * seen.unsupported, 2) + " % of the pairs of directions are not covered";
+  if (seen.f11_residual > most_left)
+    return "a fit of low order leaves " + rounded(100 * seen.f11_residual, 2) + " % of f11: is there a narrow peak?";
   return "";
 }
 
@@ -152,6 +155,18 @@ void look_at_cosine(Inspection& result, const Looked& at) {
                                            " by cos theta_r: it takes several theta_i, and less noise"});
 }
 
+}  // namespace
+
+Finding cosine_finding(std::span<const Sample> samples) {
+  Looked at{without_fills(samples), {}};
+  at.fitted = fit_of_low_order(at.samples);
+  Inspection seen;
+  look_at_cosine(seen, at);
+  return seen.findings.empty() ? Finding{} : seen.findings.front();
+}
+
+namespace {
+
 void look_at_azimuths(Inspection& result, const Looked& at) {
   for (const std::string& line : data_warnings(at.fitted))
     if (line.find("folded") != std::string::npos) {
@@ -169,9 +184,18 @@ void look_at_azimuths(Inspection& result, const Looked& at) {
     result.untested.push_back({azimuths, few});
 }
 
+const std::string& best_read_as(std::span<const ConventionFit> fits) {
+  return std::ranges::min_element(fits, {}, &ConventionFit::rms)->read_as;
+}
+
+std::string frame_option(std::span<const ConventionFit> fits) {
+  const std::string& best = best_read_as(fits);
+  return best.starts_with("frame ") ? "--frame " + best.substr(6) : "";
+}
+
 std::string convention_remedy(std::span<const ConventionFit> fits) {
-  const std::string& best = std::ranges::min_element(fits, {}, &ConventionFit::rms)->read_as;
-  if (best.starts_with("frame ")) return "frame " + best.substr(6) + " (--frame)";
+  const std::string& best = best_read_as(fits);
+  if (best.starts_with("frame ")) return best + " (--frame)";
   if (best.find("transposed") != std::string::npos)
     return "exchange m12 and m21, m13 and m31 ..., or change the signs of 13, 31, 23, 32, 34 and 43";
   return "change the signs in the table; where both beams have another convention: --convention";
@@ -195,7 +219,7 @@ void look_at_frame(Inspection& result, const Looked& at) {
   if (why.empty()) {
     const auto fits = convention_fits(at.samples, inspected_orders);
     if (const std::string line = convention_warning(fits); !line.empty()) {
-      result.findings.push_back({frame, line, convention_remedy(fits), {}});
+      result.findings.push_back({frame, line, convention_remedy(fits), {}, frame_option(fits)});
       return;
     }
     why = fits.empty() ? "of the elements that frames mix, some were not measured" : as_good(fits);
@@ -205,11 +229,11 @@ void look_at_frame(Inspection& result, const Looked& at) {
 
 /// Of all samples of the wavelength of the fit.
 std::vector<double> residuals_of(std::span<const Sample> samples, const Looked& at) {
-  const double typical = typical_f11(samples);
+  const FillValues fill_values(samples);
   std::vector<Sample> fitted;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (same_wavelength(samples[i].wavelength, samples.front().wavelength) && !is_fill(samples[i], typical)) {
+    if (same_wavelength(samples[i].wavelength, samples.front().wavelength) && !fill_values.include(samples[i])) {
       fitted.push_back(samples[i]);
       places.push_back(i);
     }
@@ -260,9 +284,9 @@ std::string span_line(const Angles& a) { return rounded(a.smallest, 4) + " ... "
 
 }  // namespace
 
-Inspection inspect(std::span<const Sample> samples) {
+Inspection inspect(std::span<const Sample> samples, std::span<const long> numbers) {
   Inspection result;
-  result.findings = row_findings(samples);
+  result.findings = row_findings(samples, numbers);
   if (samples.empty()) throw std::invalid_argument("there are no samples");
   result.residuals.assign(samples.size(), not_known);
   Looked at{without_fills(samples), {}};

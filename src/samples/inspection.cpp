@@ -17,7 +17,7 @@ namespace {
 constexpr double impossible = 10, bright = 1e4, dark = 10;  // fill values
 constexpr double beyond_one = 1.5, not_realizable = 0.1;
 constexpr double few = 0.01, many = 0.2;  // parts of all samples
-constexpr std::size_t fewest = 3;         // samples that are no chance
+constexpr std::ptrdiff_t fewest = 3;      // samples that are no chance
 constexpr double shortest_wavelength = 0.1, longest_wavelength = 20;
 
 /// f11 and the divided elements that are there.
@@ -65,7 +65,7 @@ std::vector<std::size_t> which_are(std::span<const Sample> samples, Predicate is
 }
 
 bool are_many(const std::vector<std::size_t>& which, std::size_t of) {
-  return which.size() >= fewest && static_cast<double>(which.size()) > few * static_cast<double>(of);
+  return std::ssize(which) >= fewest && static_cast<double>(which.size()) > few * static_cast<double>(of);
 }
 
 std::string zeros(std::span<const Sample> samples) {
@@ -106,6 +106,9 @@ std::string to_string(const Finding& finding) {
   return finding.fault + ": " + finding.evidence + (finding.remedy.empty() ? "" : then + finding.remedy);
 }
 
+namespace {
+
+/// The median of |f11| of those that are known and not 0; 0 if there are none.
 double typical_f11(std::span<const Sample> samples) {
   std::vector<double> values;
   for (const Sample& sample : samples)
@@ -116,13 +119,37 @@ double typical_f11(std::span<const Sample> samples) {
   return *middle;
 }
 
-bool is_fill(const Sample& one, double typical) {
+/// The numbers that stand in place of f11, as they show by standing alone.
+std::vector<double> repeated_f11(std::span<const Sample> samples, double typical) {
+  constexpr double apart = 0.1, outstanding = 5;
+  std::vector<double> values, result;
+  for (const Sample& sample : samples)
+    if (!std::isnan(sample.f11)) values.push_back(sample.f11);
+  std::ranges::sort(values);
+  if (values.empty() || values.front() == values.back()) return result;
+  const double lowest = values.front(), highest = values.back();
+  const auto next = std::upper_bound(values.begin(), values.end(), lowest),
+             top = std::lower_bound(values.begin(), values.end(), highest);
+  if (lowest <= 0 && *next > 0 && next - values.begin() >= fewest && (lowest < 0 || *next > apart * typical))
+    result.push_back(lowest);
+  if (const double before = *std::prev(top);
+      values.end() - top >= fewest && before > 0 && highest > outstanding * before)
+    result.push_back(highest);
+  return result;
+}
+
+}  // namespace
+
+FillValues::FillValues(std::span<const Sample> samples)
+    : typical_(typical_f11(samples)), repeated_(repeated_f11(samples, typical_)) {}
+
+bool FillValues::include(const Sample& one) const {
   const Sample sample = in_own_frame(one);
   const std::vector<double> values = known_values(sample);
   if (values.size() > 1 && std::ranges::all_of(values, [&](double value) { return value == values.front(); }))
     return true;
-  return largest_element(sample) > impossible ||
-         (typical > 0 && (sample.f11 > bright * typical || sample.f11 < -dark * typical));
+  return largest_element(sample) > impossible || std::ranges::find(repeated_, sample.f11) != repeated_.end() ||
+         (typical_ > 0 && (sample.f11 > bright * typical_ || sample.f11 < -dark * typical_));
 }
 
 std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const long> numbers) {
@@ -130,19 +157,19 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
   std::vector<Sample> samples;
   std::ranges::transform(given, std::back_inserter(samples), in_own_frame);
   const Named named(numbers);
-  const double typical = typical_f11(samples);
+  const FillValues fill_values(samples);
   std::vector<Finding> result;
   // Large elements are fill values in few samples; in many they are in another unit.
   const auto has_large_elements = [&](const Sample& s) {
     Sample f11_alone = s;
     for (std::size_t e = 1; e < 16; ++e)
       f11_alone.normalized.elements[e] = s.normalized.elements[e] == s.f11 ? s.f11 : 0;
-    return largest_element(s) > beyond_one && !is_fill(f11_alone, typical);
+    return largest_element(s) > beyond_one && !fill_values.include(f11_alone);
   };
   const bool all_wrong = static_cast<double>(std::ranges::count_if(samples, has_large_elements)) >
                          many * static_cast<double>(samples.size());
-  const auto fills =
-      which_are(samples, [&](const Sample& s) { return is_fill(s, typical) && !(all_wrong && has_large_elements(s)); });
+  const auto fills = which_are(
+      samples, [&](const Sample& s) { return fill_values.include(s) && !(all_wrong && has_large_elements(s)); });
   if (!fills.empty()) {
     const Sample& first = samples[fills.front()];
     const std::string example = std::abs(largest_element(first)) > impossible && !(std::abs(first.f11) > impossible)
@@ -150,13 +177,14 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
                                     : "f11 = " + (std::isnan(first.f11) ? "" : rounded(first.f11, 6));
     result.push_back({"fill values", example + " in " + named(fills), "leave these rows out", fills});
   }
-  const auto beyond = which_are(
-      samples, [&](const Sample& s) { return largest_element(s) > beyond_one && (all_wrong || !is_fill(s, typical)); });
+  const auto beyond = which_are(samples, [&](const Sample& s) {
+    return largest_element(s) > beyond_one && (all_wrong || !fill_values.include(s));
+  });
   if (are_many(beyond, samples.size()))
     result.push_back({"elements not divided", "elements beyond " + rounded(beyond_one, 2) + " in " + named(beyond),
                       "are they divided by f11, and in no percent? m12 ... m44 are M12 / M11 ...", beyond});
   const auto impossible_ones = which_are(samples, [&](const Sample& s) {
-    return !is_fill(s, typical) && not_measured(s).none() && largest_element(s) <= beyond_one &&
+    return !fill_values.include(s) && not_measured(s).none() && largest_element(s) <= beyond_one &&
            realizability_margin(s.normalized) < -not_realizable;
   });
   if (are_many(impossible_ones, samples.size()))

@@ -293,6 +293,7 @@ bool PreparedUncertainty::estimable(const Geometry& geometry) const {
   const auto [k_i, k_r] = blocks_->tables(geometry);
   for (const BlockAt& block : blocks_->list)
     for (const Element& element : block.elements) {
+      if (blocks_->unknown[element.index()]) continue;
       const VectorXd g = block.row(element, k_i, k_r);
       if ((block.free.transpose() * g).norm() > estimability_limit * block.lengthening * g.norm()) return false;
     }

@@ -202,8 +202,10 @@ TEST(TablesOfOthers, HaveReflectanceFactorsCosinesAndPercent) {
 
 TEST(TablesOfOthers, HaveRowsWithoutAValueRefusedOrPassedOverAndCounted) {
   const std::string whole = "532,45,0,30,180,0.31,0.1\n";
-  for (const std::string row : {"532,NA,0,30,180,0.31,0.1\n", "532,45,0,,180,0.31,0.1\n", "532,45,0,30,180,NaN,0.1\n",
-                                "NA,NA,NA,NA,NA,NA,NA\n", ",,,,,,\n", "532,45,0,30,180,0.31,n/a\n"}) {
+  for (const std::string row :
+       {"532,NA,0,30,180,0.31,0.1\n", "532,45,0,,180,0.31,0.1\n", "532,45,0,30,180,NaN,0.1\n", "NA,NA,NA,NA,NA,NA,NA\n",
+        ",,,,,,\n", "532,45,0,30,180,0.31,n/a\n", "532,45,0,30,180,--,0.1\n", "532,45,0,30,180,1.#IND,0.1\n",
+        "532,45,0,30,180,null,-\n"}) {
     EXPECT_TRUE(says(refusal(header + whole + row), {"d.csv:3: ", "no value; complete it, or skip incomplete rows"}))
         << row << refusal(header + whole + row);
     const Read kept = read(header + whole + row + whole, {.skip_incomplete = true});
@@ -212,6 +214,50 @@ TEST(TablesOfOthers, HaveRowsWithoutAValueRefusedOrPassedOverAndCounted) {
   }
   EXPECT_EQ(read(header + "532,45,0,30,180,0.31,\n", {.skip_incomplete = true}).samples.size(), 1U);  // not measured
   EXPECT_EQ(refusal(header + "NA,NA,NA,NA,NA,NA,NA\n", {.skip_incomplete = true}), "d.csv: no complete row");
+}
+
+TEST(TablesOfOthers, SayWhatALineIsThatIsNoRow) {
+  const std::string row = "532,45,0,30,180,0.31,0.1\n";
+  for (const std::string title : {"PTFE, May 2024\n", "// PTFE\n", "PTFE\n\n"})
+    EXPECT_TRUE(
+        says(refusal(title + header + row), {"d.csv:1: ", "; is this line a title? Leave it out, or begin it with #"}))
+        << refusal(title + header + row);
+  EXPECT_TRUE(says(refusal("a,b,c,d,e,f,g\n" + row), {"d.csv:1: ", "; if it has another name, give that"}));
+  EXPECT_TRUE(says(refusal(header + "nm,deg,deg,deg,deg,1/sr,-\n" + row),
+                   {"d.csv:2: wavelength_nm: 'nm' is not a number; is this a line of units? Leave it out"}));
+  EXPECT_EQ(refusal(header + row + "n,deg,deg,deg,deg,1/sr,-\n"), "d.csv:3: wavelength_nm: 'n' is not a number");
+  EXPECT_TRUE(
+      says(refusal(header + row + header + row),
+           {"d.csv:3: wavelength_nm: 'wavelength_nm' is not a number; is this line a header again? Leave it out"}));
+}
+
+TEST(TablesOfOthers, SayWhereCommasAreDecimalAndSeparate) {
+  EXPECT_TRUE(says(refusal(header + "532,0,45,0,0,0,30,0,180,0,0,31,0,1\n"),
+                   {"d.csv:2: decimal commas, and commas between the numbers? Separate them by semicolons; 7 fields"}));
+}
+
+TEST(TablesOfOthers, WithoutAzimuthsSayWhichThoseOfOnePlaneAre) {
+  EXPECT_TRUE(
+      says(refusal("wavelength_nm,theta_i_deg,theta_r_deg,f11\n532,45,30,0.3\n"),
+           {"d.csv:1: no column phi_i_deg (nor phi); in the plane of incidence it is 0, or 180 on the other side"}));
+}
+
+TEST(TablesOfOthers, SayWhatAFileIsThatIsNoText) {
+  const auto starts = [](const std::string& bytes) { return refusal(bytes + std::string("\x03\0\n", 3)); };
+  EXPECT_TRUE(says(starts("PK\x03\x04"), {"d.csv:1: a workbook of a spreadsheet", "save the table as CSV"}));
+  EXPECT_TRUE(says(starts("\xd0\xcf\x11\xe0"), {"d.csv:1: a workbook of a spreadsheet"}));
+  EXPECT_TRUE(says(starts("\x1f\x8b"), {"d.csv:1: a file compressed by gzip"}));
+  EXPECT_TRUE(says(starts("\x93NUMPY"), {"d.csv:1: an array of numpy"}));
+}
+
+TEST(TablesOfOthers, OfElementsThatAreNotDividedAreRefusedAsThat) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,",
+                    row = "532,45,0,30,180,0.3,0.1\n";
+  for (const std::string name : {"m", "M", "S"})
+    EXPECT_TRUE(
+        says(refusal(first + name + "11," + name + "22\n" + row), {"column " + name + "11, but no f11", "not divided"}))
+        << refusal(first + name + "11," + name + "22\n" + row);
+  EXPECT_TRUE(says(refusal(first + "F11,T\n" + row), {"no column f11", "columns f11=NAME"}));
 }
 
 // Found by people who brought what they had; each was taken for something else before.

@@ -365,12 +365,12 @@ TEST(Fit, ProjectionOfAPublishedFormIsTheModelItCameFrom) {
 
 // ---- refusals ------------------------------------------------------------------------------------------------------
 
-TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesTheModes) {
+TEST(Fit, RefusesDataThatDoNotDetermineTheModelAndNamesFewModes) {
   std::vector<Sample> samples = samples_of(material("ptfe-532"));
   std::erase_if(samples, [](const Sample& s) { return s.geometry.incident.theta > radians(20); });
   const std::string message = message_of([&] { fit(samples); });
   EXPECT_NE(message.find("; block 11: rank "), std::string::npos) << message;
-  EXPECT_NE(message.find(" combinations are free of the modes (n,m,k,l) 11(0,0,0,0)"), std::string::npos) << message;
+  EXPECT_EQ(message.find("the modes"), std::string::npos) << message;  // dozens
   EXPECT_NE(message.find("; block 22,23,32,33: rank "), std::string::npos)
       << message;  // all blocks, not the first alone
   FitOptions options;
@@ -487,10 +487,11 @@ TEST(Fit, RefusesWhatItCannotFit) {
   EXPECT_EQ(message_of([&] { fit(four, {}, options); }), "the reflectance table does not reach 1064 nm");
   std::vector<Sample> few = four;
   std::erase_if(few, [](const Sample& s) { return s.wavelength > 1 && s.geometry.incident.theta > 0.1; });
-  EXPECT_EQ(message_of([&] { fit(few); })
-                .find("the data at 1064 nm alone do not determine f11, whose reflectance it is to "
-                      "be divided by; give a reflectance table; block 11: rank "),
-            0u);
+  EXPECT_EQ(
+      message_of([&] { fit(few); })
+          .find("the data at 1064 nm alone, one of 4 wavelengths, do not determine f11, whose reflectance it is to "
+                "be divided by; give a reflectance table; block 11: rank "),
+      0u);
   options = {};
   options.powers = 10;
   std::vector<Sample> many;

@@ -289,6 +289,32 @@ TEST(NotMeasured, PartsOfABlockMakeTheUncertaintyThatOfTheNoise) {
             std::string::npos);
 }
 
+// Their variance is none, and the evidence of the mixed model has no largest value.
+TEST(NotMeasured, ZerosInPlaceOfElementsMakeTheUncertaintyThatOfTheNoise) {
+  std::vector<Sample> samples = of_ptfe();
+  for (Sample& sample : samples) sample.normalized(0, 3) = sample.normalized(3, 0) = 0;
+  const FitResult fitted = fit_sample(samples);
+  EXPECT_FALSE(fitted.model.posterior);
+  ASSERT_FALSE(fitted.warnings.empty());
+  EXPECT_NE(fitted.warnings[0].find("some elements are exactly 0 in all samples"), std::string::npos)
+      << fitted.warnings[0];
+  EXPECT_TRUE(std::isfinite(prepare_uncertainty(fitted.model, 0.532).evaluate(in_degrees(45, 0, 30, 150))(0, 0)));
+}
+
+// 33 and its like are free there, and unknown; f11, 12, 21 and 22 are what was measured.
+TEST(NotMeasured, ElementsAreNoReasonToCallTheOthersFree) {
+  std::vector<Geometry> plane;
+  for (int i = 0; i <= 75; i += 15)
+    for (int r = -75; r <= 75; r += 5) plane.push_back(in_degrees(i, 0, std::abs(r), r < 0 ? 0 : 180));
+  const std::vector<Sample> samples =
+      without(Elements(0xffcc), simulate(material("ptfe-532"), std::array{0.532}, plane, 0.006, 1));
+  FitOptions options;
+  options.minimum_norm = true;
+  const PreparedUncertainty u = prepare_uncertainty(fit(samples, {}, options).model, 0.532);
+  EXPECT_TRUE(u.estimable(in_degrees(45, 0, 30, 180)));
+  EXPECT_FALSE(u.estimable(in_degrees(45, 0, 30, 90)));
+}
+
 // ---- published measurements -----------------------------------------------------------------------------------------
 
 TEST(NotMeasured, ElementsOfThePublishedGridLeaveTheBlocksOfTheOthersAsTheyAre) {

@@ -212,6 +212,19 @@ TEST(Bird, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal([](Columns& c) { c.u[0] = "-1"; }), {"data.uBRDF: value 1 is negative"}));
   EXPECT_TRUE(says(refusal([](Columns& c) { c.pol_i.assign(36, "\"x\""); }),
                    {"data.polarization_i: value 1: \"x\" is none of s, p, u"}));
+  const std::string whole = file(unpolarized());
+  const auto with_unit = [&](const std::string& unit) {
+    std::string text = whole;
+    put(path, text.replace(text.find("sr^-1"), 5, unit));
+  };
+  put(path, whole);
+  const std::size_t count = read_foreign_file(path).samples.size();
+  with_unit("sr-1");
+  EXPECT_EQ(read_foreign_file(path).samples.size(), count);
+  with_unit("percent");
+  EXPECT_TRUE(says(foreign_refusal(path), {"unit 'percent' is none of 1/sr, sr^-1, sr-1"}));
+  put(path, R"({"metadata": {"schema": "brdf_json_schema"}, "data": {"theta_i": {"unit": "deg", "values": []}}})");
+  EXPECT_TRUE(says(foreign_refusal(path), {"data.theta_i: no values"}));
   put(path, R"({"metadata": {"schema": "brdf_json_schema"}, "data": {"theta_i": {"unit": "deg", "values": [[]]}}})");
   EXPECT_TRUE(says(foreign_refusal(path), {"data.theta_i: value 1: [] is no finite number"}));
   put(path, R"({"metadata": {"schema": "brdf_json_schema"}})");

@@ -189,6 +189,19 @@ def test_a_fit_warns_of_what_contradicts_itself(samples):
     assert pickle.loads(pickle.dumps(one_side)).warnings == one_side.warnings != []
 
 
+def test_a_fit_warns_of_what_its_samples_show(samples):
+    cosine = np.cos(np.radians(samples.theta_r_deg))[:, None, None]
+    for data, words in [
+        (mmbrdf.Dataset(532, *samples.geometry, cosine * samples.mueller), "cosine: "),
+        (mmbrdf.Dataset(532, *samples.geometry, np.swapaxes(samples.mueller, 1, 2)), "transposed"),
+        (mmbrdf.Dataset(532, *np.radians(samples.geometry), samples.mueller), "angles in radians"),
+    ]:
+        fitted = mmbrdf.fit(data)
+        assert any(words in line for line in fitted.warnings), words
+        assert pickle.loads(pickle.dumps(fitted)).warnings == fitted.warnings
+        assert fitted.warnings[0] in fitted.summary()
+
+
 def test_copies_of_a_fit_are_the_same(samples):
     for options in ({}, {"weights": "estimated", "orders": (3, 2)}):
         result = mmbrdf.fit(samples, **options)

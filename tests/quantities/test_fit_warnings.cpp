@@ -67,6 +67,18 @@ TEST(FitWarnings, AreNoneForGoodData) {
             Warnings{});
 }
 
+TEST(FitWarnings, NameACosineTooMany) {
+  const std::vector<Sample> samples = measured([](Sample& s) { s.f11 *= std::cos(s.geometry.reflected.theta); });
+  EXPECT_TRUE(std::ranges::any_of(fit_warnings(fit(samples), samples), [](const std::string& line) {
+    return line.starts_with("cosine: a reciprocal f11 leaves ");
+  }));
+  const std::vector<Sample> fills = measured([](Sample& s) {
+    s.f11 = -999;
+    s.normalized.elements.fill(-999);
+  });
+  EXPECT_FALSE(fit_warnings(fit(samples), fills).empty());  // of which no fit is made
+}
+
 TEST(FitWarnings, NameTheScaleOfF11) {
   const std::string reaches = "the directional-hemispherical reflectance reaches ";
   const auto times = [](double factor) { return measured([=](Sample& s) { s.f11 *= factor; }); };
@@ -123,7 +135,10 @@ TEST(FitWarnings, SayThatAScanIsOfOnePlane) {
                    "rank 20 of 40; block "),
       0u)
       << refusal;
-  EXPECT_TRUE(has(refusal, "; choose lower orders (up to 1,0 they do), or ask for")) << refusal;
+  EXPECT_TRUE(has(
+      refusal,
+      "; ask for the solution of minimum norm, which holds in that plane, or choose lower orders (up to 1,0 they do)"))
+      << refusal;
   EXPECT_NO_THROW(fit(scan, {Family::isotropic, {1, 0}}));
   FitOptions options;
   options.minimum_norm = true;

@@ -150,6 +150,13 @@ class Spread {
   std::size_t seen_ = 0, stride_ = 1;
 };
 
+/// Of samples that cannot be fitted: what is wrong with them may be the reason.
+void warn_of_faults(const Spread& some) {
+  if (some.some().empty()) return;
+  for (const Finding& finding : inspect(some.some(), some.numbers()).findings)
+    if (finding.fault != "no fit") warn(to_string(finding));
+}
+
 FitResult fitted(const Options& options, long& rows, Spread& some, SaidOfTable& said) {
   FitAccumulator accumulator(options.basis);
   std::vector<Sample> all;
@@ -169,6 +176,7 @@ FitResult fitted(const Options& options, long& rows, Spread& some, SaidOfTable& 
     if (!options.instrument.empty()) add_instrument(result, all, options);
     return result;
   } catch (const std::invalid_argument& error) {
+    warn_of_faults(some);
     throw std::runtime_error(data_name(options.data) + ": " + error.what());
   }
 }
@@ -237,7 +245,7 @@ void add_basis_options(CLI::App& app, const std::shared_ptr<Options>& o) {
 void add_data_options(CLI::App& app, const std::shared_ptr<Options>& o) {
   add_option(app, "-w,--wavelength", o->wavelengths_nm, numbers, "NM[,NM...]", "Fit these wavelengths only, in nm");
   add_table_options(app, o->table);
-  add_option(app, "--reflectance", o->fit.reflectance, reflectance_from, "NM:R[,...]|FILE",
+  add_option(app, "--reflectance", o->fit.reflectance, reflectance_of_fit, "NM:R[,...]|FILE",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_option(app, "--uncertainty", o->given_uncertainty, uncertainty_from, "NAME",
              "sample: holds for a real sample, its anisotropy and\nwhat the basis misses included; noise: of the noise "

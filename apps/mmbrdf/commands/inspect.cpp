@@ -51,8 +51,8 @@ nlohmann::ordered_json hole_json(const Hole& hole) {
   return json;
 }
 
-/// The command that fits the file as it was read here.
-std::string next_command(const Options& options, const CommandLine& line) {
+/// The command that fits the file as it was read here, with options that mend it.
+std::string next_command(const Inspection& seen, const Options& options, const CommandLine& line) {
   std::string text = line.text({options.data});
   const std::size_t at = text.find("inspect");
   text.replace(at, std::string("inspect").size(), "fit");
@@ -60,6 +60,9 @@ std::string next_command(const Options& options, const CommandLine& line) {
     const std::size_t end = text.find(' ', format + std::string(" --format ").size());
     text.erase(format, end == std::string::npos ? end : end - format);
   }
+  for (const Finding& one : seen.findings)
+    if (!one.option.empty() && text.find(one.option.substr(0, one.option.find(' '))) == std::string::npos)
+      text += " " + one.option;
   return text + " -o model.json";
 }
 
@@ -105,7 +108,7 @@ Page page_of(const Inspection& seen, const std::vector<Sample>& samples, const O
   for (const Untested& one : seen.untested) text += printable(to_string(one), 4 * longest_text) + "\n";
   if (const std::string verdict = verdict_line(seen); !verdict.empty()) text += verdict + "\n";
   Page page;
-  page.add(text + "\n" + next_command(options, line) + "\n");
+  page.add(text + "\n" + next_command(seen, options, line) + "\n");
   return page;
 }
 

@@ -92,7 +92,7 @@ Run select_command(CLI::App& app, const CommandLine&) {
   add_option(app, "--seed", o->folds.seed, seed, "SEED", "Of the random folds [1]");
   add_option(app, "--leave-out", o->folds.leave_out, leave_out_from, "WHAT",
              "angle, wavelength, angle,wavelength or none\n[what the data allow; wavelengths if there are 3]");
-  add_option(app, "--reflectance", o->selection.reflectance, reflectance_from, "NM:R[,...]|FILE",
+  add_option(app, "--reflectance", o->selection.reflectance, reflectance_of_fit, "NM:R[,...]|FILE",
              "Divide f11 by these reflectances, each at a\nwavelength in nm, linear between them");
   add_weights_option(app, o->weights);
   add_option(app, "--format", o->format, format_from, "FORMAT", "text, csv, json or html [text]");

@@ -46,18 +46,23 @@ std::vector<CertifiedReflectance> read_certificate(std::istream& in, const std::
   return result;
 }
 
-ReflectanceTable reflectance_from(const std::string& text) {
+namespace {
+
+ReflectanceTable reflectance(const std::string& text, bool of_fit) {
   if (text.find(':') != std::string::npos || !std::filesystem::exists(text)) return typed_reflectance(text);
   std::map<double, double> nodes;
   read_input(text, [&](std::istream& in, const std::string& name) {
     using namespace std::string_view_literals;
-    CsvReader reader(in, name, ColumnNames{}, {"wavelength_nm", "reflectance"});
+    CsvReader reader(in, name, ColumnNames{}, {"wavelength_nm", "reflectance", "u_reflectance"});
     const int wavelength = reader.find("wavelength_nm"sv), value = reader.find("reflectance"sv);
     if (wavelength < 0 || value < 0)
       throw reader.error(std::string("no column ") + (wavelength < 0 ? "wavelength_nm" : "reflectance"));
-    if (std::max(reader.find("u_reflectance"sv), reader.find("u"sv)) >= 0)
+    if (const int u = std::max(reader.find("u_reflectance"sv), reader.find("u"sv)); u >= 0 && of_fit)
+      note(name + ": " + reader.columns()[static_cast<std::size_t>(u)] +
+           " does not count: f11 is divided by these reflectances, and multiplied by them again");
+    else if (u >= 0)
       throw reader.error(
-          "uncertainties of the reflectance have no place here; mmbrdf convert --certificate counts them");
+          "mmbrdf convert --certificate counts the uncertainty of a reflectance, --reflectance does not");
     constexpr double no_reflectance = 2;  // not even with errors
     while (reader.next()) {
       if (reader.number(value) > no_reflectance)
@@ -72,6 +77,11 @@ ReflectanceTable reflectance_from(const std::string& text) {
   require_valid(table);
   return table;
 }
+
+}  // namespace
+
+ReflectanceTable reflectance_from(const std::string& text) { return reflectance(text, false); }
+ReflectanceTable reflectance_of_fit(const std::string& text) { return reflectance(text, true); }
 
 std::vector<CertifiedReflectance> certificate_from(const std::string& text, const Validity& validity) {
   std::vector<CertifiedReflectance> result;

@@ -44,8 +44,8 @@ class CsvReader {
   /// not, names in any case, with units in brackets or behind _; decimal commas where commas do not separate; exponents
   /// with D; a header in a comment before the first row; row names that the header leaves out. `columns` has names for
   /// columns that are called otherwise, or the numbers of all that are needed where there is no header. Throws
-  /// std::runtime_error as above, and for a column of `columns` that is not there. `unnamed` are the names of all columns
-  /// where there is no header and nothing else is said; empty: a table needs one.
+  /// std::runtime_error as above, and for a column of `columns` that is not there. `unnamed` are the names of the
+  /// first columns, and there are no others, where there is no header and nothing else is said; empty: a table needs one.
   CsvReader(std::istream& in, std::string name, const ColumnNames& columns,
             const std::vector<std::string>& unnamed = {});
 
@@ -74,6 +74,10 @@ class CsvReader {
   /// How it is written.
   const TableLayout& layout() const { return layout_; }
 
+  /// Whether what was taken for the header of a table of others may be a title above it: the line below has more or fewer
+  /// fields.
+  bool may_be_title() const { return may_be_title_; }
+
   /// Reads the next row; false at the end. Throws std::runtime_error for a row with more or fewer fields than columns,
   /// for one of more than longest_line bytes, and for control characters: the file is binary.
   bool next();
@@ -88,7 +92,8 @@ class CsvReader {
   /// A field as a finite number. Throws std::runtime_error with line, column and text for anything else.
   double number(int column) const;
 
-  /// Whether a field says that there is no value: empty, NA, N/A or NaN, in any case, or #N/A, #DIV/0! and the like.
+  /// Whether a field says that there is no value: empty, NA, N/A, NaN, NULL, None, in any case, or -, #N/A, #DIV/0!,
+  /// 1.#IND and the like.
   bool is_missing(int column) const;
 
   /// "file:line: " + text, as an error to throw.
@@ -103,6 +108,7 @@ class CsvReader {
   void require_distinct_columns() const;
   void name_columns(const ColumnNames& columns);
   double foreign_number(std::string_view field) const;
+  std::string row_hint(int column) const;
 
   std::istream& in_;
   std::string name_;
@@ -115,6 +121,8 @@ class CsvReader {
   std::vector<std::string_view> fields_;
   mutable TableLayout layout_;  // the decimal mark is that of the first number that has one
   long pending_ = 0;            // the line of a row that was read with the header
+  long first_row_ = 0;          // the line of the first, if it was
+  bool may_be_title_ = false;
 };
 
 /// Finds the columns of wavelength and angles under any of their documented names and units, and reads them.

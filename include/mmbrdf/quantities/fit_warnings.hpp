@@ -39,9 +39,9 @@ std::vector<std::string> data_warnings(const FitResult& result);
 ///   - a directional-hemispherical reflectance above 1 by more than its standard uncertainty: energy_line()
 ///   - f11 that is not positive: not_positive_line()
 ///
-/// and, if there are samples, what these show (row_findings(), which names them by `numbers`) and that they fit better in
-/// another frame or with other signs: convention_warning(). They may be some of those fitted. Takes a few milliseconds
-/// for each wavelength and each of the conventions.
+/// and, if there are samples, what these show (row_findings(), which names them by `numbers`), that their angles are
+/// radians, that f11 has a cosine too many or too few, and that they fit better in another frame or with other signs: convention_warning(). They may be some of those
+/// fitted. Takes a few milliseconds for each wavelength and each of the conventions.
 std::vector<std::string> fit_warnings(const FitResult& result, std::span<const Sample> samples = {},
                                       std::span<const long> numbers = {});
 inline constexpr std::size_t most_checked = 12;
@@ -80,8 +80,9 @@ struct Inspection {
 ///
 /// Each with the option or column that mends it. A fault that is not found is untested if it, planted in these data, would
 /// not be found either; and so are the last three with fewer samples than twice the coefficients of the fit, and the scale
-/// with fewer than 60, a fifth of the pairs of directions missing, or theta_r below 30 degrees. Throws std::invalid_argument for invalid samples, or none.
-Inspection inspect(std::span<const Sample> samples);
+/// with fewer than 60, a fifth of the pairs of directions missing, half of f11 left by the fit, or theta_r below 30 degrees. `numbers` are those of
+/// row_findings(). Throws std::invalid_argument for invalid samples, or none.
+Inspection inspect(std::span<const Sample> samples, std::span<const long> numbers = {});
 inline constexpr Orders inspected_orders{4, 3};
 
 /// What they are, in words: rows of a name, which may be empty, and what it is. And a line on what was looked at, if there

@@ -17,21 +17,29 @@ struct Finding {
   std::string evidence;                ///< "f11 = -999 in 20 samples: 3, 17, 18, …"
   std::string remedy;                  ///< "leave these rows out"; empty where that depends
   std::vector<std::size_t> samples{};  ///< which, counted from 0; none: all, or it depends
+  std::string option{};                ///< "--frame sp": of the program, where one mends it
 };
 
 /// "fill values: f11 = -999 in 20 samples: 3, 17, …: leave these rows out"
 std::string to_string(const Finding& finding);
 
-/// The median of |f11| of those that are known and not 0; 0 if there are none.
-double typical_f11(std::span<const Sample> samples);
+/// What numbers of some samples are no measurement. It is one if all that are there are equal, f11 and elements, if an
+/// element is beyond 10, if f11 is beyond 10⁴ or below −10 times the median of all |f11| that are not 0, or if it is the
+/// same number in three samples or more and no other is as it is: the only one that is not positive, where 0 lies apart from
+/// the others by more than a tenth of the median, or five times as large as all others.
+class FillValues {
+ public:
+  explicit FillValues(std::span<const Sample> samples);
+  bool include(const Sample& sample) const;
 
-/// Whether the numbers of a sample are no measurement: all that are there are equal, f11 and elements, or an element is
-/// beyond 10, or f11 beyond 10⁴ or below −10 times `typical`.
-bool is_fill(const Sample& sample, double typical);
+ private:
+  double typical_ = 0;
+  std::vector<double> repeated_;
+};
 
 /// Any of the following that the samples show, in this order. Samples are numbered from 1, or as `numbers` says.
 ///
-///   fill values              is_fill()
+///   fill values              FillValues
 ///   elements not divided     an element beyond 1.5 in more than 1 % of the samples; in more than a fifth, those beyond 10 are
 ///                            no fill values
 ///   matrices that cannot exist   smallest coherency eigenvalue below −0.1 f11 in more than 1 % of those whose sixteen

@@ -83,10 +83,10 @@ class PreparedUncertainty {
   /// Degrees of freedom of the fit, and so of these uncertainties: degrees_of_freedom(model).
   double freedom() const;
 
-  /// Whether the data of the fit determine every element at a geometry. Where they do not, its uncertainties are those
-  /// of the part that is determined: too small. The rows of the elements over the coefficients may lie in the
-  /// combinations that the data leave free with at most 1e-8 of their length (theory 4.7). Of a deficient fit whose
-  /// free combinations are not known nothing is. Throws std::invalid_argument for an invalid geometry.
+  /// Whether the data of the fit determine every element at a geometry that is not unknown. Where they do not, its
+  /// uncertainties are those of the part that is determined: too small. The rows of the elements over the coefficients may
+  /// lie in the combinations that the data leave free with at most 1e-8 of their length (theory 4.7). Of a deficient fit
+  /// whose free combinations are not known nothing is. Throws std::invalid_argument for an invalid geometry.
   bool estimable(const Geometry& geometry) const;
 
   /// Standard uncertainty of the directional-hemispherical reflectance for unpolarized light. Throws
