@@ -299,6 +299,10 @@ def test_a_file_of_samples_alone_makes_the_page(samples, tmp_path):
     done = run_module("d.csv", "-o", "page.html", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "d.csv: 1824 samples" in (tmp_path / "page.html").read_text()
+    (tmp_path / "aoi.csv").write_text((tmp_path / "d.csv").read_text().replace("theta_i_deg", "AOI"))
+    done = run_module("aoi.csv", "--columns", "theta_i_deg=AOI", "--frame", "xy", "-o", "page.html", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "mmbrdf fit aoi.csv --columns theta_i_deg=AOI --frame xy -o" in (tmp_path / "page.html").read_text()
     (tmp_path / "bad.csv").write_text((tmp_path / "d.csv").read_text().replace("theta_r_deg", "other"))
     for arguments, message in (
         (("bad.csv", "-o", "other.html"), "bad.csv:1: no column theta_r_deg"),

@@ -17,7 +17,7 @@ import mmbrdf
 
 pytest.importorskip("matplotlib")
 
-from mmbrdf import _report  # noqa: E402
+from mmbrdf import _report, _table_options  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -354,14 +354,14 @@ def test_a_file_that_is_replaced_while_it_is_read_has_no_report(page, tmp_path, 
     model.save(tmp_path / "model.json")
     data.save(tmp_path / "data.csv")
     data[:100].save(tmp_path / "other.csv")
-    read = _report.read_samples
+    read = _table_options.read_samples
 
     def replaced_after(path, **options):
         result = read(path, **options)
         os.replace(tmp_path / "other.csv", tmp_path / "data.csv")
         return result
 
-    monkeypatch.setattr(_report, "read_samples", replaced_after)
+    monkeypatch.setattr(_table_options, "read_samples", replaced_after)
     arguments = [str(tmp_path / name) for name in ("model.json", "data.csv")]
     output = ["-o", str(tmp_path / f"r.{ending}")]
     assert _report.main([*arguments[ending == "html" :], *output]) == 1
