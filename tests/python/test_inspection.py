@@ -2,6 +2,7 @@
 """Samples before they are fitted: the pictures of where they are and which stand out, and the page with both."""
 import html
 import json
+import pickle
 import re
 import subprocess
 import sys
@@ -214,6 +215,12 @@ def test_what_a_fit_of_low_order_leaves_is_in_percent(samples):
     left = points(axes)[:, 1]
     assert np.sqrt(np.mean(left**2)) == pytest.approx(100 * seen.f11_residual, rel=0.1)
     assert "%" in axes.get_ylabel() and "theta" in axes.get_xlabel()
+
+
+def test_samples_of_xy_that_are_given_as_sp_are_found_in_a_part_and_a_pickle_too(samples):
+    wrong = mmbrdf.Dataset(samples.wavelength_nm, *samples.geometry, samples.mueller, frame="sp")
+    for data in (wrong, wrong[:1500], pickle.loads(pickle.dumps(wrong))):
+        assert [(one.fault, one.remedy) for one in mmbrdf.inspect(data).findings] == [("frame or signs", "--frame xy")]
 
 
 def test_other_things_than_samples_are_refused_in_a_line(ptfe, samples):
