@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "files/table_layout.hpp"
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
@@ -46,7 +47,7 @@ void require_polar(const CsvReader& reader, int column, double theta) {
 /// Where a column is missing: whether its name lacks a unit, or how to name another.
 std::string unit_hint(const CsvReader& reader, const std::string& bare, const std::string& own) {
   const int column = reader.find(std::string_view(bare));
-  if (column < 0) return reader.layout().foreign ? "; if it has another name, give that: columns " + own + "=NAME" : "";
+  if (column < 0) return reader.layout().foreign ? other_name_hint(own, reader.columns()) : "";
   const std::string name = shown_name(reader.columns()[static_cast<std::size_t>(column)]);
   return own == "wavelength_nm"
              ? "; is " + name + " in nanometres or micrometres? Call it wavelength_nm or wavelength_um"

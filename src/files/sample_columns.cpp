@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "files/table_layout.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -174,8 +175,8 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
         "column m11, but no f11: samples need the unpolarized BRDF f11 in 1/sr, and m12 ... m44 divided "
         "by it; a table of elements that are not divided cannot be read as samples");
   } else if (elements_[0] < 0) {
-    throw reader.error(
-        "no column f11 (nor f_r11), the unpolarized BRDF in 1/sr; if it has another name, give that: columns f11=NAME");
+    throw reader.error("no column f11 (nor f_r11), the unpolarized BRDF in 1/sr" +
+                       other_name_hint("f11", reader.columns()));
   }
   std::array<int, 16> there = elements_;
   if (polarized == 4)
