@@ -22,7 +22,7 @@ from . import Dataset, Model, __version__, _table_options, material, materials, 
 from ._arguments import number, require
 from ._browser import printed
 from ._files import digest, digest_of_what_was_read, identity
-from ._mmbrdf import _report_document, _report_markdown, _utc_timestamp, _write_text
+from ._mmbrdf import _report_document, _report_markdown, _shown_name_of, _utc_timestamp, _write_text
 from ._pages import PAPERS, document, parts
 
 KINDS = {".md": "markdown", ".html": "html", ".htm": "html", ".pdf": "pdf", ".json": "json"}
@@ -115,11 +115,19 @@ def _chosen(wavelength_nm: float | Sequence[float] | None) -> list[float] | None
     return None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
 
 
+def titled(model: Model, file: str) -> Model:
+    """As its pictures name a model that was read from a file: by its own name, and that of the file where it is another."""
+    shown = _shown_name_of(model, file)
+    return model if model.name and shown == file else model.renamed(shown)
+
+
 def _draw(source: Source, block: dict[str, Any]) -> Any:
     """The figure of a block."""
     from . import plot
 
-    things = [source.model, source.data] if block["of_data"] else [source.model]
+    assert source.model is not None
+    model = titled(source.model, source.name) if source.name else source.model
+    things = [model, source.data] if block["of_data"] else [model]
     function = getattr(plot, block["plot"].replace("-", "_"))
     return function(*things, **block["arguments"], width_cm=block["width_cm"])[0]
 

@@ -207,6 +207,16 @@ def test_terms_are_written_as_those_of_the_program():
     assert dict(terms) == {"scale": 0.003, "theta_r_deg": 0.02, "theta_i_deg": 0.1, "calibration": 0.001}
 
 
+def test_a_picture_names_the_model_and_its_file_where_that_is_called_otherwise(files):
+    options = command._parser("plot").parse_args("hemisphere model.json -o a.png".split())
+    named = lambda file: command._opened(file, "model", options).name  # noqa: E731
+    assert named("model.json") == "model.json (ptfe-532)" and named("ptfe") == "ptfe"
+    mmbrdf.material("ptfe-532").renamed("mine").save("mine.json")
+    assert named("mine.json") == "mine"
+    mmbrdf.in_published_form(mmbrdf.material("ptfe-532")).save("published.csv")
+    assert named("published.csv") == "published"  # which has no place for a name
+
+
 def test_what_a_picture_is_of_is_not_overwritten(files, capsys):
     (files / "data.png").symlink_to("data.csv")
     before = (files / "data.csv").read_bytes()

@@ -321,6 +321,17 @@ def test_it_runs_as_a_program(tmp_path):
     assert not (tmp_path / "other.html").exists()
 
 
+def test_the_commands_of_its_pictures_read_the_table_as_it_did(page, tmp_path, program):
+    page[1].save(tmp_path / "d.csv")
+    (tmp_path / "d.csv").write_text((tmp_path / "d.csv").read_text().replace("theta_i_deg", "AOI [x]"))
+    how = ["--columns", "theta_i_deg=AOI [x]", "--frame", "xy", "--skip-incomplete"]
+    done = run_module("ptfe", "d.csv", *how, "-o", "report.md", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    command = "mmbrdf plot residuals ptfe d.csv --columns 'theta_i_deg=AOI [x]' --skip-incomplete --frame xy -w"
+    for text in ((tmp_path / "report.md").read_text(), program("report", "ptfe", "d.csv", *how)):
+        assert command in text
+
+
 @pytest.mark.parametrize("name", ["$_{$.csv", "纸样.csv", "<i>&amp;.csv"])
 def test_file_names_are_text_whatever_is_in_them(name, tmp_path):
     mmbrdf.in_published_form(mmbrdf.material("ptfe-532")).save(tmp_path / name)

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import Dataset, Model, _table_options, load_instrument, material, materials, plot
-from .._report import _require_kept, write
+from .._report import _require_kept, titled, write
 
 FORMATS = (".pdf", ".png", ".svg")
 
@@ -163,7 +163,7 @@ def _opened(name: str, kind: str, options: argparse.Namespace) -> Any:
     wanted = {"any": (Model, Dataset), "data": (Dataset,)}.get(kind, (Model,))
     if not isinstance(thing, wanted):
         raise ValueError(f"{name}: expected {'samples' if kind == 'data' else 'a model'}")
-    return thing
+    return titled(thing, Path(name).name) if isinstance(thing, Model) and name not in materials() else thing
 
 
 def _note(options: argparse.Namespace, things: Sequence[Any], who: str) -> None:
