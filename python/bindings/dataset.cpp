@@ -174,6 +174,7 @@ struct InXy {
   Geometry geometry;
   double f11;
   Mueller normalized, uncertainty;
+  std::uint64_t given_in;  // a Frame, without bits that mean nothing
 };
 struct Apart {
   std::size_t sample;
@@ -185,7 +186,8 @@ py::tuple pickled(const Dataset& data) {
   std::vector<Apart> apart;
   for (const Sample& s : data.samples) {
     if (s.as_measured) apart.push_back({in_xy.size(), *s.as_measured});
-    in_xy.push_back({s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty});
+    in_xy.push_back(
+        {s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty, static_cast<std::uint64_t>(s.given_in)});
   }
   return py::make_tuple(bits<InXy>("Dataset", in_xy), bits<Apart>("Dataset as measured", apart), data.read_as,
                         data.reduction);
@@ -194,8 +196,12 @@ py::tuple pickled(const Dataset& data) {
 DatasetPointer unpickled(const py::tuple& state) {
   if (state.size() != 4) throw std::invalid_argument("Dataset: not pickled by this version of mmbrdf");
   std::vector<Sample> samples;
-  for (const InXy& s : from_bits<InXy>("Dataset", state[0]))
-    samples.push_back({s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty});
+  for (const InXy& s : from_bits<InXy>("Dataset", state[0])) {
+    if (s.given_in > static_cast<std::uint64_t>(Frame::scattering_plane))
+      throw std::invalid_argument("Dataset: the pickle is damaged");
+    samples.push_back(
+        {s.wavelength, s.geometry, s.f11, s.normalized, s.uncertainty, {}, static_cast<Frame>(s.given_in)});
+  }
   for (const auto& [sample, as_measured] : from_bits<Apart>("Dataset as measured", state[1])) {
     if (sample >= samples.size() || (as_measured.frame != Frame::sp && as_measured.frame != Frame::scattering_plane))
       throw std::invalid_argument("Dataset: the pickle is damaged");

@@ -134,6 +134,14 @@ void bind_block(py::module_& m) {
 
 void bind_properties(ModelClass& c) {
   c.def_property_readonly("name", [](const ModelObject& o) { return o.model().name; })
+      .def(
+          "renamed",
+          [](const ModelObject& o, const std::string& name) {
+            Model model = o.model();
+            model.name = name;
+            return pointer(std::move(model));
+          },
+          py::arg("name"), "The same model under another name, which pictures and reports have.")
       .def_property_readonly(
           "family", [](const ModelObject& o) { return to_string(o.model().family); },
           "'isotropic', 'germer2017' or 'anisotropic'")

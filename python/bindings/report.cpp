@@ -97,6 +97,10 @@ void bind_documents(py::module_& m) {
       py::arg("model"), py::arg("facts"), py::arg("origin"), py::arg("notation"), py::arg("theta_i_deg"),
       "The document of a report as JSON text: report_document() of report.hpp.");
   m.def("_report_markdown", &report_markdown, py::arg("document"), "Such a document as Markdown.");
+  m.def(
+      "_shown_name_of",
+      [](const ModelObject& model, const std::string& name) { return shown_name_of(model.model(), name); },
+      py::arg("model"), py::arg("name"), "How reports and pictures name a model that was called so.");
   m.def("_symbols_in_print", &symbols_in_print, py::arg("sentence"), "A sentence with its symbols as in print.");
   m.def("_utc_timestamp", &utc_timestamp, "Now, or at SOURCE_DATE_EPOCH.");
 }

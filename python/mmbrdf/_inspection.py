@@ -96,8 +96,8 @@ def page(
     return document(title, parts, paper)
 
 
-def fit_command(path: str, wavelength_nm: Sequence[float] | None = None) -> str:
+def fit_command(path: str, wavelength_nm: Sequence[float] | None = None, table_options: Sequence[str] = ()) -> str:
     """For a shell: `mmbrdf fit data.csv -w 532 -o model.json`"""
     wavelengths = [] if wavelength_nm is None else ["-w", ",".join(f"{nm:.10g}" for nm in wavelength_nm)]
     place = f"./{path}" if path.startswith("-") else path
-    return shlex.join(["mmbrdf", "fit", place, *wavelengths, "-o", "model.json"])
+    return shlex.join(["mmbrdf", "fit", place, *wavelengths, *table_options, "-o", "model.json"])

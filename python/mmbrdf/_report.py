@@ -18,11 +18,11 @@ from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
-from . import Dataset, Model, __version__, load, material, materials, read_samples, report_json
+from . import Dataset, Model, __version__, _table_options, material, materials, report_json
 from ._arguments import number, require
 from ._browser import printed
 from ._files import digest, digest_of_what_was_read, identity
-from ._mmbrdf import _holds_samples, _report_document, _report_markdown, _utc_timestamp, _write_text
+from ._mmbrdf import _report_document, _report_markdown, _shown_name_of, _utc_timestamp, _write_text
 from ._pages import PAPERS, document, parts
 
 KINDS = {".md": "markdown", ".html": "html", ".htm": "html", ".pdf": "pdf", ".json": "json"}
@@ -44,6 +44,8 @@ class Source(NamedTuple):
     digests: Mapping[str, str] = {}
     terms: Mapping[str, float] | Sequence[str] | None = None
     """Of type B, by their names or as they are typed."""
+    table_options: Sequence[str] = ()
+    """Those with which the data were read, as they are typed."""
 
 
 class Look(NamedTuple):
@@ -97,7 +99,9 @@ def _origin(source: Source) -> dict[str, Any]:
         "software": f"mmbrdf {__version__}",
         "command": source.command or "mmbrdf.report() in Python",
         "model": shlex.quote("MODEL" if source.model_file is None else Path(source.model_file).name),
-        "data": shlex.quote("DATA.csv" if source.data_file is None else Path(source.data_file).name),
+        "data": shlex.join(
+            ["DATA.csv" if source.data_file is None else Path(source.data_file).name, *source.table_options]
+        ),
         "files": files,
     }
 
@@ -111,11 +115,19 @@ def _chosen(wavelength_nm: float | Sequence[float] | None) -> list[float] | None
     return None if wavelength_nm is None else [number("wavelength_nm", one) for one in np.atleast_1d(wavelength_nm)]
 
 
+def titled(model: Model, file: str) -> Model:
+    """As its pictures name a model that was read from a file: by its own name, and that of the file where it is another."""
+    shown = _shown_name_of(model, file)
+    return model if model.name and shown == file else model.renamed(shown)
+
+
 def _draw(source: Source, block: dict[str, Any]) -> Any:
     """The figure of a block."""
     from . import plot
 
-    things = [source.model, source.data] if block["of_data"] else [source.model]
+    assert source.model is not None
+    model = titled(source.model, source.name) if source.name else source.model
+    things = [model, source.data] if block["of_data"] else [model]
     function = getattr(plot, block["plot"].replace("-", "_"))
     return function(*things, **block["arguments"], width_cm=block["width_cm"])[0]
 
@@ -171,7 +183,7 @@ def _page(source: Source, look: Look, paper: str | None) -> str:
         return _inspection.page(
             source.data,
             source.data_name,
-            _inspection.fit_command(path, source.wavelength_nm),
+            _inspection.fit_command(path, source.wavelength_nm, source.table_options),
             paper,
             _origin_lines(source),
         )
@@ -234,14 +246,6 @@ def _require_kept(output: str, inputs: Sequence[str | None]) -> None:
             raise ValueError(f"{output}: would overwrite {name}")
 
 
-def _columns(text: str) -> dict[str, str]:
-    """NAME=THEIRS,…"""
-    pairs = [part.partition("=") for part in text.split(",")]
-    if not all(own and equals and theirs for own, equals, theirs in pairs):
-        raise argparse.ArgumentTypeError(f'"{text}": expected NAME=THEIRS[,...]')
-    return {own: theirs for own, _, theirs in pairs}
-
-
 def _numbers(text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
@@ -285,18 +289,7 @@ def _parser(prog: str) -> _Parser:
     add("--term", dest="terms", metavar="[NAME:]KIND=U[,dof=N]", action="append", help="of type B, added to all u")
     add("--notation", choices=NOTATIONS, default="brackets", help="0.98412(32), or 0.98412 ± 0.00032 [brackets]")
     add("--paper", choices=tuple(PAPERS), default="a4", help="of a PDF [a4]")
-    add("--columns", metavar="NAME=THEIRS[,...]", type=_columns, default={}, help="of DATA.csv that have other names")
-    add(
-        "--skip-incomplete",
-        action="store_true",
-        help="pass over rows with NA or NaN, or without an angle or wavelength",
-    )
-    add(
-        "--frame",
-        choices=("xy", "sp", "scattering_plane"),
-        help="of the matrices of DATA.csv [as its column frame says, or xy; sp of f_ss ... f_pp]",
-    )
-    add("--convention", default="germer2017", help="signs of their Stokes vectors [germer2017]")
+    _table_options.add_to(parser)
     add("--made-by", default="", help=argparse.SUPPRESS)
     return parser
 
@@ -306,30 +299,18 @@ def _opened(name: str, options: argparse.Namespace, digests: dict[str, str]) -> 
     if name in materials():
         return material(name)
     before = identity(name) if os.path.exists(name) else ()
-    result = _read(name, options)
+    result = _table_options.opened(name, options)
     digests[name] = digest_of_what_was_read(name, before)
     return result
 
 
-def _read(name: str, options: argparse.Namespace) -> Model | Dataset:
-    """Of a model or of samples, whose table is read as the options say."""
-    if not _holds_samples(name):
-        return load(name)
-    return read_samples(
-        name,
-        columns=options.columns,
-        skip_incomplete=options.skip_incomplete,
-        frame=options.frame,
-        convention=options.convention,
-    )
-
-
 def _source_of(options: argparse.Namespace, command: str) -> Source:
     digests: dict[str, str] = {}
+    table = _table_options.words(options)
     model = _opened(options.model, options, digests)
     if isinstance(model, Dataset) and options.data is None:
         source = Source(None, model, "", Path(options.model).name, options.wavelength, data_file=options.model)
-        return source._replace(command=command, digests=digests, terms=options.terms)
+        return source._replace(command=command, digests=digests, terms=options.terms, table_options=table)
     data = _opened(options.data, options, digests) if options.data else None
     for name, thing, kind in ((options.model, model, Model), (options.data, data, Dataset)):
         if thing is not None and not isinstance(thing, kind):
@@ -337,7 +318,7 @@ def _source_of(options: argparse.Namespace, command: str) -> Source:
     assert isinstance(model, Model) and not isinstance(data, Model)
     names = Path(options.model).name, Path(options.data or "").name
     source = Source(model, data, *names, options.wavelength, options.theta_i, options.model, options.data)
-    return source._replace(command=command, digests=digests, terms=options.terms)
+    return source._replace(command=command, digests=digests, terms=options.terms, table_options=table)
 
 
 def _command(prog: str, words: Sequence[str], paths: Sequence[str | None]) -> str:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "files/table_layout.hpp"
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/text/units.hpp"
 #include "text/numbers.hpp"
@@ -50,7 +51,7 @@ std::string unit_hint(const CsvReader& reader, const std::string& bare, const st
   if (column < 0 && !reader.layout().foreign) return "";
   if (column < 0)
     return std::string(own.starts_with("phi_") ? "; in the plane of incidence it is 0, or 180 on the other side" : "") +
-           "; if it has another name, give that: columns " + own + "=NAME";
+           other_name_hint(own, reader.columns());
   const std::string name = shown_name(reader.columns()[static_cast<std::size_t>(column)]);
   return own == "wavelength_nm"
              ? "; is " + name + " in nanometres or micrometres? Call it wavelength_nm or wavelength_um"

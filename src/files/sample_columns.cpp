@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "files/table_layout.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
@@ -186,9 +187,8 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
                        "by it; a table of elements that are not divided cannot be read as samples");
   } else if (elements_[0] < 0) {
     throw reader.error(
-        "no column f11 (nor brdf, brf = pi f, f_cos; nor f_ss, f_sp, f_ps and f_pp), the unpolarized BRDF in 1/sr; if "
-        "it has "
-        "another name, give that: columns f11=NAME");
+        "no column f11 (nor brdf, brf = pi f, f_cos; nor f_ss, f_sp, f_ps and f_pp), the unpolarized BRDF in 1/sr" +
+        other_name_hint("f11", reader.columns()));
   }
   std::array<int, 16> there = elements_;
   if (polarized == 4)

@@ -104,6 +104,7 @@ bool SampleReader::next(Sample& sample) {
   } while (table_.skip_incomplete && !complete() && ++passed_over_ > 0);
   ++rows_;
   sample.as_measured.reset();  // that of the row before
+  sample.given_in = Frame::xy;
   sample.wavelength = geometry_.wavelength(reader_);
   sample.geometry = geometry_.geometry(reader_);
   elements_->read(reader_, sample);

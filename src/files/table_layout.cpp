@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "files/table_layout.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <utility>
 
@@ -86,6 +87,14 @@ std::string column_key(std::string_view name, bool upper_case) {
   for (const auto& [unit, own] : unit_endings)
     if (key.ends_with(unit)) return key.replace(key.size() - unit.size(), unit.size(), own);
   return key;
+}
+
+std::string other_name_hint(const std::string& own, const std::vector<std::string>& columns) {
+  constexpr std::size_t most = 12;
+  std::string text = "; if it has another name, give that: columns " + own + "=NAME";
+  for (std::size_t c = 0; c < std::min(columns.size(), most); ++c)
+    text += (c == 0 ? ", of " : ", ") + shown_name(columns[c]);
+  return text + (columns.size() > most ? ", ..." : "");
 }
 
 std::optional<std::string> plain_number(std::string_view field) {

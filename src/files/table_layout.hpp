@@ -22,6 +22,10 @@ bool split(std::string_view line, char separator, std::vector<std::string_view>&
 /// the published f_r12/f_r11.
 std::string column_key(std::string_view name, bool upper_case);
 
+/// How to name a column that is called otherwise, of those that a table has: "; if it has another name, give that: columns
+/// f11=NAME, of AOI, BRDF", behind what says that there is no f11.
+std::string other_name_hint(const std::string& own, const std::vector<std::string>& columns);
+
 /// A number without what only others write: D for E in exponents, ',' for '.', the minus sign of typeset text. Nothing if it has none of these.
 std::optional<std::string> plain_number(std::string_view field);
 

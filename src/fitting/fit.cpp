@@ -54,7 +54,7 @@ std::vector<Mueller> residuals_of_rows(std::span<const Sample> samples, const Fi
   AtWavelengths prepared([&](double wavelength) { return first.at(wavelength); });
   std::vector<Mueller> result = fitted.residuals;
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    const auto& [wavelength, geometry, f11, normalized, u, as_measured] = samples[s];
+    const auto& [wavelength, geometry, f11, normalized, u, as_measured, given_in] = samples[s];
     if (as_measured && rows_turn(model.family)) {
       const Mueller m = prepared(wavelength).evaluate(geometry, as_measured->frame);
       for (std::size_t e = 1; e < 16; ++e)

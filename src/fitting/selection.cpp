@@ -19,6 +19,7 @@
 namespace mmbrdf {
 namespace {
 
+constexpr const char* left_unknown = "what was measured leaves all of its elements unknown";
 constexpr double rounding = 1e-12;  // errors below are those of exact data, and no reason for anything
 
 using Kind = Partition::Kind;
@@ -174,6 +175,8 @@ Candidate candidate(const AtOrder& at, std::span<const Partition> partitions, co
     }
     if (const std::string free = part.undetermined(fit); !free.empty())
       result.refusal = "not determined by the data: " + free;
+    else if (result.coefficients == 0)
+      result.refusal = left_unknown;
   } catch (const std::invalid_argument& error) {
     result.refusal = error.what();
   }
@@ -370,13 +373,15 @@ Selection select_model(std::span<const Sample> samples, std::span<const Partitio
     result.powers = std::max(result.powers, powers_for(part, *options.powers, by.powers).value_or(0));
   }
   recommend(result.f11, partitions, result.powers, by.order);
-  if (f11_alone)
-    result.other.reason = "not measured";
-  else
+  const bool others_known =
+      std::ranges::any_of(result.other.candidates, [](const Candidate& one) { return one.refusal != left_unknown; });
+  if (others_known)
     recommend(result.other, partitions, result.powers, by.order);
-  if (result.f11.recommended && (f11_alone || result.other.recommended))
+  else
+    result.other.reason = f11_alone ? "not measured" : "unknown at every order";
+  if (result.f11.recommended && (!others_known || result.other.recommended))
     result.orders = Orders{result.f11.candidates[*result.f11.recommended].order,
-                           f11_alone ? 0 : result.other.candidates[*result.other.recommended].order};
+                           others_known ? result.other.candidates[*result.other.recommended].order : 0};
   return result;
 }
 

@@ -197,8 +197,13 @@ Sample sample(const Mueller& m, double wavelength, const Geometry& geometry, dou
   if (!(m(0, 0) > 0)) throw std::invalid_argument("M11 = " + shortest(m(0, 0)) + ", must be positive");
   const double cosine = std::cos(geometry.reflected.theta);
   if (!(cosine > 1e-9)) throw std::invalid_argument("theta_r is 90 degrees");
-  return {wavelength, geometry, m(0, 0) / (solid_angle * cosine),
-          change_frame(normalized(m), geometry, Frame::scattering_plane, Frame::xy)};
+  return {wavelength,
+          geometry,
+          m(0, 0) / (solid_angle * cosine),
+          change_frame(normalized(m), geometry, Frame::scattering_plane, Frame::xy),
+          {},
+          {},
+          Frame::scattering_plane};
 }
 
 }  // namespace mmbrdf

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "mmbrdf/model/description.hpp"
 #include "mmbrdf/quantities/conventions.hpp"
@@ -26,7 +27,6 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 const char* const scale = "scale of f11";
 const char* const cosine = "cosine";
 const char* const azimuths = "azimuths";
-const char* const frame = "frame or signs";
 
 /// Of the first wavelength, evenly spread.
 std::vector<Sample> without_fills(std::span<const Sample> samples) {
@@ -184,23 +184,6 @@ void look_at_azimuths(Inspection& result, const Looked& at) {
     result.untested.push_back({azimuths, few});
 }
 
-const std::string& best_read_as(std::span<const ConventionFit> fits) {
-  return std::ranges::min_element(fits, {}, &ConventionFit::rms)->read_as;
-}
-
-std::string frame_option(std::span<const ConventionFit> fits) {
-  const std::string& best = best_read_as(fits);
-  return best.starts_with("frame ") ? "--frame " + best.substr(6) : "";
-}
-
-std::string convention_remedy(std::span<const ConventionFit> fits) {
-  const std::string& best = best_read_as(fits);
-  if (best.starts_with("frame ")) return best + " (--frame)";
-  if (best.find("transposed") != std::string::npos)
-    return "exchange m12 and m21, m13 and m31 ..., or change the signs of 13, 31, 23, 32, 34 and 43";
-  return "change the signs in the table; where both beams have another convention: --convention";
-}
-
 /// What else the samples may be read as, as far as the residuals tell.
 std::string as_good(std::span<const ConventionFit> fits) {
   std::vector<std::string> names;
@@ -218,13 +201,13 @@ void look_at_frame(Inspection& result, const Looked& at) {
   std::string why = unknown.count() >= 15 ? "f11 alone was measured" : too_few(at, false);
   if (why.empty()) {
     const auto fits = convention_fits(at.samples, inspected_orders);
-    if (const std::string line = convention_warning(fits); !line.empty()) {
-      result.findings.push_back({frame, line, convention_remedy(fits), {}, frame_option(fits)});
+    if (Finding found = convention_finding(fits); !found.fault.empty()) {
+      result.findings.push_back(std::move(found));
       return;
     }
     why = fits.empty() ? "of the elements that frames mix, some were not measured" : as_good(fits);
   }
-  if (!why.empty()) result.untested.push_back({frame, why});
+  if (!why.empty()) result.untested.push_back({convention_fault, why});
 }
 
 /// Of all samples of the wavelength of the fit.
@@ -291,7 +274,7 @@ Inspection inspect(std::span<const Sample> samples, std::span<const long> number
   result.residuals.assign(samples.size(), not_known);
   Looked at{without_fills(samples), {}};
   const auto leave_out = [&](const std::string& reason) {
-    for (const char* fault : {scale, cosine, azimuths, frame}) result.untested.push_back({fault, reason});
+    for (const char* fault : {scale, cosine, azimuths, convention_fault}) result.untested.push_back({fault, reason});
   };
   try {
     at.fitted = fit_of_low_order(at.samples);

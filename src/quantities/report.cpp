@@ -53,6 +53,13 @@ Warnings range_notes(const ReportSubject& reported) {
   return notes;
 }
 
+/// Where a table says what f11 is multiplied by; nothing of one value, which says it everywhere.
+std::string reach(const ReflectanceTable& table) {
+  if (table.values.size() < 2) return "";
+  return "; valid from " + shortest(in_nanometres(table.wavelengths.front())) + " to " +
+         nanometre_list(std::array{table.wavelengths.back()}) + ", and f11 with it";
+}
+
 Json model_json(const ReportSubject& reported) {
   const Model& model = reported.model;
   Json json{{"name", model.name.empty() ? reported.name : model.name},
@@ -62,7 +69,7 @@ Json model_json(const ReportSubject& reported) {
   const ReflectanceTable& table = model.reflectance;
   if (!table.values.empty())
     json["reflectance table"] =
-        reflectance_line(table) + (table.covariance.empty() ? ", exact" : ", with its covariance");
+        reflectance_line(table) + (table.covariance.empty() ? ", exact" : ", with its covariance") + reach(table);
   for (const auto& [name, text] : model.provenance) json[json.contains(name) ? "provenance: " + name : name] = text;
   return json;
 }
@@ -176,10 +183,17 @@ ReportSubject reported(const Model& model, const std::string& name, std::span<co
 
 }  // namespace
 
+std::string shown_name_of(const Model& model, const std::string& name) {
+  const bool same = model.name.empty() || model.name == name || model.name == name.substr(0, name.rfind('.'));
+  return same ? name : name + " (" + model.name + ")";
+}
+
 std::string report_json(const Model& model, const std::string& name, std::span<const double> wavelengths,
                         const std::optional<ReportedSamples>& samples, std::span<const TypeBTerm> terms) {
   const ReportSubject what = reported(model, name, wavelengths, terms);
-  Json report{{"title", "Report on " + name}, {"warnings", range_warnings(what)}, {"notes", range_notes(what)}};
+  Json report{{"title", "Report on " + shown_name_of(model, name)},
+              {"warnings", range_warnings(what)},
+              {"notes", range_notes(what)}};
   report["model"] = model_json(what);
   report["fit"] = fit_json(model);
   if (model.posterior) report["sample"] = sample_json(*model.posterior);

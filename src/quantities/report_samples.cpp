@@ -55,7 +55,7 @@ Json residuals_json(const Comparison& comparison) {
 ReportField conventions_field(const Model& model, std::span<const Sample> samples) {
   const std::vector<ConventionFit> fits = convention_fits(samples, orders(model), model.mapping);
   ReportField field;
-  for (const auto& [read_as, rms] : fits) field.value.push_back({{"read_as", read_as}, {"rms", rms}});
+  for (const ConventionFit& fit : fits) field.value.push_back({{"read_as", fit.read_as}, {"rms", fit.rms}});
   if (std::string line = convention_warning(fits); !line.empty()) field.warnings.push_back(line);
   return field;
 }

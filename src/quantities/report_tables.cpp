@@ -92,7 +92,7 @@ std::map<std::string, FieldTable> tables_of_what_is_left() {
              {"chi_squared_per_dof", "χ²/ν", Cell::with_u, "u_chi"}}}},
           {"conventions",
            {"Conventions",
-            "What is left of the samples if they are read in another frame, or with other signs.",
+            "What is left of the samples as declared, and if they are read in another frame or with other signs.",
             {{"read_as", "read as", Cell::prose}, {"rms", "rms", Cell::three}}}},
           {"reciprocity", symmetry_table("Reciprocity", "reciprocity")},
           {"mirror_symmetry", symmetry_table("Mirror symmetry", "mirror symmetry")},

@@ -197,6 +197,7 @@ Sample at_zero_azimuth(const Sample& sample) { return turned(sample, -sample.geo
 Sample from_frame(const Sample& sample, Frame frame) {
   const FrameAngles angles = angles_to_xy(sample.geometry, frame);
   Sample result = sample;
+  result.given_in = frame;
   result.normalized = rotated(sample.normalized, angles.scattered, angles.incident);
   if (has_uncertainty(sample))
     result.uncertainty = rotated_uncertainty(sample.uncertainty, angles.scattered, angles.incident);

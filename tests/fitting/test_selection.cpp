@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "given/cases.hpp"
@@ -174,6 +175,33 @@ TEST(Selection, RefusesWhatTheDataDoNotDetermine) {
       select_model(samples, std::array{folds_by_row(24, 3)}, {.orders_f11 = Range{6, 7}, .orders_other = Range{1, 2}});
   EXPECT_FALSE(none.orders);
   EXPECT_NE(none.f11.reason.find("every order is refused"), std::string::npos);
+}
+
+/// Intensities of s and p alone.
+std::vector<Sample> of_s_and_p(std::vector<Sample> samples) {
+  for (Sample& s : samples) {
+    s = in_frame(s, Frame::sp);
+    for (const std::size_t e : {2UL, 3UL, 6UL, 7UL, 8UL, 9UL, 10UL, 11UL, 12UL, 13UL, 14UL, 15UL})
+      s.normalized.elements[e] = std::numeric_limits<double>::quiet_NaN();
+    s = from_frame(s, Frame::sp);
+  }
+  return samples;
+}
+
+// An error of 0 is that of nothing predicted.
+TEST(Selection, RefusesOrdersAtWhichAllElementsButF11AreUnknown) {
+  const std::vector<Sample> samples =
+      of_s_and_p(simulate(random_model(Family::isotropic, {3, 2}, 0, 4), wavelength, germer2017_grid(), 0.005, 5));
+  const std::array folds{folds_by_row(1824, 3)};
+  const Selection some = select_model(samples, folds, {.orders_f11 = Range{3, 3}, .orders_other = Range{2, 4}});
+  EXPECT_EQ(recommended_order(some.other), 2);  // the plane of incidence has what settles order 2
+  for (const Candidate& one : some.other.candidates)
+    EXPECT_EQ(one.refusal.find("leaves all of its elements unknown") != std::string::npos, one.order > 2) << one.order;
+  const Selection none = select_model(samples, folds, {.orders_f11 = Range{3, 3}, .orders_other = Range{3, 4}});
+  ASSERT_TRUE(none.orders);
+  EXPECT_EQ(none.orders->f11, 3);
+  EXPECT_EQ(none.orders->other, 0);
+  EXPECT_EQ(none.other.reason, "unknown at every order");
 }
 
 TEST(Selection, RefusesQuestionsThatMakeNoSense) {

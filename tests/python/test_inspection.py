@@ -2,6 +2,7 @@
 """Samples before they are fitted: the pictures of where they are and which stand out, and the page with both."""
 import html
 import json
+import pickle
 import re
 import subprocess
 import sys
@@ -216,6 +217,12 @@ def test_what_a_fit_of_low_order_leaves_is_in_percent(samples):
     assert "%" in axes.get_ylabel() and "theta" in axes.get_xlabel()
 
 
+def test_samples_of_xy_that_are_given_as_sp_are_found_in_a_part_and_a_pickle_too(samples):
+    wrong = mmbrdf.Dataset(samples.wavelength_nm, *samples.geometry, samples.mueller, frame="sp")
+    for data in (wrong, wrong[:1500], pickle.loads(pickle.dumps(wrong))):
+        assert [(one.fault, one.remedy) for one in mmbrdf.inspect(data).findings] == [("frame or signs", "--frame xy")]
+
+
 def test_other_things_than_samples_are_refused_in_a_line(ptfe, samples):
     for draw in (mmbrdf.plot.directions, mmbrdf.plot.suspicious, mmbrdf.plot.low_order_residuals):
         with pytest.raises(TypeError, match=r"^plot\.\w+: data: expected mmbrdf.Dataset, not Model$"):
@@ -299,6 +306,10 @@ def test_a_file_of_samples_alone_makes_the_page(samples, tmp_path):
     done = run_module("d.csv", "-o", "page.html", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "d.csv: 1824 samples" in (tmp_path / "page.html").read_text()
+    (tmp_path / "aoi.csv").write_text((tmp_path / "d.csv").read_text().replace("theta_i_deg", "AOI"))
+    done = run_module("aoi.csv", "--columns", "theta_i_deg=AOI", "--frame", "xy", "-o", "page.html", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "mmbrdf fit aoi.csv --columns theta_i_deg=AOI --frame xy -o" in (tmp_path / "page.html").read_text()
     (tmp_path / "bad.csv").write_text((tmp_path / "d.csv").read_text().replace("theta_r_deg", "other"))
     for arguments, message in (
         (("bad.csv", "-o", "other.html"), "bad.csv:1: no column theta_r_deg"),

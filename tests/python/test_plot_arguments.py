@@ -2,7 +2,6 @@
 """What mmbrdf.plot takes and refuses, and how it shows names that others chose."""
 
 import io
-import json
 import warnings
 
 import numpy as np
@@ -115,11 +114,6 @@ def test_none_of_several_wavelengths_is_refused_with_those_there_are(ptfe):
 # Names that others chose
 
 
-def named(model, name):
-    """The same model under another name."""
-    return mmbrdf.Model.from_json(json.dumps(json.loads(model.to_json()) | {"name": name}))
-
-
 def pictures_with_names(model, data):
     """All pictures that show the name of a model."""
     plot = mmbrdf.plot
@@ -139,7 +133,7 @@ def pictures_with_names(model, data):
 def test_a_name_is_shown_letter_by_letter(ptfe, data, name, caplog):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        for figure in pictures_with_names(named(ptfe, name), data):
+        for figure in pictures_with_names(ptfe.renamed(name), data):
             rendered(figure)
             figure.savefig(io.BytesIO(), bbox_inches="tight")
             assert name.replace("$", r"\$") in written(figure)
@@ -155,5 +149,5 @@ def test_a_dollar_is_one_dollar():
 
 
 def test_a_name_that_begins_with_a_low_line_is_in_the_legend(ptfe):
-    figure, axes = mmbrdf.plot.polar_in_plane(named(ptfe, "_hidden"), 532)
+    figure, axes = mmbrdf.plot.polar_in_plane(ptfe.renamed("_hidden"), 532)
     assert [text.get_text().strip() for text in axes.get_legend().get_texts()][0] == "_hidden, 532 nm"

@@ -41,7 +41,7 @@ KINDS = {
     "hemisphere": "data.csv -i 60 --scale paper",
     "in-plane-curves": "model.json data.csv -i 60",
     "low-order-residuals": "data.csv",
-    "map": "data.csv model.json -i 60 --quantity 22 --frame sp",
+    "map": "data.csv model.json -i 60 --quantity 22 --shown-frame sp",
     "polar-in-plane": "ptfe -w 351,532 -i 30",
     "realizability-map": "ptfe -w 532",
     "reflectance-against-angle": "model.json",
@@ -125,6 +125,12 @@ def test_wrong_usage_is_said_with_status_2(files, capsys, words, message):
         ("map ptfe -w 532 --quantity scattered_S1 -o a.png", "needs stokes"),
         ("map ptfe -w 532 --quantity scattered_S1 --stokes 1,0 -o a.png", "--stokes 1,0: expected 4 numbers"),
         ("map ptfe -w 532 --quantity f12 -o a.png", "quantity = 'f12': expected one of 11, 12"),
+        (
+            "hemisphere ptfe -w 532 --frame sp -o a.png",
+            "--frame: of a table of samples, --shown-frame that of the picture, and ptfe is none",
+        ),
+        ("hemisphere ptfe -w 532 --columns f11=BRDF -o a.png", "--columns: of a table of samples, and ptfe is none"),
+        ("directions data.csv --columns f11=BRDF -o a.png", "data.csv:1: no column BRDF"),
         ("hemisphere model.json -o nowhere/a.png", "nowhere/a.png"),
     ],
 )
@@ -135,9 +141,80 @@ def test_bad_input_is_said_in_a_line_with_status_1_and_nothing_is_written(files,
     assert not list(files.glob("a.*"))
 
 
+OF_OTHERS = {"theta_i_deg": "AOI", "phi_i_deg": "AZI", "theta_r_deg": "AOR", "phi_r_deg": "AZR"}
+COLUMNS = "--columns " + ",".join(f"{own}={theirs}" for own, theirs in OF_OTHERS.items())
+
+
+def write_table(path, data, elements):
+    """With names of its own; ``elements`` are columns of one number for each sample."""
+    angles = {theirs: getattr(data, own) for own, theirs in OF_OTHERS.items()}
+    columns = {"wavelength_nm": data.wavelength_nm, **angles, **elements}
+    rows = zip(*(np.asarray(values).tolist() for values in columns.values()))
+    path.write_text("\n".join(",".join(map(str, row)) for row in [columns, *rows]) + "\n")
+
+
+@pytest.fixture
+def twins(files, samples):
+    """data.csv in the frame sp, whole and as intensities of s and p, under names of others."""
+    sp = mmbrdf.change_frame(samples.mueller, *samples.geometry, "xy", "sp")
+    names = {f"m{row + 1}{column + 1}": (row, column) for row, column in np.ndindex(4, 4) if (row, column) != (0, 0)}
+    normalized = {name: sp[:, row, column] / sp[:, 0, 0] for name, (row, column) in names.items()}
+    write_table(files / "whole.csv", samples, {"f11": samples.f11, **normalized})
+    write_table(
+        files / "s_and_p.csv",
+        samples,
+        {f"f_{name}": getattr(mmbrdf.co_and_cross_polarized(sp), name) for name in ("ss", "sp", "ps", "pp")},
+    )
+    return files
+
+
+@pytest.mark.parametrize(
+    "kind, more",
+    [("hemisphere", ""), ("residual-map model.json", ""), ("in-plane-curves model.json", ""), ("map", "--quantity 12")],
+)
+def test_a_table_in_sp_with_names_of_its_own_gives_the_picture_of_its_twin_in_xy(twins, capsys, kind, more):
+    words = f"{more} -i 60 --width 8 --dpi 100"
+    assert called(f"{kind} data.csv {words} -o twin.png") == 0 and capsys.readouterr().err == ""
+    assert called(f"{kind} whole.csv {COLUMNS} --frame sp {words} -o whole.png") == 0
+    assert "note: whole.csv: AOI is theta_i_deg" in capsys.readouterr().err
+    np.testing.assert_allclose(imread("whole.png"), imread("twin.png"), atol=2 / 255)  # rounding of a colour
+
+
+def test_a_table_is_read_as_read_samples_and_all_commands_read_it(twins):
+    assert called(f"hemisphere whole.csv {COLUMNS} -i 60 --width 8 --dpi 100 -o shell.png") == 0
+    data = mmbrdf.read_samples("whole.csv", columns=OF_OTHERS)  # no frame: xy
+    figure, _ = mmbrdf.plot.hemisphere(data, None, 60, width_cm=8)
+    figure.savefig("python.png", dpi=100)
+    np.testing.assert_array_equal(imread("shell.png"), imread("python.png"))
+    assert called("hemisphere data.csv -i 60 --width 8 --dpi 100 -o xy.png") == 0
+    assert np.abs(imread("shell.png") - imread("xy.png")).max() > 0.5
+
+
+def test_intensities_of_s_and_p_are_shown_as_they_were_measured_out_of_plane_too(twins, samples):
+    read = mmbrdf.read_samples("s_and_p.csv", columns=OF_OTHERS)
+    assert np.isnan(read.normalized).any()  # of what xy would mix with the unmeasured
+    whole = mmbrdf.read_samples("whole.csv", columns=OF_OTHERS, frame="sp")
+    for quantity in ("f_sp", "12"):
+        shown = [
+            mmbrdf.plot.map(data, quantity, None, 60, frame="sp")[1].images[0].get_array() for data in (read, whole)
+        ]
+        assert np.isfinite(np.ma.filled(shown[1], np.nan)).sum() > 100
+        np.testing.assert_allclose(np.ma.filled(shown[0], np.nan), np.ma.filled(shown[1], np.nan), atol=1e-12)
+
+
 def test_terms_are_written_as_those_of_the_program():
     terms = [command._term(text) for text in ("scale=0.3%", "theta_r=0.02deg", "theta_i_deg=0.1", "calibration=0.001")]
     assert dict(terms) == {"scale": 0.003, "theta_r_deg": 0.02, "theta_i_deg": 0.1, "calibration": 0.001}
+
+
+def test_a_picture_names_the_model_and_its_file_where_that_is_called_otherwise(files):
+    options = command._parser("plot").parse_args("hemisphere model.json -o a.png".split())
+    named = lambda file: command._opened(file, "model", options).name  # noqa: E731
+    assert named("model.json") == "model.json (ptfe-532)" and named("ptfe") == "ptfe"
+    mmbrdf.material("ptfe-532").renamed("mine").save("mine.json")
+    assert named("mine.json") == "mine"
+    mmbrdf.in_published_form(mmbrdf.material("ptfe-532")).save("published.csv")
+    assert named("published.csv") == "published"  # which has no place for a name
 
 
 def test_what_a_picture_is_of_is_not_overwritten(files, capsys):

@@ -17,7 +17,7 @@ import mmbrdf
 
 pytest.importorskip("matplotlib")
 
-from mmbrdf import _report  # noqa: E402
+from mmbrdf import _report, _table_options  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -321,6 +321,17 @@ def test_it_runs_as_a_program(tmp_path):
     assert not (tmp_path / "other.html").exists()
 
 
+def test_the_commands_of_its_pictures_read_the_table_as_it_did(page, tmp_path, program):
+    page[1].save(tmp_path / "d.csv")
+    (tmp_path / "d.csv").write_text((tmp_path / "d.csv").read_text().replace("theta_i_deg", "AOI [x]"))
+    how = ["--columns", "theta_i_deg=AOI [x]", "--frame", "xy", "--skip-incomplete"]
+    done = run_module("ptfe", "d.csv", *how, "-o", "report.md", folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    command = "mmbrdf plot residuals ptfe d.csv --columns 'theta_i_deg=AOI [x]' --skip-incomplete --frame xy -w"
+    for text in ((tmp_path / "report.md").read_text(), program("report", "ptfe", "d.csv", *how)):
+        assert command in text
+
+
 @pytest.mark.parametrize("name", ["$_{$.csv", "纸样.csv", "<i>&amp;.csv"])
 def test_file_names_are_text_whatever_is_in_them(name, tmp_path):
     mmbrdf.in_published_form(mmbrdf.material("ptfe-532")).save(tmp_path / name)
@@ -354,14 +365,14 @@ def test_a_file_that_is_replaced_while_it_is_read_has_no_report(page, tmp_path, 
     model.save(tmp_path / "model.json")
     data.save(tmp_path / "data.csv")
     data[:100].save(tmp_path / "other.csv")
-    read = _report.read_samples
+    read = _table_options.read_samples
 
     def replaced_after(path, **options):
         result = read(path, **options)
         os.replace(tmp_path / "other.csv", tmp_path / "data.csv")
         return result
 
-    monkeypatch.setattr(_report, "read_samples", replaced_after)
+    monkeypatch.setattr(_table_options, "read_samples", replaced_after)
     arguments = [str(tmp_path / name) for name in ("model.json", "data.csv")]
     output = ["-o", str(tmp_path / f"r.{ending}")]
     assert _report.main([*arguments[ending == "html" :], *output]) == 1

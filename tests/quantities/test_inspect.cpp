@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -111,6 +112,85 @@ TEST(Inspect, NamesTheOptionThatMendsAFrame) {
   Samples samples = measured(1);
   each(samples, [](Sample& s) { s.f11 *= 100; });
   EXPECT_EQ(inspect(samples).findings.at(0).option, "");
+}
+
+using Change = std::function<void(Sample&)>;
+
+/// As a table gives them whose matrices are in a frame, with a fault in its numbers.
+Samples given_in(
+    Frame frame, Samples samples, const Change& fault = [](Sample&) {}) {
+  each(samples, [&](Sample& s) {
+    s = in_frame(s, frame);
+    fault(s);
+    s = from_frame(s, frame);
+  });
+  return samples;
+}
+
+/// Intensities of s and p alone.
+void keep_s_and_p(Sample& s) {
+  for (const std::size_t e : {2UL, 3UL, 6UL, 7UL, 8UL, 9UL, 10UL, 11UL, 12UL, 13UL, 14UL, 15UL})
+    s.normalized.elements[e] = std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(Inspect, FindsNothingInCleanMeasurementsOfOtherFrames) {
+  for (unsigned long seed = 0; seed < 12; ++seed) {
+    const Samples samples = measured(300 + 2 * seed, seed % 2 ? "ptfe" : "ptfe-532", seed % 3 ? 0.006 : 0.02);
+    for (const Frame frame : {Frame::sp, Frame::scattering_plane})
+      EXPECT_EQ(found(given_in(frame, samples)), "") << seed << to_string(frame);
+    EXPECT_EQ(found(given_in(Frame::sp, samples, keep_s_and_p)), "") << seed;
+  }
+}
+
+void reverse_in(Sample& s, std::initializer_list<std::size_t> components, bool scattered, bool incident) {
+  Samples one{s};
+  for (const std::size_t component : components) reverse(one, component, scattered, incident);
+  s = one.front();
+}
+
+void turn_azimuths(Sample& s) {
+  for (Direction* d : {&s.geometry.incident, &s.geometry.reflected}) d->phi = -d->phi;
+}
+
+struct PlantedInFrame {
+  const char *evidence, *remedy;
+  Change plant;
+};
+
+const PlantedInFrame faults_of_frames[] = {
+    {"read as S3 of the source reversed", "Change the signs of 13, 23, 33 and 43",
+     [](Sample& s) { reverse_in(s, {2}, false, true); }},
+    {"read as S3 and S4 of the receiver reversed", "does a dial there turn the other way?",
+     [](Sample& s) {
+       reverse_in(s, {2, 3}, true, false);
+     }},
+    {"read as S2 of the receiver reversed", "were s and p exchanged there?",
+     [](Sample& s) { reverse_in(s, {1}, true, false); }},
+    {"azimuths counted the other way", "multiply phi_i and phi_r by -1", turn_azimuths},
+    {"read as arms exchanged", "--columns theta_i_deg=", [](Sample& s) { s.geometry = exchanged(s.geometry); }},
+};
+
+TEST(Inspect, FindsEachFaultOfSignsInTheFrameOfTheTable) {
+  for (const auto& [evidence, remedy, plant] : faults_of_frames)
+    for (const unsigned long seed : {1UL, 3UL}) {
+      const std::vector<Finding> findings = inspect(given_in(Frame::sp, measured(seed), plant)).findings;
+      const std::string text = findings.empty() ? "" : to_string(findings.back());
+      EXPECT_NE(text.find(evidence), std::string::npos) << evidence << ": " << text;
+      EXPECT_NE(text.find(remedy), std::string::npos) << text;
+    }
+}
+
+TEST(Inspect, FindsThatATableIsReadInAnotherFrameThanItsOwn) {
+  const std::array frames{Frame::xy, Frame::sp, Frame::scattering_plane};
+  for (const Frame own : frames)
+    for (const Frame read : frames) {
+      if (own == read) continue;
+      Samples samples = measured(1, "ptfe-532", 0.003);
+      each(samples, [&](Sample& s) { s = from_frame(in_frame(s, own), read); });
+      const std::vector<Finding> findings = inspect(samples).findings;
+      ASSERT_FALSE(findings.empty()) << to_string(own) << " as " << to_string(read);
+      EXPECT_EQ(findings.back().remedy, "--frame " + to_string(own)) << to_string(read);
+    }
 }
 
 TEST(Inspect, FindsMatricesThatCannotExist) {

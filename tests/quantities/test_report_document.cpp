@@ -162,7 +162,8 @@ TEST(ReportDocument, HasSymbolsInPrintButNotInNamesAndCommands) {
   model.provenance["command"] = "mmbrdf fit --columns theta_i_deg=AOI";
   const Json json = document(model);
   const std::string text = all_text(json);
-  for (const char* name : {"theta_i.json at 532 nm", "mmbrdf report theta_i.json", "--columns theta_i_deg=AOI"})
+  for (const char* name :
+       {"theta_i.json (ptfe-532) at 532 nm", "mmbrdf report theta_i.json", "--columns theta_i_deg=AOI"})
     EXPECT_NE(text.find(name), std::string::npos) << name;
   EXPECT_NE(text.find("θᵢ ≤ 75°"), std::string::npos);
   const std::regex ascii(R"(theta_[ir](?!_deg|\.json)|sr\^-1|chi\^2|phi_[ir](?!_deg))");
@@ -221,7 +222,8 @@ TEST(ReportMarkdown, HasAllOfTheDocumentAndNoMarkupOfOthers) {
   model.provenance["remark"] = "<b>|*x*\nnew";
   const Json json = document(model);
   const std::string text = report_markdown(json.dump());
-  EXPECT_TRUE(text.starts_with("# Report on theta\\_i.json\n\n**theta\\_i.json at 532 nm**: directional"));
+  EXPECT_TRUE(text.starts_with(
+      "# Report on theta\\_i.json (ptfe-532)\n\n**theta\\_i.json (ptfe-532) at 532 nm**: directional"));
   EXPECT_NE(text.find("| remark | \\<b>\\|\\*x\\* new |"), std::string::npos);
   for (const Json& heading : of_kind(json, "heading")) {
     EXPECT_NE(text.find("\n## " + heading["text"].get<std::string>() + "\n"), std::string::npos);

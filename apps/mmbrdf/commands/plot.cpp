@@ -21,11 +21,14 @@ constexpr const char* footer =
     "reflectance-against-angle, reflectance-against-wavelength, by-wavelength, uncertainty-parts, anisotropy,\n"
     "coefficient-spectrum, depolarization-map, realizability-map, residuals, directions, suspicious,\n"
     "low-order-residuals or calibration.\n"
-    "mmbrdf plot map --help tells the options.\n"
+    "mmbrdf plot map --help tells the options. --columns, --skip-incomplete, --frame and --convention are of the table "
+    "of\n"
+    "samples, as in mmbrdf fit; --shown-frame is the frame of the picture.\n"
     "\n"
     "Examples:\n"
     "  mmbrdf plot hemisphere ptfe -w 532 -i 60 -o hemisphere.pdf --width 17\n"
     "  mmbrdf plot in-plane-curves sample.json data.csv -w 532 -i 45 -o curves.svg --width 8\n"
+    "  mmbrdf plot residuals sample.json lab.csv --columns theta_i_deg=AOI --frame sp -o residuals.pdf\n"
     "  mmbrdf plot reflectance-factor ptfe -w 443,555,670 --view 0,0 --view 45,180 -o plaque.png";
 
 }  // namespace

@@ -71,7 +71,7 @@ ReportOrigin origin_of(const Options& options, const CommandLine& line, const st
   else
     origin.files.push_back({"model", base_name(options.model), sha256(bytes_of_model)});
   if (options.data.empty()) return origin;
-  origin.data = shell_quoted(data_name(options.data));
+  origin.data = shell_quoted(data_name(options.data)) + table_words(options.table);
   origin.files.push_back({"data", data_name(options.data), sha256(bytes_of_data)});
   return origin;
 }

@@ -12,6 +12,7 @@
 #include <streambuf>
 #include <vector>
 
+#include "command.hpp"
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
@@ -259,6 +260,16 @@ void add_table_options(CLI::App& app, SampleTable& table) {
   add_option(app, "--convention", table.convention, convention_from, "NAME",
              "Signs of their Stokes vectors: germer2017,\ns_first_right, p_first_left, p_first_right ... "
              "[germer2017]");
+}
+
+std::string table_words(const SampleTable& table) {
+  std::string columns, text;
+  for (const auto& [own, theirs] : table.columns) columns += (columns.empty() ? "" : ",") + own + "=" + theirs;
+  if (!columns.empty()) text += " --columns " + shell_quoted(columns);
+  if (table.skip_incomplete) text += " --skip-incomplete";
+  if (table.frame) text += " --frame " + to_string(*table.frame);
+  if (table.convention != SampleTable{}.convention) text += " --convention " + to_string(table.convention);
+  return text;
 }
 
 Option add_model(CLI::App& app, std::string& target, const std::string& name) {

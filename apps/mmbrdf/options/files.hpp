@@ -54,6 +54,9 @@ std::vector<Sample> samples_at(const std::string& path, const std::optional<std:
 /// --columns, --skip-incomplete, --frame, --convention
 void add_table_options(CLI::App& app, SampleTable& table);
 
+/// These options, each after a blank, as one would type them; what is as it is without them is left out.
+std::string table_words(const SampleTable& table);
+
 /// Throws std::invalid_argument if writing `output` would overwrite `input`, under whatever names and links. "-" is
 /// standard input. `what` names the input in the message.
 void require_kept(const std::string& input, const std::string& output, const std::string& what);

@@ -84,7 +84,8 @@ struct PartSelection {
 };
 
 struct Selection {
-  PartSelection f11, other;      ///< other: without candidates, and order 0, where f11 alone was measured
+  /// other: order 0 where the data leave all of its elements unknown at each order, and without candidates of f11 alone
+  PartSelection f11, other;
   std::optional<Orders> orders;  ///< recommended; none if one part has no recommendation
   int powers = 0;
 };

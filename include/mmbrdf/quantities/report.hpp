@@ -5,7 +5,7 @@
 /// The text is one object in one line. Its fields come in this order, and so do those of their rows; a row is an
 /// object, and all rows of a field have the same names:
 ///
-///   title                 "Report on" and the name that the model was called by
+///   title                 "Report on" and shown_name_of() the model
 ///   warnings              sentences, without a full stop; none if there is nothing to be wary of within the fitted range
 ///   notes                 the same of what is only to be noted: beyond that range, between wavelengths, not to be told
 ///   model                 name, basis and fitted range in words, reflectance table if there is one; then what the
@@ -38,7 +38,8 @@
 ///                         wavelength_nm, at (compare)
 ///   chi_squared           row by block, and one of all but 11: block, degrees_of_freedom, chi_squared_per_dof of a fit
 ///                         weighted by the uncertainties of the samples; where not all are known, a sentence
-///   conventions           row by what the samples may be read as: read_as, rms (convention_fits)
+///   conventions           row by what the samples may be read as, first as their file declares: read_as, rms
+///                         (convention_fits)
 ///   reciprocity           row by block: block, rows, more_coefficients, rms, rms_without, F, p (symmetry_tests);
 ///   mirror_symmetry       rows as for reciprocity; rms_without is what is left without the symmetry
 ///   dependence_on_phi_i   rows as for reciprocity, without isotropy; where the source has one azimuth in the samples,
@@ -91,6 +92,10 @@ struct ReportedSamples {
   std::span<const Sample> samples;
 };
 
+/// How reports and pictures name a model that was called `name`: so, and by its own name in brackets where that is another,
+/// "plaque.json (ptfe)". That of its file without the ending is not.
+std::string shown_name_of(const Model& model, const std::string& name);
+
 /// Of the model called `name`, at these wavelengths (micrometres); none given: at known_wavelengths(model). Residuals
 /// and noise are those of the model as it is; chi^2, conventions, symmetries, leverage and outliers are of fits of its
 /// basis to the samples, without weights but for chi^2. `terms` are of all u of reflectances and of the extremes of
@@ -109,7 +114,8 @@ struct ReportOrigin {
   };
   std::string date, software, command;  ///< as they are to be printed; empty ones are left out
   std::vector<File> files{};
-  std::string model = "MODEL", data = "DATA.csv";  ///< in the commands that draw its pictures: words of a shell
+  std::string model = "MODEL";    ///< in the commands that draw its pictures: words of a shell
+  std::string data = "DATA.csv";  ///< likewise, with the options with which its table was read
 };
 
 struct ReportStyle {

@@ -32,6 +32,7 @@ struct Sample {
   /// Only of a sample that loses elements on the way to xy: fits take it as it was measured where their rows can be turned
   /// (rows_turn() of fit.hpp).
   std::shared_ptr<const AsMeasured> as_measured{};
+  Frame given_in = Frame::xy;  ///< from which its elements were turned to xy: faults of their signs are in this frame
 };
 
 /// The sample with its elements in the frame in which they were measured, if that is known, else in xy: to be looked at, not

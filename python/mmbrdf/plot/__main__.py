@@ -2,7 +2,8 @@
 """Draws a picture of mmbrdf.plot: python3 -m mmbrdf.plot KIND MODEL [DATA.csv] -o FILE.pdf
 
 KIND is the name of a function of mmbrdf.plot, MODEL a built-in name, a model or samples; what each kind takes and shows is in
-help(mmbrdf.plot.map) and the like.
+help(mmbrdf.plot.map) and the like. --columns, --skip-incomplete, --frame and --convention say of samples what their table does
+not, as in all commands; --shown-frame is the frame of the picture.
 """
 
 import argparse
@@ -13,8 +14,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from .. import Dataset, Model, load, load_instrument, material, materials, plot
-from .._report import _require_kept, write
+from .. import Dataset, Model, _table_options, load_instrument, material, materials, plot
+from .._report import _require_kept, titled, write
 
 FORMATS = (".pdf", ".png", ".svg")
 
@@ -69,7 +70,7 @@ def _parser(prog: str) -> argparse.ArgumentParser:
     add("-w", "--wavelength", dest="wavelength_nm", metavar="NM[,NM...]", type=_list, nargs="+", help="wavelengths")
     add("-i", "--theta-i", dest="theta_i_deg", metavar="DEG[,DEG...]", type=_list, nargs="+", help="incidence [45]")
     add("--phi-i", dest="phi_i_deg", metavar="DEG", type=float, help="azimuth of the source [180]")
-    add("--frame", choices=("xy", "sp", "scattering_plane"), help="of the matrices")
+    add("--shown-frame", dest="frame", choices=_table_options.FRAMES, help="of the matrices in the picture [xy]")
     add("--quantity", metavar="NAME", help="of a map or of uncertainty-parts: 11, 22, depolarization, dhr, ...")
     add("--stokes", metavar="S1,S2,S3,S4", help="incident light, of a map of what becomes of it")
     add("--show", choices=("value", "u", "value / u"), help="what of it a map shows")
@@ -87,6 +88,7 @@ def _parser(prog: str) -> argparse.ArgumentParser:
     add("--power", metavar="N", type=int, help="of the wavelength, of a coefficient-spectrum [0]")
     add("--film", metavar="INDEX,UM,N,K", help="of the wafers of a calibration")
     add("--dial-sense", type=int, choices=(1, -1), help="of the polarizer of a calibration")
+    _table_options.add_to(parser)
     add("--width", dest="width_cm", metavar="CM", type=float, help="of the figure: 8 and 17 are columns of a journal")
     add("--dpi", metavar="N", type=float, default=300, help="dots per inch of a PNG [300]")
     return parser
@@ -152,23 +154,35 @@ def _converted(name: str, value: Any, kind: str) -> Any:
     return value
 
 
-def _opened(name: str, kind: str) -> Any:
+def _opened(name: str, kind: str, options: argparse.Namespace) -> Any:
     if kind == "references":
         return name
     if kind == "instrument":
         return load_instrument(name)
-    thing = material(name) if name in materials() else load(name)
+    thing = material(name) if name in materials() else _table_options.opened(name, options)
     wanted = {"any": (Model, Dataset), "data": (Dataset,)}.get(kind, (Model,))
     if not isinstance(thing, wanted):
         raise ValueError(f"{name}: expected {'samples' if kind == 'data' else 'a model'}")
-    return thing
+    return titled(thing, Path(name).name) if isinstance(thing, Model) and name not in materials() else thing
 
 
-def _drawn(options: argparse.Namespace, asked: dict[str, Any]) -> Any:
+def _note(options: argparse.Namespace, things: Sequence[Any], who: str) -> None:
+    """How tables were understood. Raises ValueError where options are of a table, and there is none."""
+    tables = {name: thing for name, thing in zip(options.sources, things) if isinstance(thing, Dataset)}
+    if not tables and (flags := _table_options.given(options)):
+        shown = ", --shown-frame that of the picture" if "--frame" in flags else ""
+        raise ValueError(f"{', '.join(flags)}: of a table of samples{shown}, and {options.sources[0]} is none")
+    for name, data in tables.items():
+        if data.read_as:
+            print(f"{who}: note: {Path(name).name}: {data.read_as}", file=sys.stderr)
+
+
+def _drawn(options: argparse.Namespace, asked: dict[str, Any], who: str) -> Any:
     """The figure that was asked for."""
     function = getattr(plot, options.kind.replace("-", "_"))
     needed, more = _SOURCES[options.kind]
-    things = [_opened(name, kind) for name, kind in zip(options.sources, needed + more)]
+    things = [_opened(name, kind, options) for name, kind in zip(options.sources, needed + more)]
+    _note(options, things, who)
     arguments = {name: _converted(name, value, options.kind) for name, value in asked.items()}
     arguments.update(zip(more, things[len(needed) :]))
     names = list(inspect.signature(function).parameters)[: len(needed)]
@@ -202,15 +216,17 @@ def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.
             f"{options.kind} takes {' and '.join(needed)}" + "".join(f", and may take {name}" for name in more)
         )
     known = inspect.signature(getattr(plot, options.kind.replace("-", "_"))).parameters
-    settings = {name: value for name, value in vars(options).items() if value is not None}
-    asked = {name: value for name, value in settings.items() if name not in ("kind", "sources", "output", "dpi")}
+    own = ("kind", "sources", "output", "dpi", *_table_options.FLAGS)
+    asked = {name: value for name, value in vars(options).items() if value is not None and name not in own}
     for name in asked:
         if name not in known:
             flag = next(f for a in parser._actions if a.dest == name for f in a.option_strings if f.startswith("--"))
             parser.error(f"{options.kind} takes no {flag}")
     try:
         _require_kept(options.output, [name for name in options.sources if name not in materials()])
-        _saved(_drawn(options, asked), options.output, options.dpi)
+        _saved(
+            _drawn(options, asked, prog.split()[0] if prog.startswith("mmbrdf") else prog), options.output, options.dpi
+        )
     except (OSError, ValueError, TypeError) as error:
         print(f"{parser.prog}: {error}", file=sys.stderr)
         return 1

@@ -15,7 +15,7 @@ import mmbrdf
 from .._arguments import number, own_wavelength, require, require_measured, several_models, unmasked
 from . import disc, labels, sizes
 from .colours import COMPONENTS, series
-from .scalars import in_frame, sample_uncertainty, scalar
+from .scalars import measured_in, sample_uncertainty, scalar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,7 +138,7 @@ def _measured_points(data, wavelength_nm, theta_i_deg: float, azimuth: float | N
         )
     chosen = data[near]
     forward = np.cos(np.radians(chosen.phi_r_deg - chosen.phi_i_deg)) <= 0
-    measured = mmbrdf.co_and_cross_polarized(in_frame(chosen.mueller, chosen.geometry, "sp"))
+    measured = mmbrdf.co_and_cross_polarized(measured_in(chosen, "sp"))
     u = None
     if chosen.uncertainty is not None:
         u = {name: sample_uncertainty(scalar(f"f_{name}"), chosen) for name in COMPONENTS}

@@ -14,7 +14,7 @@ import mmbrdf
 
 from .._arguments import number, own_wavelength, require
 from .colours import HATCH, HATCH_COLOUR, UNMEASURED
-from .scalars import in_frame
+from .scalars import measured_in
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,7 +93,7 @@ def matrices(source, wavelength_nm, theta_i_deg: float, phi_i_deg: float, frame:
     """Mueller BRDF in sr^-1 over the disc, of a model (samples x samples cells) or of a data set (its own cells)."""
     if isinstance(source, mmbrdf.Dataset):
         data = samples_at(source, wavelength_nm, theta_i_deg, phi_i_deg)
-        return sample_cells(data, in_frame(data.mueller, data.geometry, frame))
+        return sample_cells(data, measured_in(data, frame))
     return over_disc(
         samples,
         lambda theta_r_deg, phi_r_deg: evaluate(

@@ -13,7 +13,7 @@ import mmbrdf
 
 from .._arguments import require, require_measured
 from . import colours, disc, labels, sizes
-from .scalars import SYMBOLS, Asked, Scalar, in_frame, model_uncertainty, ratio, sample_uncertainty, scalar
+from .scalars import SYMBOLS, Asked, Scalar, measured_in, model_uncertainty, ratio, sample_uncertainty, scalar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -179,7 +179,7 @@ def shown(asked: Scalar, source, minus, show: str, wavelength_nm, view: disc.Vie
         label = f"u({symbol}){slash}{unit}" if show == "u" else f"{symbol} / u"
     if measured:
         data = disc.samples_at(source, wavelength_nm, view.theta_i_deg, view.phi_i_deg)
-        where, mueller = data.geometry, in_frame(data.mueller, data.geometry, asked.frame)
+        where, mueller = data.geometry, measured_in(data, asked.frame)
         found = _values(asked, mueller, data, minus, show, wavelength_nm, where, terms)
         return Shown(disc.sample_cells(data, found), label, True)
 

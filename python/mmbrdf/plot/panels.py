@@ -15,7 +15,7 @@ import mmbrdf
 from .._arguments import require
 from . import disc, labels, sizes
 from .maps import Scale, chosen_scale, named, residual_scale
-from .scalars import ELEMENTS, in_frame, model_uncertainty, ratio, sample_uncertainty, scalar
+from .scalars import ELEMENTS, measured_in, model_uncertainty, ratio, sample_uncertainty, scalar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
@@ -144,7 +144,7 @@ def residual_map(
     _require_positive(f11_limit=f11_limit, limit=limit)
     wavelength_nm, theta_i_deg = disc.question(data, wavelength_nm, theta_i_deg)
     chosen = disc.samples_at(data, wavelength_nm, theta_i_deg, phi_i_deg)
-    measured = in_frame(chosen.mueller, chosen.geometry, frame)
+    measured = measured_in(chosen, frame)
     predicted = disc.evaluate(model, wavelength_nm, chosen.geometry, frame)
     values = disc.normalized(measured) - disc.normalized(predicted)
     if over_u:

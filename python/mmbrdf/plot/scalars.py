@@ -161,6 +161,16 @@ def sample_uncertainty(asked: Scalar, data: Dataset) -> NDArray[np.float64]:
     return np.sqrt(np.where(slopes != 0, (slopes * data.uncertainty) ** 2, 0).sum(axis=(1, 2)))
 
 
+def measured_in(data: Dataset, frame: str) -> NDArray[np.float64]:
+    """Matrices of samples in a frame; as they were measured, if that was in this frame."""
+    mueller = in_frame(data.mueller, data.geometry, frame)
+    own = data.frame == frame
+    if frame != "xy" and own.any():
+        f11 = data.f11[own, None, None]
+        mueller[own] = f11 * data.as_measured[own]
+    return mueller
+
+
 def in_frame(mueller: NDArray[np.float64], where: Sequence[Any], frame: str) -> NDArray[np.float64]:
     """Matrices of the frame xy in another."""
     return mueller if frame == "xy" else mmbrdf.change_frame(mueller, *where, "xy", frame)
