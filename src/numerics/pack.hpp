@@ -178,6 +178,17 @@ MMBRDF_INLINE void keep_in_register([[maybe_unused]] Pack<T>& a) {
 #endif
 }
 
+/// a, where the compilers of browsers have to have it before they go on: they would load all that comes, and have no
+/// registers for it.
+template <class T>
+MMBRDF_INLINE Pack<T> finished(Pack<T> a) {
+#if defined(__wasm_simd128__)
+  volatile typename Pack<T>::Values in_memory = a.v;
+  a.v = in_memory;
+#endif
+  return a;
+}
+
 template <class T>
 MMBRDF_INLINE Pack<T> load(const T* from) {
   Pack<T> r;
