@@ -153,8 +153,8 @@ class Question {
       own_ = std::move(own);
       model.coefficients = own_.empty() ? from.coefficients : own_.data();
     } else {
-      const auto count = static_cast<std::size_t>((from.powers + 1) * from.count);
-      for (std::size_t i = 0; i < count; ++i) own_.push_back(static_cast<T>(from.coefficients[i]));
+      own_.resize(static_cast<std::size_t>((from.powers + 1) * from.count));
+      for (std::size_t i = 0; i < own_.size(); ++i) own_[i] = static_cast<T>(from.coefficients[i]);
       if (!std::all_of(own_.begin(), own_.end(), [](T a) { return std::isfinite(a); }) || !std::isfinite(model.scale))
         throw std::invalid_argument("a coefficient is too large for single precision");
       model.coefficients = own_.data();

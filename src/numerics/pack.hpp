@@ -34,7 +34,8 @@ inline bool runs_here() {
 }
 
 /// The vector extension of gcc and clang has all operators, but neither fma nor sqrt: there a loop over the lanes,
-/// which both compilers turn into one instruction as long as the vector is as wide as the register.
+/// which both compilers turn into one instruction as long as the vector is as wide as the register; not so of sqrt for
+/// WebAssembly.
 template <class T>
 struct Pack {
   static constexpr int width = vector_bytes / static_cast<int>(sizeof(T));
@@ -114,9 +115,16 @@ MMBRDF_INLINE Pack<T> fma(Pack<T> a, Pack<T> b, Pack<T> c) {
 }
 template <class T>
 MMBRDF_INLINE Pack<T> sqrt(Pack<T> a) {
+#if defined(__wasm_simd128__)
+  if constexpr (sizeof(T) == sizeof(double))
+    return __builtin_wasm_sqrt_f64x2(a.v);
+  else
+    return __builtin_wasm_sqrt_f32x4(a.v);
+#else
   Pack<T> r;
   for (int i = 0; i < Pack<T>::width; ++i) r.v[i] = sqrt(a.v[i]);
   return r;
+#endif
 }
 #endif
 /// c − a b
@@ -168,6 +176,17 @@ MMBRDF_INLINE void keep_in_register([[maybe_unused]] Pack<T>& a) {
 #if defined(__AVX512F__)
   asm("" : "+v"(a.v));
 #endif
+}
+
+/// a, where the compilers of browsers have to have it before they go on: they would load all that comes, and have no
+/// registers for it.
+template <class T>
+MMBRDF_INLINE Pack<T> finished(Pack<T> a) {
+#if defined(__wasm_simd128__)
+  volatile typename Pack<T>::Values in_memory = a.v;
+  a.v = in_memory;
+#endif
+  return a;
 }
 
 template <class T>

@@ -7,6 +7,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "binding.hpp"
@@ -23,7 +24,25 @@ namespace {
 
 struct Samples {
   std::vector<Sample> all;
+  std::vector<double> places;  // of each: wavelength in nanometres, four angles in degrees
   std::string understood;
+
+  void add(const Sample& sample) {
+    all.push_back(sample);
+    const auto& [incident, reflected] = sample.geometry;
+    places.push_back(in_nanometres(sample.wavelength));
+    for (const double angle : {incident.theta, incident.phi, reflected.theta, reflected.phi})
+      places.push_back(in_degrees(angle));
+  }
+};
+
+/// A table while it is read.
+struct Reading {
+  std::istringstream in;
+  SampleReader reader;
+  Samples samples;
+
+  Reading(const std::string& text, const char* path) : in(text), reader(in, path) {}
 };
 
 /// Element 11 of f11, the others as they are or divided by it; unknown ones are NaN, not 0.
@@ -46,16 +65,39 @@ EMSCRIPTEN_KEEPALIVE int samples_are_in(const char* text, std::size_t length) {
   });
 }
 
-EMSCRIPTEN_KEEPALIVE Samples* samples_read(const char* text, std::size_t length, const char* path) {
-  return guarded([&] {
-    std::istringstream in(std::string(text, length));
-    SampleReader reader(in, path);
-    Samples samples;
-    for (Sample sample; reader.next(sample);) samples.all.push_back(sample);
-    samples.understood = reader.understood();
-    return new Samples(std::move(samples));
+EMSCRIPTEN_KEEPALIVE Reading* reading_begun(const char* text, std::size_t length, const char* path) {
+  return guarded([&] { return new Reading(std::string(text, length), path); });
+}
+
+enum : int { failed, goes_on, at_end };
+
+/// At most so many rows more.
+EMSCRIPTEN_KEEPALIVE int reading_continued(Reading* reading, std::size_t rows) {
+  return guarded([&]() -> int {
+    for (Sample sample; rows > 0; --rows) {
+      if (!reading->reader.next(sample)) return at_end;
+      reading->samples.add(sample);
+    }
+    return goes_on;
   });
 }
+
+/// Bytes that were read. Asked of the buffer: at the end the stream has none.
+EMSCRIPTEN_KEEPALIVE double reading_position(Reading* reading) {
+  return static_cast<double>(reading->in.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in));
+}
+
+EMSCRIPTEN_KEEPALIVE std::size_t reading_count(const Reading* reading) { return reading->samples.all.size(); }
+
+/// What was read, which the reading then has no more.
+EMSCRIPTEN_KEEPALIVE Samples* reading_ended(Reading* reading) {
+  return guarded([&] {
+    reading->samples.understood = reading->reader.understood();
+    return new Samples(std::move(reading->samples));
+  });
+}
+
+EMSCRIPTEN_KEEPALIVE void free_reading(Reading* reading) { delete reading; }
 
 EMSCRIPTEN_KEEPALIVE void free_samples(Samples* samples) { delete samples; }
 
@@ -73,14 +115,7 @@ EMSCRIPTEN_KEEPALIVE const char* describe_samples(const Samples* samples) {
 }
 
 /// Wavelength in nanometres and four angles in degrees of each.
-EMSCRIPTEN_KEEPALIVE void places_of_samples(const Samples* samples, double* out) {
-  for (const Sample& sample : samples->all) {
-    const auto& [incident, reflected] = sample.geometry;
-    *out++ = in_nanometres(sample.wavelength);
-    for (const double angle : {incident.theta, incident.phi, reflected.theta, reflected.phi})
-      *out++ = in_degrees(angle);
-  }
-}
+EMSCRIPTEN_KEEPALIVE const double* places_of_samples(const Samples* samples) { return samples->places.data(); }
 
 /// Of those with these numbers, counted from 0.
 EMSCRIPTEN_KEEPALIVE int elements_of_samples(const Samples* samples, const std::uint32_t* which, std::size_t count,

@@ -47,12 +47,19 @@ class Hemisphere {
  private:
   std::size_t pixels_;
   bool lambert_;
+  void evaluate_elements(const PreparedIncidence& at, Frame frame, StokesConvention convention, bool divided);
+
+  /// Directions that are side by side in a row of the tile.
+  struct Row {
+    std::size_t first, count;
+  };
+  std::vector<Row> rows_;
   std::vector<float> x_, y_, z_, values_;
   std::vector<std::uint32_t> at_;
-  std::vector<std::uint32_t> cell_;    // of each direction
-  std::vector<std::uint8_t> striped_;  // of each direction: whether a stripe would go through it
-  std::vector<Direction> cells_;       // few directions: range is asked of them alone
-  std::vector<std::uint8_t> outside_;  // of each cell
+  std::vector<std::uint32_t> cell_;     // of each direction
+  std::vector<std::uint16_t> stripes_;  // of each direction: what is added to the number of its colour beyond the range
+  std::vector<Direction> cells_;        // few directions: range is asked of them alone
+  std::vector<std::uint16_t> outside_;  // of each cell: all bits, or none
   std::array<float, 32> limits_{};
   std::array<std::uint32_t, 1025> colors_{};
   std::vector<std::uint32_t> image_;

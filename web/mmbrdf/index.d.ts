@@ -172,6 +172,23 @@ export interface Samples {
   free(): void;
 }
 
+/** A table of samples while it is read, some rows at a time, between which a page goes on. */
+export interface SampleReader {
+  /** Samples read so far. */
+  readonly count: number;
+  /** Of the file, from 0 to 1. */
+  readonly share: number;
+
+  /** At most so many rows more; whether there may be others. Throws for a row that is wrong. */
+  read(rows: number): boolean;
+
+  /** All of the table, the rows that are left as well; frees the reader. */
+  samples(): Samples;
+
+  /** Gives the memory back; it cannot be used after that. */
+  free(): void;
+}
+
 /**
  * Pictures of the sixteen elements over the hemisphere of reflected directions. In each tile is a disc, x to the right
  * and y upwards. What `values`, `limits`, `colors` and `image` return are views into the memory of the module, not
@@ -229,6 +246,9 @@ export interface Mmbrdf {
 
   /** Samples from the contents of a file, otherwise as {@link model}. */
   samples(contents: string | ArrayBuffer | Uint8Array, path: string): Samples;
+
+  /** The same in parts. Throws for a header that is wrong. */
+  sampleReader(contents: string | ArrayBuffer | Uint8Array, path: string): SampleReader;
 
   /** Tiles of 8 to 2048 pixels; in direction cosines, or in the projection that keeps solid angles. */
   hemisphere(pixels: number, options?: { projection?: "projected" | "lambert" }): Hemisphere;

@@ -2,7 +2,7 @@
 // Types and contracts are in index.d.ts.
 import { Calls, stringOf } from "./calls.js";
 import instantiate from "./dist/mmbrdf_module.mjs";
-import { Samples } from "./samples.js";
+import { SampleReader } from "./samples.js";
 
 /** Four angles for each geometry, as one list of numbers. */
 function angles(geometries) {
@@ -267,9 +267,13 @@ class Mmbrdf {
   }
 
   samples(contents, path) {
+    return this.sampleReader(contents, path).samples();
+  }
+
+  sampleReader(contents, path) {
     const { module } = this.#calls;
     return this.#calls.withTexts([[contents, "contents"], [stringOf(path, "path"), "path"]], (address, length, name) =>
-      new Samples(this.#calls, this.#calls.checked(module._samples_read(address, length, name)), path),
+      new SampleReader(this.#calls, this.#calls.checked(module._reading_begun(address, length, name)), length, path),
     );
   }
 

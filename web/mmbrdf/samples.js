@@ -17,11 +17,7 @@ export class Samples {
   }
 
   get places() {
-    const calls = this.#calls;
-    return calls.with([40 * this.count], (out) => {
-      calls.module._places_of_samples(this.#address(), out);
-      return calls.numbers(out, 5 * this.count);
-    });
+    return this.#calls.numbers(this.#calls.module._places_of_samples(this.#address()), 5 * this.count);
   }
 
   /** Memory for numbers of samples and for results of so many bytes each. */
@@ -60,5 +56,53 @@ export class Samples {
   free() {
     if (this.#samples) this.#calls.module._free_samples(this.#samples);
     this.#samples = 0;
+  }
+}
+
+export class SampleReader {
+  #calls;
+  #reading;
+  #length;
+  #name;
+  #ended = false;
+
+  constructor(calls, reading, length, name) {
+    this.#calls = calls;
+    this.#reading = reading;
+    this.#length = length;
+    this.#name = name;
+  }
+
+  #address() {
+    if (!this.#reading) throw new Error(`the reader of '${this.#name}' was freed`);
+    return this.#reading;
+  }
+
+  get count() {
+    return this.#calls.module._reading_count(this.#address());
+  }
+
+  get share() {
+    return this.#calls.module._reading_position(this.#address()) / this.#length;
+  }
+
+  read(rows) {
+    const address = this.#address();
+    if (!this.#ended) this.#ended = this.#calls.checked(this.#calls.module._reading_continued(address, rows)) === 2;
+    return !this.#ended;
+  }
+
+  samples() {
+    try {
+      while (this.read(10000));
+      return new Samples(this.#calls, this.#calls.checked(this.#calls.module._reading_ended(this.#address())), this.#name);
+    } finally {
+      this.free();
+    }
+  }
+
+  free() {
+    if (this.#reading) this.#calls.module._free_reading(this.#reading);
+    this.#reading = 0;
   }
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "standard_library.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 
 // The C library below knows one locale, and reads and writes doubles exactly.
@@ -15,6 +18,48 @@ bool begins_as_number(const char* first, const char* last) {
   if (first != last && *first == '-') ++first;
   if (first == last || *first == '+' || *first == '-') return false;
   return *first == '.' || std::isalnum(static_cast<unsigned char>(*first)) != 0;
+}
+
+__extension__ using Wide = unsigned __int128;
+
+constexpr int most_digits = 19;  // of a decimal number in 64 bits
+constexpr auto powers_of_ten = [] {
+  std::array<std::uint64_t, most_digits + 1> powers{1};
+  for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
+  return powers;
+}();
+
+/// digits / 10^places, rounded once: the quotient has more than 62 bits, and the last says whether there is a rest.
+double divided(std::uint64_t digits, int places) {
+  const std::uint64_t power = powers_of_ten[static_cast<std::size_t>(places)];
+  const int shift = 64 + __builtin_clzll(digits);
+  const Wide dividend = Wide(digits) << shift, quotient = dividend / power;
+  return std::ldexp(static_cast<double>(quotient | (quotient * power != dividend)), -shift);
+}
+
+/// Decimal digits with a point at most, as nearly all numbers of tables are; nothing for other text, or where they are more
+/// than 64 bits hold. strtod, in numbers of 128 bits without a processor for them, takes many times as long.
+std::optional<double> plain_decimal(const char* first, const char* last) {
+  const bool negative = first != last && *first == '-';
+  if (negative) ++first;
+  std::uint64_t digits = 0;
+  int significant = 0, behind_point = 0;
+  bool any = false, point = false;
+  for (; first != last; ++first) {
+    if (*first == '.' && !point) {
+      point = true;
+      continue;
+    }
+    if (*first < '0' || *first > '9') return {};
+    any = true;
+    behind_point += point;
+    if (digits != 0 || *first != '0') ++significant;
+    if (significant > most_digits || behind_point > most_digits) return {};
+    digits = 10 * digits + static_cast<std::uint64_t>(*first - '0');
+  }
+  if (!any) return {};
+  const double value = digits == 0 ? 0 : divided(digits, behind_point);
+  return negative ? -value : value;
 }
 
 std::to_chars_result put(char* first, char* last, const std::string& text) {
@@ -50,6 +95,10 @@ std::string without_exponent(const std::string& scientific, double value) {
 namespace std {
 
 from_chars_result from_chars(const char* first, const char* last, double& value) {
+  if (const optional<double> plain = plain_decimal(first, last)) {
+    value = *plain;
+    return {last, errc()};
+  }
   if (!begins_as_number(first, last)) return {first, errc::invalid_argument};
   const string text(first, last);
   const std::size_t x = text.find_first_of("xX");  // of a hexadecimal number the 0 alone

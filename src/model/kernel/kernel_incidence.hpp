@@ -30,13 +30,13 @@ struct Harmonics {
     const R low = fma(of(0, 2), tt, fma(of(0, 1), t, of(0, 0)));
     const R middle = fma(of(2, 0), ww.re, fma(of(1, 1), wt.re, of(1, 0) * w.re));
     const R high = fma(of(4, 0), wwww.re, fma(of(3, 0), www.re, of(2, 1) * wwt.re));
-    return low + (middle + high);
+    return finished(low + (middle + high));
   }
   template <class C>
   MMBRDF_INLINE R sines(const C& a, int first) const {
     const auto of = [&](int k, int power) { return a(first + odd_sines.begin[k] + power); };
     const R low = fma(of(2, 0), ww.im, fma(of(1, 1), wt.im, of(1, 0) * w.im));
-    return low + fma(of(4, 0), wwww.im, fma(of(3, 0), www.im, of(2, 1) * wwt.im));
+    return finished(low + fma(of(4, 0), wwww.im, fma(of(3, 0), www.im, of(2, 1) * wwt.im)));
   }
   template <class C>
   MMBRDF_INLINE R f11(const C& a, int first) const {
@@ -48,7 +48,7 @@ struct Harmonics {
     const R w7 = fnma(wwww.im, www.im, wwww.re * www.re);
     const R low = fma(quadratic(2), ww.re, fma(cubic(1), w.re, cubic(0)));
     const R middle = fma(linear(5), w5, fma(linear(4), wwww.re, quadratic(3) * www.re));
-    return low + fma(of(7, 0), w7, fma(of(6, 0), w6, middle));
+    return finished(low + fma(of(7, 0), w7, fma(of(6, 0), w6, middle)));
   }
 };
 

@@ -49,15 +49,23 @@ export class Measured {
     this.#places = samples.places;
     for (let i = 0; i < samples.count; ++i) for (const k of [5 * i + 1, 5 * i + 3]) this.#places.set(folded(this.#places[k], this.#places[k + 1]), k);
     const found = new Map<string, Incidence>();
+    let known: Incidence | undefined;
     for (let i = 0; i < samples.count; ++i) {
-      const { wavelength, geometry } = this.place(i);
-      const [thetaI, phiI] = [geometry.thetaI, geometry.phiI!].map((angle) => Number(angle.toFixed(6)));
-      const key = [wavelength.toFixed(3), thetaI, phiI].join();
-      const known = found.get(key) ?? { wavelength: Number(wavelength.toFixed(4)), thetaI, phiI, count: 0 };
+      const asBefore = [0, 1, 2].every((k) => this.#places[5 * i + k] === this.#places[5 * i - 5 + k]);
+      if (!known || !asBefore) known = this.#incidence(i, found);
       known.count += 1;
-      found.set(key, known);
     }
     this.incidences = [...found.values()].sort((a, b) => a.wavelength - b.wavelength || a.thetaI - b.thetaI || a.phiI - b.phiI);
+  }
+
+  /** Of a sample; a new one is added. */
+  #incidence(i: number, found: Map<string, Incidence>): Incidence {
+    const [wavelength, thetaI, phiI] = this.#places.subarray(5 * i, 5 * i + 3);
+    const key = [1e3 * wavelength, 1e6 * thetaI, 1e6 * phiI].map(Math.round).join();
+    const digits = (value: number, places: number) => Number(value.toFixed(places));
+    const known = found.get(key) ?? { wavelength: digits(wavelength, 4), thetaI: digits(thetaI, 6), phiI: digits(phiI, 6), count: 0 };
+    found.set(key, known);
+    return known;
   }
 
   place(i: number): { wavelength: number; geometry: Geometry } {

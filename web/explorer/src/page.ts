@@ -11,6 +11,7 @@ import { element } from "./dom";
 import { Hemispheres } from "./hemispheres";
 import { type Incidence, Measured, type Near, nothing } from "./measured";
 import { Shelf, Shown } from "./models";
+import { mostBytes, readInParts, tooLarge } from "./reading";
 import { Residuals } from "./residuals";
 import { type Along, along } from "./scan";
 import { type Asked, choices, fromLink, start, type State, toLink, understood } from "./state";
@@ -112,6 +113,7 @@ export class Page {
 
   /** Returns what is wrong with it. */
   async #readOne(file: File): Promise<string> {
+    if (file.size > mostBytes) return tooLarge(file);
     element("reading").textContent = `Reading ${file.name} …`;
     let contents: Uint8Array;
     try {
@@ -120,7 +122,7 @@ export class Page {
       return `${file.name}: cannot be read: is it a file, and still there?`;
     }
     try {
-      if (this.mmbrdf.holdsSamples(contents)) this.#measure(contents, file.name);
+      if (this.mmbrdf.holdsSamples(contents)) await this.#measure(contents, file.name);
       else {
         const name = this.#shelf.add(contents, file.name);
         this.#controls.offer(name);
@@ -133,8 +135,8 @@ export class Page {
   }
 
   /** Samples, and the nearest light at which there are some. */
-  #measure(contents: Uint8Array, name: string) {
-    const samples = this.mmbrdf.samples(contents, name);
+  async #measure(contents: Uint8Array, name: string) {
+    const samples = await readInParts(this.mmbrdf.sampleReader(contents, name), name);
     this.#measured?.samples.free();
     this.#measured = new Measured(samples);
     this.#trouble("");

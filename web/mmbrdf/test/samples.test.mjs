@@ -175,3 +175,45 @@ test("a difference of hemispheres has the differences of their values, and the r
   assert.throws(() => second.subtract(mmbrdf.hemisphere(32, { projection: "lambert" })), /the same projection/);
   assert.throws(() => second.subtract({}), { message: "subtract() of a hemisphere takes another, of the same load()" });
 });
+
+test("a number of a table is the double that is nearest to its text", () => {
+  let state = 7;
+  const random = () => (state = (1103515245 * state + 12345) % 2147483648) / 2147483648;
+  const digits = (count) => [...Array(count)].map(() => Math.floor(10 * random())).join("");
+  const texts = ["0", "-0", "1", ".5", "5.", "9007199254740993", "0.30000000000000004", "9999999999999999999", "1e22", "1E-5", "-2.5e-300", "1".repeat(25)];
+  for (const places of [1, 6, 15, 16, 17, 18, 19, 20, 25])
+    for (let i = 0; i < 200; ++i) texts.push(`${i % 2 ? "-" : ""}${i % 3 ? "0" : digits(1)}.${i % 5 ? "" : "000"}${digits(places)}`);
+  const rows = texts.map((text) => `532,40,20,30,200,0.25,${text}\n`);
+  const samples = mmbrdf.samples([[...head, "f11", "m12"].join(","), "\n", ...rows].join(""), "numbers.csv");
+  const { values } = samples.elements(texts.map((_, i) => i), { normalized: true });
+  texts.forEach((text, i) => assert.ok(Object.is(values[16 * i + 1], Number(text)), `${text} is ${values[16 * i + 1]}`));
+});
+
+test("a table that is read in parts is what it is at once, and says how far it is", { skip: without_program }, () => {
+  const { samples, contents, all } = simulated();
+  const reader = mmbrdf.sampleReader(contents, "samples.csv");
+  assert.equal(reader.count, 0);
+  const begun = reader.share;
+  assert.ok(begun > 0 && begun < 0.1, `${begun} is read with the header`);
+  assert.equal(reader.read(30), true);
+  assert.equal(reader.count, 30);
+  assert.ok(Math.abs(reader.share - 0.75) < 0.03, `${reader.share}`); // of 40 rows
+  assert.equal(reader.read(30), false);
+  assert.equal(reader.share, 1);
+  const parts = reader.samples();
+  assert.deepEqual(parts.places, samples.places);
+  assert.deepEqual(parts.elements(all), samples.elements(all));
+  for (const use of [() => reader.count, () => reader.share, () => reader.read(1), () => reader.samples()])
+    assert.throws(use, { message: "the reader of 'samples.csv' was freed" });
+});
+
+test("a row that is wrong is refused where it is, when it is read", () => {
+  const contents = `${[...head, "f11"].join(",")}\n${"532,40,20,30,200,0.25\n".repeat(5)}532,40,20,30,200,x\n`;
+  const reader = mmbrdf.sampleReader(contents, "samples.csv");
+  assert.equal(reader.read(5), true);
+  const line = "samples.csv:7: f11: 'x' is not a number";
+  assert.throws(() => reader.read(1), { message: line });
+  reader.free();
+  assert.throws(() => mmbrdf.samples(contents, "samples.csv"), { message: line });
+  assert.throws(() => mmbrdf.sampleReader("532,1\n", "samples.csv"), /^Error: samples\.csv:1: no header line/);
+});

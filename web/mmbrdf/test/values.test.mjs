@@ -127,24 +127,34 @@ test("a hemisphere has the matrices of its directions, to single precision", () 
     }
 });
 
-test("an image has the colours of its values, stripes beyond the fitted range, and nothing beside the discs", () => {
-  const hemisphere = mmbrdf.hemisphere(64);
+test("an image has the colours of its values, stripes beyond the fitted range, a colour for NaN, and nothing beside the discs", () => {
+  const pixels = 61; // rows that are no multiple of what is done at once
+  const hemisphere = mmbrdf.hemisphere(pixels);
   hemisphere.evaluate(mmbrdf.material("ptfe").at(532), 60, 180);
   hemisphere.colors.forEach((_, i, colors) => (colors[i] = 0xff000000 + i));
   const extremes = hemisphere.extremes();
   hemisphere.limits.set(extremes);
+  const { count, positions } = hemisphere;
+  const values = hemisphere.values.slice();
+  for (let e = 0; e < 16; ++e) {
+    const column = values.subarray(e * count, (e + 1) * count);
+    assert.deepEqual([...extremes.subarray(2 * e, 2 * e + 2)], [Math.min(...column), Math.max(...column)]);
+  }
+  const isUnknown = (i) => i % count === 100;
+  hemisphere.values.forEach((_, i, all) => isUnknown(i) && (all[i] = NaN));
   hemisphere.paint();
   const image = new Uint32Array(hemisphere.image.slice().buffer);
-  const { count, positions, values } = hemisphere;
   assert.equal(image.filter((pixel) => pixel !== 0).length, 16 * count);
   let striped = 0;
-  for (let i = 0; i < count; ++i) {
-    const color = image[positions[i]] - 0xff000000;
-    const share = (values[i] - extremes[0]) / (extremes[1] - extremes[0]);
-    assert.ok(Math.abs((color % 512) - 255.999 * share) <= 1.001, `${color} at ${share}`);
+  values.forEach((value, at) => {
+    const [e, i] = [Math.floor(at / count), at % count];
+    const color = image[(Math.floor(e / 4) * 4 * pixels + (e % 4)) * pixels + positions[i]] - 0xff000000;
+    if (isUnknown(at)) return assert.equal(color, 1024);
+    const share = (value - extremes[2 * e]) / (extremes[2 * e + 1] - extremes[2 * e]);
+    assert.ok(Math.abs((color % 512) - (e ? 256 : 0) - 255.999 * share) <= 1.001, `${color} at ${share} of element ${e}`);
     striped += color >= 512;
-  }
-  assert.ok(striped > 0 && striped < count / 10, `${striped} of ${count} are in stripes`); // theta_r > 81.87 degrees
+  });
+  assert.ok(striped > 0 && striped < (16 * count) / 10, `${striped} of ${16 * count} are in stripes`); // theta_r > 81.87 degrees
 });
 
 test("what was freed says so", () => {
