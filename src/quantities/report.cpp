@@ -53,13 +53,6 @@ Warnings range_notes(const ReportSubject& reported) {
   return notes;
 }
 
-/// Where a table says what f11 is multiplied by; nothing of one value, which says it everywhere.
-std::string reach(const ReflectanceTable& table) {
-  if (table.values.size() < 2) return "";
-  return "; valid from " + shortest(in_nanometres(table.wavelengths.front())) + " to " +
-         nanometre_list(std::array{table.wavelengths.back()}) + ", and f11 with it";
-}
-
 Json model_json(const ReportSubject& reported) {
   const Model& model = reported.model;
   Json json{{"name", model.name.empty() ? reported.name : model.name},
@@ -69,7 +62,7 @@ Json model_json(const ReportSubject& reported) {
   const ReflectanceTable& table = model.reflectance;
   if (!table.values.empty())
     json["reflectance table"] =
-        reflectance_line(table) + (table.covariance.empty() ? ", exact" : ", with its covariance") + reach(table);
+        reflectance_line(table) + (table.covariance.empty() ? ", exact" : ", with its covariance") + reach_of(table);
   for (const auto& [name, text] : model.provenance) json[json.contains(name) ? "provenance: " + name : name] = text;
   return json;
 }

@@ -223,7 +223,7 @@ Json without_digits(Json said, const ReflectanceTable& table) {
   for (std::size_t i = 0; i < table.values.size(); ++i)
     text += (i > 0 ? ", " : "") + significant(table.values[i], 4) + " at " +
             shortest(nanometres(table.wavelengths[i])) + " nm";
-  said["reflectance table"] = text + (table.covariance.empty() ? "; exact" : "; with its covariance");
+  said["reflectance table"] = text + (table.covariance.empty() ? "; exact" : "; with its covariance") + reach_of(table);
   return said;
 }
 

@@ -47,6 +47,12 @@ inline std::string count_of(std::size_t count, const std::string& what) {
 
 inline std::string nm(double wavelength) { return nanometre_list(std::array{wavelength}); }
 
+/// Where a table says what f11 is multiplied by; nothing of one value, which says it everywhere.
+inline std::string reach_of(const ReflectanceTable& table) {
+  if (table.values.size() < 2) return "";
+  return "; valid from " + nm(table.wavelengths.front()) + " to " + nm(table.wavelengths.back()) + ", and f11 with it";
+}
+
 inline void add(Json& report, const std::string& name, ReportField field) {
   report[name] = std::move(field.value);
   for (std::string& warning : field.warnings) report["warnings"].push_back(std::move(warning));

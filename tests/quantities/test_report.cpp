@@ -148,8 +148,8 @@ TEST(Report, SaysOfTheModelWhatItSaysOfItself) {
   for (const auto& [name, text] : model.provenance) expected.push_back(name);
   EXPECT_EQ(names(json["model"]), expected);
   EXPECT_EQ(json["model"]["name"], "ptfe");
-  EXPECT_TRUE(
-      json["model"]["reflectance table"].get<std::string>().ends_with("; valid from 351 to 1064 nm, and f11 with it"));
+  EXPECT_TRUE(json["model"]["reflectance table"].get<std::string>().ends_with(
+      "; valid from 351 nm to 1064 nm, and f11 with it"));
   EXPECT_EQ(json["fit"][2]["block"], "14,41");
   EXPECT_EQ(json["fit"][2]["condition"].get<double>(), model.blocks[2].condition);
   model.name.clear();

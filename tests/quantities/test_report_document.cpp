@@ -171,6 +171,11 @@ TEST(ReportDocument, HasSymbolsInPrintButNotInNamesAndCommands) {
   EXPECT_FALSE(std::regex_search(text, found, ascii)) << found.prefix().str().substr(0, 200);
 }
 
+TEST(ReportDocument, SaysFromWhereToWhereATableOfReflectancesIsValid) {
+  EXPECT_NE(all_text(document(material("ptfe"))).find("; valid from 351 nm to 1064 nm, and f11 with it"),
+            std::string::npos);
+}
+
 TEST(ReportDocument, SaysWhereItComesFrom) {
   const std::string text = all_text(document(material("ptfe-532")));
   for (const char* said : {"2026-11-30T00:20:00+00:00", "mmbrdf 0", "SHA-256 of the model", "00ff"})
