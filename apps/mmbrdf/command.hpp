@@ -20,9 +20,6 @@ struct CommandLine {
   std::string text(const std::vector<std::string>& paths) const;
 };
 
-/// A word as a shell takes it for one: in quotes if need be.
-std::string shell_quoted(const std::string& word);
-
 /// "mmbrdf 1.2.3"
 std::string software();
 

@@ -134,14 +134,6 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-std::string shell_quoted(const std::string& word) {
-  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,=+@%-";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
-  return result + "'";
-}
-
 std::string software() { return "mmbrdf " MMBRDF_VERSION; }
 
 std::string CommandLine::text(const std::vector<std::string>& paths) const {

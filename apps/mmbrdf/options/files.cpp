@@ -12,7 +12,6 @@
 #include <streambuf>
 #include <vector>
 
-#include "command.hpp"
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"

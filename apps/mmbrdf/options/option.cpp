@@ -38,4 +38,12 @@ Option add_flag(CLI::App& app, const std::string& names, bool& target, const std
 
 void set_footer(CLI::App& app, const std::string& footer) { app.footer(footer); }
 
+std::string shell_quoted(const std::string& word) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,=+@%-";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
+  return result + "'";
+}
+
 }  // namespace mmbrdf::program

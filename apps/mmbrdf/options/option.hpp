@@ -60,4 +60,7 @@ Option add_flag(CLI::App& app, const std::string& names, bool& target, const std
 /// What the help prints below the options.
 void set_footer(CLI::App& app, const std::string& footer);
 
+/// A word as a shell takes it for one: in quotes if need be.
+std::string shell_quoted(const std::string& word);
+
 }  // namespace mmbrdf::program
