@@ -25,8 +25,9 @@ std::string to_string(const Finding& finding);
 
 /// What numbers of some samples are no measurement. It is one if all that are there are equal, f11 and elements, if an
 /// element is beyond 10, if f11 is beyond 10⁴ or below −10 times the median of all |f11| that are not 0, or if it is the
-/// same number in three samples or more and no other is as it is: the only one that is not positive, where 0 lies apart from
-/// the others by more than a tenth of the median, or five times as large as all others.
+/// same number in three samples or more and no other is as it is: the only one that is not positive, farther from the others
+/// than their rounding explains and, if it is 0, than a tenth of the median; or five times as large as all others. What
+/// is large only within 20 degrees of the direction of a mirror, or of that to the source, is a peak.
 class FillValues {
  public:
   explicit FillValues(std::span<const Sample> samples);
