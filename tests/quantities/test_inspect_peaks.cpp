@@ -72,5 +72,31 @@ TEST(Inspect, TakesNoRoundedDarkSampleForFillValues) {
   EXPECT_EQ(found(dark).find("fill"), std::string::npos) << found(dark);
 }
 
+// A half direction within 9 degrees of the normal. A fit of low order makes a reflectance of it that is not there.
+TEST(Inspect, TakesNoReflectanceFromAShinySample) {
+  const auto shiny = [](const Geometry& g) {
+    const auto& [i, r] = g;
+    const double cosine = (std::cos(i.theta) + std::cos(r.theta)) / std::sqrt(2 + 2 * cosine_between(g, 1)),
+                 a2 = 0.05 * 0.05, slope = cosine * cosine * (a2 - 1) + 1;
+    return 0.02 + a2 / (std::numbers::pi * slope * slope) / (4 * std::max(std::cos(i.theta), std::cos(r.theta)));
+  };
+  EXPECT_EQ(found(of_f11(many, shiny)), "");
+  EXPECT_NE(found(of_f11(many, [&](const Geometry& g) { return 1000 * shiny(g); })).find("scale of f11"),
+            std::string::npos);
+}
+
+// It fits better after it is divided by cos theta_r, which says nothing.
+TEST(Inspect, DoesNotAskReciprocityForACosineWhereThetaIHardlyVaries) {
+  const auto glossy = [](const Geometry& g) {
+    return 0.02 + 0.2 * std::exp(-12 * std::pow(std::sin(g.reflected.theta), 2));
+  };
+  for (const std::vector<double>& theta_i : {std::vector<double>{0}, {40, 45, 50}}) {
+    const Inspection seen = inspect(of_f11(theta_i, glossy));
+    EXPECT_TRUE(seen.findings.empty());
+    const auto of_cosine = [](const Untested& one) { return one.fault == "cosine"; };
+    EXPECT_TRUE(std::ranges::any_of(seen.untested, of_cosine));
+  }
+}
+
 }  // namespace
 }  // namespace mmbrdf
