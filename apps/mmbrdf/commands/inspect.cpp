@@ -51,18 +51,24 @@ nlohmann::ordered_json hole_json(const Hole& hole) {
   return json;
 }
 
+/// Words without an option and its value.
+std::string without_option(std::string text, const std::string& name) {
+  if (const std::size_t option = text.find(" " + name); option != std::string::npos) {
+    const std::size_t end = text.find(' ', option + name.size() + 2);
+    text.erase(option, end == std::string::npos ? end : end - option);
+  }
+  return text;
+}
+
 /// The command that fits the file as it was read here, with options that mend it.
-std::string next_command(const Inspection& seen, const Options& options, const CommandLine& line) {
-  std::string text = line.text({options.data});
+std::string next_command(const Inspection& seen, const CommandLine& line) {
+  std::string text = line.text({});
   const std::size_t at = text.find("inspect");
   text.replace(at, std::string("inspect").size(), "fit");
-  if (const std::size_t format = text.find(" --format"); format != std::string::npos) {
-    const std::size_t end = text.find(' ', format + std::string(" --format ").size());
-    text.erase(format, end == std::string::npos ? end : end - format);
-  }
+  text = without_option(text, "--format");
   for (const Finding& one : seen.findings)
-    if (!one.option.empty() && text.find(one.option.substr(0, one.option.find(' '))) == std::string::npos)
-      text += " " + one.option;
+    if (const std::string name = one.option.substr(0, one.option.find(' ')); !name.empty())
+      text = without_option(text, name) + " " + one.option;
   return text + " -o model.json";
 }
 
@@ -108,7 +114,7 @@ Page page_of(const Inspection& seen, const std::vector<Sample>& samples, const O
   for (const Untested& one : seen.untested) text += printable(to_string(one), 4 * longest_text) + "\n";
   if (const std::string verdict = verdict_line(seen); !verdict.empty()) text += verdict + "\n";
   Page page;
-  page.add(text + "\n" + next_command(seen, options, line) + "\n");
+  page.add(text + "\n" + next_command(seen, line) + "\n");
   return page;
 }
 
