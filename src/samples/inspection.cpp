@@ -174,6 +174,17 @@ bool FillValues::include(const Sample& one) const {
           ((sample.f11 > bright * typical_ && !may_be_peak(sample.geometry)) || sample.f11 < -dark * typical_));
 }
 
+namespace {
+
+/// Where most are: the rest is a few dark ones with noise.
+std::vector<std::size_t> not_positive(std::span<const Sample> samples, const FillValues& fill_values) {
+  auto which = which_are(samples, [&](const Sample& s) { return s.f11 <= 0 && !fill_values.include(s); });
+  if (2 * which.size() <= samples.size()) which.clear();
+  return which;
+}
+
+}  // namespace
+
 std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const long> numbers) {
   require_valid(given);
   std::vector<Sample> samples;
@@ -199,6 +210,9 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
                                     : "f11 = " + (std::isnan(first.f11) ? "" : rounded(first.f11, 6));
     result.push_back({"fill values", example + " in " + named(fills), "leave these rows out", fills});
   }
+  if (const auto dark_ones = not_positive(samples, fill_values); !dark_ones.empty())
+    result.push_back({"f11 not positive", "in " + named(dark_ones),
+                      "was a background subtracted twice, or is it another column?", dark_ones});
   const auto beyond = which_are(samples, [&](const Sample& s) {
     return largest_element(s) > beyond_one && (all_wrong || !fill_values.include(s));
   });

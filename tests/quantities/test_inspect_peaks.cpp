@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What inspect() leaves alone: peaks of shiny samples, and light from one direction.
+// What inspect() says of f11 alone: it leaves peaks of shiny samples alone, and light from one direction.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,6 +96,17 @@ TEST(Inspect, DoesNotAskReciprocityForACosineWhereThetaIHardlyVaries) {
     const auto of_cosine = [](const Untested& one) { return one.fault == "cosine"; };
     EXPECT_TRUE(std::ranges::any_of(seen.untested, of_cosine));
   }
+}
+
+TEST(Inspect, NamesF11ThatIsNotPositive) {
+  for (const double f11 : {-0.1, 0.0})
+    EXPECT_EQ(found(of_f11(many, [&](const Geometry&) { return f11; })).substr(0, 44),
+              "f11 not positive: in 648 samples: 1, 2, 3, 4");
+  std::size_t number = 0;  // of four, one is below 0
+  EXPECT_EQ(
+      found(of_f11(many,
+                   [&](const Geometry&) { return ++number % 4 == 0 ? -1e-6 * static_cast<double>(number) : 0.001; })),
+      "");
 }
 
 }  // namespace

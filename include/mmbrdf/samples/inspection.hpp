@@ -41,6 +41,7 @@ class FillValues {
 /// Any of the following that the samples show, in this order. Samples are numbered from 1, or as `numbers` says.
 ///
 ///   fill values              FillValues
+///   f11 not positive         in more than half of the samples
 ///   elements not divided     an element beyond 1.5 in more than 1 % of the samples; in more than a fifth, those beyond 10 are
 ///                            no fill values
 ///   matrices that cannot exist   smallest coherency eigenvalue below −0.1 f11 in more than 1 % of those whose sixteen
