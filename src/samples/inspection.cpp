@@ -220,8 +220,8 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
     result.push_back({"elements not divided", "elements beyond " + rounded(beyond_one, 2) + " in " + named(beyond),
                       "are they divided by f11, and in no percent? m12 ... m44 are M12 / M11 ...", beyond});
   const auto impossible_ones = which_are(samples, [&](const Sample& s) {
-    return !fill_values.include(s) && not_measured(s).none() && largest_element(s) <= beyond_one &&
-           realizability_margin(s.normalized) < -not_realizable;
+    return s.f11 >= fill_values.typical() && !fill_values.include(s) && not_measured(s).none() &&
+           largest_element(s) <= beyond_one && realizability_margin(s.normalized) < -not_realizable;
   });
   if (are_many(impossible_ones, samples.size()))
     result.push_back({"matrices that cannot exist",

@@ -32,6 +32,8 @@ class FillValues {
  public:
   explicit FillValues(std::span<const Sample> samples);
   bool include(const Sample& sample) const;
+  /// That median; 0 if there is no such f11.
+  double typical() const { return typical_; }
 
  private:
   double typical_ = 0;
@@ -44,8 +46,8 @@ class FillValues {
 ///   f11 not positive         in more than half of the samples
 ///   elements not divided     an element beyond 1.5 in more than 1 % of the samples; in more than a fifth, those beyond 10 are
 ///                            no fill values
-///   matrices that cannot exist   smallest coherency eigenvalue below −0.1 f11 in more than 1 % of those whose sixteen
-///                            elements are there
+///   matrices that cannot exist   smallest coherency eigenvalue below −0.1 f11 in more than 1 % of the samples, of those
+///                            whose sixteen elements are there and which are as bright as most: in dark ones it may be noise
 ///   zeros                    an element that is exactly 0 in all samples, of 4 at least
 ///   repeated rows            samples that are equal in every number
 ///   wavelengths              outside of 0.1 … 20 µm
