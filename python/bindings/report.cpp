@@ -131,8 +131,9 @@ void bind_report(py::module_& m) {
   m.def(
       "inspect", [](const Dataset& data) { return inspection_object(data); }, py::arg("data"),
       "What is wrong with samples, as far as they betray it, before they are fitted: an Inspection. Fill values, "
-      "elements\n"
-      "that are not divided, matrices that cannot exist, zeros, repeated rows, wavelengths; by fits of low order to "
+      "f11\n"
+      "below 0, elements that are not divided, matrices that cannot exist, zeros, repeated rows, wavelengths; by fits "
+      "of low order to "
       "the\n"
       "first wavelength radians that are called degrees, the scale of f11, a cosine too many or too few, folded "
       "azimuths,\n"

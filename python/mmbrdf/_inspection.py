@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import html
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
 from . import Dataset, Inspection, __version__, inspect, plot
+from ._judgements import Finding
 from ._pages import document, picture
 
 
@@ -74,10 +76,14 @@ def _words(fields: dict[str, str]) -> str:
 
 
 def page(
-    data: Dataset, data_name: str, command: str = "", paper: str | None = None, origin: dict[str, str] | None = None
+    data: Dataset,
+    data_name: str,
+    command: Callable[[Sequence[Finding]], str] | None = None,
+    paper: str | None = None,
+    origin: dict[str, str] | None = None,
 ) -> str:
-    """The page as HTML text. ``command`` fits the file; without one it is that of a file of this name. ``origin`` is of what
-    the page was made."""
+    """The page as HTML text. ``command`` fits the file, in which this was found; without one it is that of a file of this
+    name. ``origin`` is of what the page was made."""
     seen = inspect(data)
     title = f"{data_name}: {len(data)} sample{'s' * (len(data) > 1)}"
     parts = [
@@ -89,15 +95,23 @@ def page(
         *_faults(seen),
         *_pictures(data, seen),
         "<h2>To fit it</h2>",
-        f"<pre>{_text(command or fit_command(data_name))}</pre>",
+        f"<pre>{_text((command or partial(fit_command, data_name, None, ()))(seen.findings))}</pre>",
     ]
     if origin:
         parts += ["<h2>Origin</h2>", _words(origin)]
     return document(title, parts, paper)
 
 
-def fit_command(path: str, wavelength_nm: Sequence[float] | None = None, table_options: Sequence[str] = ()) -> str:
-    """For a shell: `mmbrdf fit data.csv -w 532 -o model.json`"""
+def fit_command(
+    path: str, wavelength_nm: Sequence[float] | None, table_options: Sequence[str], findings: Sequence[Finding]
+) -> str:
+    """For a shell: `mmbrdf fit data.csv -w 532 -o model.json`, with options that mend what was found."""
     wavelengths = [] if wavelength_nm is None else ["-w", ",".join(f"{nm:.10g}" for nm in wavelength_nm)]
     place = f"./{path}" if path.startswith("-") else path
-    return shlex.join(["mmbrdf", "fit", place, *wavelengths, *table_options, "-o", "model.json"])
+    options = list(table_options)
+    for option, value in (one.remedy.split() for one in findings if one.remedy.startswith("--")):
+        if option in options:
+            at = options.index(option)
+            del options[at : at + 2]
+        options += [option, value]
+    return shlex.join(["mmbrdf", "fit", place, *wavelengths, *options, "-o", "model.json"])

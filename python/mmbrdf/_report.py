@@ -13,6 +13,7 @@ import shlex
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
@@ -183,7 +184,7 @@ def _page(source: Source, look: Look, paper: str | None) -> str:
         return _inspection.page(
             source.data,
             source.data_name,
-            _inspection.fit_command(path, source.wavelength_nm, source.table_options),
+            partial(_inspection.fit_command, path, source.wavelength_nm, source.table_options),
             paper,
             _origin_lines(source),
         )

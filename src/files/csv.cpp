@@ -132,11 +132,11 @@ CsvReader::CsvReader(std::istream& in, std::string name, const ColumnNames& colu
       first_row_ = pending_ = line_number_;
       std::vector<std::string_view> below;  // a title may have no separator
       split(text_, separator_of(text_), below);
-      may_be_title_ = below.size() != columns_.size();
       // What writes row names gives them no name in the header, and quotes or counts them. A field too many that is
       // empty is a separator at the end.
       layout_.row_names = fields_.size() == columns_.size() + 1 && !fields_[0].empty() && !fields_.back().empty() &&
                           (trimmed(text_).front() == '"' || fields_[0] == "1" || !is_number(fields_[0]));
+      may_be_title_ = below.size() != columns_.size() && !(layout_.row_names && is_number(fields_.back()));
       if (layout_.row_names) columns_.insert(columns_.begin(), "");
     }
     line_number_ = header_line;

@@ -21,7 +21,6 @@ namespace mmbrdf {
 namespace {
 
 constexpr long enough_samples = 60;
-constexpr double beyond_doubt = 2;
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 const char* const scale = "scale of f11";
@@ -85,7 +84,7 @@ bool is_better(double as_is, double other) { return as_is > better_convention * 
 
 /// Why a fit of low order says little of a reflectance; empty if it says enough.
 std::string no_reflectance(const Inspection& seen, const Looked& at) {
-  constexpr double most_missing = 0.2, most_left = 0.5;
+  constexpr double most_missing = 0.2, most_left = 0.2;
   const long rows = at.fitted.elements[0].rows;
   if (rows < enough_samples)
     return counted(rows, "sample") + ", of " + std::to_string(enough_samples) + " that it takes to know a reflectance";
@@ -94,6 +93,12 @@ std::string no_reflectance(const Inspection& seen, const Looked& at) {
   if (seen.f11_residual > most_left)
     return "a fit of low order leaves " + rounded(100 * seen.f11_residual, 2) + " % of f11: is there a narrow peak?";
   return "";
+}
+
+/// Of a reflectance of which a fit of low order says little, its standard uncertainty too.
+bool is_beyond_doubt(const F11Diagnostics& found) {
+  constexpr double large = 10, doubtful = 2, significant = 5;
+  return found.dhr > large || (found.dhr > doubtful && found.dhr - 1 > significant * found.u_dhr);
 }
 
 void look_at_scale(Inspection& result, const Looked& at) {
@@ -109,7 +114,7 @@ void look_at_scale(Inspection& result, const Looked& at) {
       f11_diagnostics(at.fitted.model, at.samples.front().wavelength, fitted_theta_max(validity), coarser);
   const std::string doubt = no_reflectance(result, at);
   if (const std::string line = energy_line(found, "of a fit of low order");
-      !line.empty() && (doubt.empty() || found.dhr > beyond_doubt))
+      !line.empty() && (doubt.empty() || is_beyond_doubt(found)))
     result.findings.push_back({scale, line, "", {}});
   else if (!doubt.empty())
     result.untested.push_back({scale, doubt});
@@ -131,9 +136,21 @@ double left_with_cosine(std::span<const Sample> samples, int power) {
   return relative_rms(scaled, fit_of_low_order(scaled));
 }
 
+/// Why reciprocity cannot tell; empty if it can.
+std::string no_reciprocity(const Looked& at) {
+  constexpr double least = 20;
+  if (const std::string few = too_few(at, true); !few.empty()) return few;
+  const auto [smallest, largest] =
+      std::ranges::minmax(at.samples, {}, [](const Sample& s) { return s.geometry.incident.theta; });
+  const double from = degrees(smallest.geometry.incident.theta), to = degrees(largest.geometry.incident.theta);
+  if (to - from >= least) return "";
+  return "theta_i from " + rounded(from, 3) + " to " + rounded(to, 3) + " degrees, and reciprocity takes " +
+         rounded(least, 2) + " between them";
+}
+
 /// Reciprocity tells whether f11 has a cosine of the receiver too many or too few.
 void look_at_cosine(Inspection& result, const Looked& at) {
-  if (const std::string few = too_few(at, true); !few.empty()) {
+  if (const std::string few = no_reciprocity(at); !few.empty()) {
     result.untested.push_back({cosine, few});
     return;
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 
 #include "mmbrdf/polarization/analysis.hpp"
@@ -119,9 +120,26 @@ double typical_f11(std::span<const Sample> samples) {
   return *middle;
 }
 
+/// Whether samples may be bright there: around the direction of a mirror, or back to the source.
+bool may_be_peak(const Geometry& geometry) {
+  constexpr double around = 20;  // degrees
+  const auto& [incident, reflected] = geometry;
+  const double along = std::cos(incident.theta) * std::cos(reflected.theta),
+               across = std::sin(incident.theta) * std::sin(reflected.theta) * std::cos(reflected.phi - incident.phi);
+  return along + std::abs(across) > std::cos(radians(around));
+}
+
+/// The smallest distance of different numbers; infinite if there is one alone. They are sorted.
+double step_of(std::span<const double> values) {
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] > values[i - 1]) step = std::min(step, values[i] - values[i - 1]);
+  return step;
+}
+
 /// The numbers that stand in place of f11, as they show by standing alone.
 std::vector<double> repeated_f11(std::span<const Sample> samples, double typical) {
-  constexpr double apart = 0.1, outstanding = 5;
+  constexpr double apart = 0.1, outstanding = 5, steps = 2.5;
   std::vector<double> values, result;
   for (const Sample& sample : samples)
     if (!std::isnan(sample.f11)) values.push_back(sample.f11);
@@ -130,10 +148,13 @@ std::vector<double> repeated_f11(std::span<const Sample> samples, double typical
   const double lowest = values.front(), highest = values.back();
   const auto next = std::upper_bound(values.begin(), values.end(), lowest),
              top = std::lower_bound(values.begin(), values.end(), highest);
-  if (lowest <= 0 && *next > 0 && next - values.begin() >= fewest && (lowest < 0 || *next > apart * typical))
+  const double rounding = step_of({next, values.end()});
+  if (lowest <= 0 && *next > 0 && next - values.begin() >= fewest && (lowest < 0 || *next > apart * typical) &&
+      (std::isinf(rounding) || *next - lowest > steps * rounding))
     result.push_back(lowest);
-  if (const double before = *std::prev(top);
-      values.end() - top >= fewest && before > 0 && highest > outstanding * before)
+  const auto elsewhere = [&](const Sample& s) { return s.f11 == highest && !may_be_peak(s.geometry); };
+  if (const double before = *std::prev(top); values.end() - top >= fewest && before > 0 &&
+                                             highest > outstanding * before && std::ranges::any_of(samples, elsewhere))
     result.push_back(highest);
   return result;
 }
@@ -149,8 +170,20 @@ bool FillValues::include(const Sample& one) const {
   if (values.size() > 1 && std::ranges::all_of(values, [&](double value) { return value == values.front(); }))
     return true;
   return largest_element(sample) > impossible || std::ranges::find(repeated_, sample.f11) != repeated_.end() ||
-         (typical_ > 0 && (sample.f11 > bright * typical_ || sample.f11 < -dark * typical_));
+         (typical_ > 0 &&
+          ((sample.f11 > bright * typical_ && !may_be_peak(sample.geometry)) || sample.f11 < -dark * typical_));
 }
+
+namespace {
+
+/// Where most are: the rest is a few dark ones with noise.
+std::vector<std::size_t> not_positive(std::span<const Sample> samples, const FillValues& fill_values) {
+  auto which = which_are(samples, [&](const Sample& s) { return s.f11 <= 0 && !fill_values.include(s); });
+  if (2 * which.size() <= samples.size()) which.clear();
+  return which;
+}
+
+}  // namespace
 
 std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const long> numbers) {
   require_valid(given);
@@ -177,6 +210,9 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
                                     : "f11 = " + (std::isnan(first.f11) ? "" : rounded(first.f11, 6));
     result.push_back({"fill values", example + " in " + named(fills), "leave these rows out", fills});
   }
+  if (const auto dark_ones = not_positive(samples, fill_values); !dark_ones.empty())
+    result.push_back({"f11 not positive", "in " + named(dark_ones),
+                      "was a background subtracted twice, or is it another column?", dark_ones});
   const auto beyond = which_are(samples, [&](const Sample& s) {
     return largest_element(s) > beyond_one && (all_wrong || !fill_values.include(s));
   });
@@ -184,8 +220,8 @@ std::vector<Finding> row_findings(std::span<const Sample> given, std::span<const
     result.push_back({"elements not divided", "elements beyond " + rounded(beyond_one, 2) + " in " + named(beyond),
                       "are they divided by f11, and in no percent? m12 ... m44 are M12 / M11 ...", beyond});
   const auto impossible_ones = which_are(samples, [&](const Sample& s) {
-    return !fill_values.include(s) && not_measured(s).none() && largest_element(s) <= beyond_one &&
-           realizability_margin(s.normalized) < -not_realizable;
+    return s.f11 >= fill_values.typical() && !fill_values.include(s) && not_measured(s).none() &&
+           largest_element(s) <= beyond_one && realizability_margin(s.normalized) < -not_realizable;
   });
   if (are_many(impossible_ones, samples.size()))
     result.push_back({"matrices that cannot exist",

@@ -223,6 +223,8 @@ TEST(TablesOfOthers, SayWhatALineIsThatIsNoRow) {
         says(refusal(title + header + row), {"d.csv:1: ", "; is this line a title? Leave it out, or begin it with #"}))
         << refusal(title + header + row);
   EXPECT_TRUE(says(refusal("a,b,c,d,e,f,g\n" + row), {"d.csv:1: ", "; if it has another name, give that"}));
+  for (const std::string r : {"\"theta_i_deg\" \"f11\"\n\"1\" 45 0.3\n", "theta_i_deg,f11\n1,45,0.3\n"})  // row names
+    EXPECT_TRUE(says(refusal(r), {"d.csv:1: ", "columns wavelength_nm=NAME"})) << refusal(r);
   EXPECT_TRUE(says(refusal(header + "nm,deg,deg,deg,deg,1/sr,-\n" + row),
                    {"d.csv:2: wavelength_nm: 'nm' is not a number; is this a line of units? Leave it out"}));
   EXPECT_EQ(refusal(header + row + "n,deg,deg,deg,deg,1/sr,-\n"), "d.csv:3: wavelength_nm: 'n' is not a number");

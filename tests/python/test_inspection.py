@@ -271,6 +271,15 @@ def test_names_of_files_are_text_and_quoted_for_a_shell(samples):
     assert "mmbrdf fit ./-d.csv -o" in shown(_report.page(None, samples[:100], data_name="-d.csv"))
 
 
+def test_the_command_on_the_page_has_the_frame_that_mends_as_that_of_the_program(samples, tmp_path, program):
+    samples.save(tmp_path / "d.csv")
+    done = run_module("d.csv", "--frame", "sp", "-o", "page.html", folder=tmp_path)
+    assert done.returncode == 0
+    command = "mmbrdf fit d.csv --frame xy -o model.json"
+    assert command in shown((tmp_path / "page.html").read_text())
+    assert program("inspect", "d.csv", "--frame", "sp").splitlines()[-1] == command
+
+
 def test_of_several_wavelengths_all_are_said_and_some_can_be_chosen(ptfe):
     data = mmbrdf.simulate(ptfe, [351, 532], mmbrdf.random_geometries(100, 1), speckle=0.01, seed=1)
     text = shown(_report.page(None, data))

@@ -199,6 +199,15 @@ TEST(Inspect, FindsMatricesThatCannotExist) {
   EXPECT_NE(found(samples).find("matrices that cannot exist"), std::string::npos);
 }
 
+TEST(Inspect, TakesNoNoiseOfDarkSamplesForMatricesThatCannotExist) {
+  Samples samples = measured(1);
+  for (std::size_t i = 0; i < samples.size(); i += 4) {
+    samples[i].f11 *= 0.01;
+    samples[i].normalized = diagonal(1, 0.9, -0.9, 0.9);
+  }
+  EXPECT_EQ(found(samples).find("matrices that cannot exist"), std::string::npos);
+}
+
 TEST(Inspect, NamesTheSamples) {
   Samples samples = measured(1);
   samples[16].f11 = -999;

@@ -51,18 +51,24 @@ nlohmann::ordered_json hole_json(const Hole& hole) {
   return json;
 }
 
+/// Words without an option and its value.
+std::string without_option(std::string text, const std::string& name) {
+  if (const std::size_t option = text.find(" " + name); option != std::string::npos) {
+    const std::size_t end = text.find(' ', option + name.size() + 2);
+    text.erase(option, end == std::string::npos ? end : end - option);
+  }
+  return text;
+}
+
 /// The command that fits the file as it was read here, with options that mend it.
-std::string next_command(const Inspection& seen, const Options& options, const CommandLine& line) {
-  std::string text = line.text({options.data});
+std::string next_command(const Inspection& seen, const CommandLine& line) {
+  std::string text = line.text({});
   const std::size_t at = text.find("inspect");
   text.replace(at, std::string("inspect").size(), "fit");
-  if (const std::size_t format = text.find(" --format"); format != std::string::npos) {
-    const std::size_t end = text.find(' ', format + std::string(" --format ").size());
-    text.erase(format, end == std::string::npos ? end : end - format);
-  }
+  text = without_option(text, "--format");
   for (const Finding& one : seen.findings)
-    if (!one.option.empty() && text.find(one.option.substr(0, one.option.find(' '))) == std::string::npos)
-      text += " " + one.option;
+    if (const std::string name = one.option.substr(0, one.option.find(' ')); !name.empty())
+      text = without_option(text, name) + " " + one.option;
   return text + " -o model.json";
 }
 
@@ -108,7 +114,7 @@ Page page_of(const Inspection& seen, const std::vector<Sample>& samples, const O
   for (const Untested& one : seen.untested) text += printable(to_string(one), 4 * longest_text) + "\n";
   if (const std::string verdict = verdict_line(seen); !verdict.empty()) text += verdict + "\n";
   Page page;
-  page.add(text + "\n" + next_command(seen, options, line) + "\n");
+  page.add(text + "\n" + next_command(seen, line) + "\n");
   return page;
 }
 
@@ -124,14 +130,12 @@ void inspect_data(const Options& options, const CommandLine& line) {
 constexpr const char* footer =
     "Looks at the samples before they are fitted, and names what they betray, each with its evidence and what mends "
     "it:\n"
-    "fill values, elements that are not divided by f11, matrices that cannot exist, columns of zeros, repeated rows,\n"
-    "wavelengths beyond 0.1 ... 20 um; by fits of low order to the samples of the first wavelength radians that are "
-    "called\n"
-    "degrees, a reflectance above 1, a cosine too many or too few, folded azimuths, and another frame or other signs. "
-    "Of\n"
-    "these it says which could not be seen in such data, and why. mmbrdf fit warns of most. Ends with the command that "
-    "fits\n"
-    "the file. The same with pictures: mmbrdf report DATA.csv -o PAGE.html or .pdf\n"
+    "fill values, f11 below 0, elements that are not divided by f11, matrices that cannot exist, columns of zeros,\n"
+    "repeated rows, wavelengths beyond 0.1 ... 20 um; by fits of low order to the samples of the first wavelength\n"
+    "radians that are called degrees, a reflectance above 1, a cosine too many or too few, folded azimuths, and "
+    "another\n"
+    "frame or other signs. Of these it says which could not be seen in such data, and why. mmbrdf fit warns of most.\n"
+    "Ends with the command that fits the file. The same with pictures: mmbrdf report DATA.csv -o PAGE.html or .pdf\n"
     "\n"
     "Example:\n"
     "  mmbrdf inspect data.csv";

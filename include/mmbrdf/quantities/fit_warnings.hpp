@@ -79,9 +79,10 @@ struct Inspection {
 ///   no fit                   why there is none
 ///
 /// Each with the option or column that mends it. A fault that is not found is untested if it, planted in these data, would
-/// not be found either; and so are the last three with fewer samples than twice the coefficients of the fit, and the scale
-/// with fewer than 60, a fifth of the pairs of directions missing, half of f11 left by the fit, or theta_r below 30 degrees. `numbers` are those of
-/// row_findings(). Throws std::invalid_argument for invalid samples, or none.
+/// not be found either; and so are the last three with fewer samples than twice the coefficients of the fit, the cosine with
+/// theta_i within 20 degrees, and the scale with fewer than 60, a fifth of the pairs of directions missing, a fifth of f11
+/// left by the fit, or theta_r below 30 degrees. Then a reflectance above 2 by five standard uncertainties, or above 10,
+/// is a fault all the same. `numbers` are those of row_findings(). Throws std::invalid_argument for invalid samples, or none.
 Inspection inspect(std::span<const Sample> samples, std::span<const long> numbers = {});
 inline constexpr Orders inspected_orders{4, 3};
 
