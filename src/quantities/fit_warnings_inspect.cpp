@@ -91,7 +91,7 @@ std::string no_reflectance(const Inspection& seen, const Looked& at) {
   if (seen.unsupported > most_missing)
     return rounded(100 * seen.unsupported, 2) + " % of the pairs of directions are not covered";
   if (seen.f11_residual > most_left)
-    return "a fit of low order leaves " + rounded(100 * seen.f11_residual, 2) + " % of f11: is there a narrow peak?";
+    return "a fit of low order leaves " + rounded(100 * seen.f11_residual, 2) + " % of f11, noise or a peak";
   return "";
 }
 

@@ -51,25 +51,26 @@ nlohmann::ordered_json hole_json(const Hole& hole) {
   return json;
 }
 
-/// Words without an option and its value.
-std::string without_option(std::string text, const std::string& name) {
-  if (const std::size_t option = text.find(" " + name); option != std::string::npos) {
-    const std::size_t end = text.find(' ', option + name.size() + 2);
-    text.erase(option, end == std::string::npos ? end : end - option);
-  }
-  return text;
+/// Without an option and its value.
+CommandLine without_option(CommandLine line, const std::string& name) {
+  std::vector<std::string>& words = line.words;
+  if (const auto option = std::ranges::find(words, name); option != words.end())
+    words.erase(option, std::next(option, std::min<std::ptrdiff_t>(2, words.end() - option)));
+  std::erase_if(words, [&](const std::string& word) { return word.starts_with(name + "="); });
+  return line;
 }
 
 /// The command that fits the file as it was read here, with options that mend it.
 std::string next_command(const Inspection& seen, const CommandLine& line) {
-  std::string text = line.text({});
-  const std::size_t at = text.find("inspect");
-  text.replace(at, std::string("inspect").size(), "fit");
-  text = without_option(text, "--format");
+  CommandLine next = without_option(line, "--format");
+  *std::ranges::find(next.words, "inspect") = "fit";
+  std::string options;
   for (const Finding& one : seen.findings)
-    if (const std::string name = one.option.substr(0, one.option.find(' ')); !name.empty())
-      text = without_option(text, name) + " " + one.option;
-  return text + " -o model.json";
+    if (const std::string name = one.option.substr(0, one.option.find(' ')); !name.empty()) {
+      next = without_option(next, name);
+      options += " " + one.option;
+    }
+  return next.text({}) + options + " -o model.json";
 }
 
 std::vector<std::string> names_of(const Elements& elements) {
