@@ -17,7 +17,7 @@ import mmbrdf
 
 pytest.importorskip("matplotlib")
 
-from mmbrdf import _report, _table_options  # noqa: E402
+from mmbrdf import _pages, _report, _table_options  # noqa: E402
 
 
 @pytest.fixture(scope="module")
