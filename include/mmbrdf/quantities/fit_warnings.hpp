@@ -40,8 +40,8 @@ std::vector<std::string> data_warnings(const FitResult& result);
 ///   - f11 that is not positive: not_positive_line()
 ///
 /// and, if there are samples, what these show (row_findings(), which names them by `numbers`), that their angles are
-/// radians, that f11 has a cosine too many or too few, and that they fit better in another frame or with other signs: convention_warning(). They may be some of those
-/// fitted. Takes a few milliseconds for each wavelength and each of the conventions.
+/// radians, that f11 has a cosine too many or too few, and that they fit better in another frame or with other signs:
+/// convention_warning(). They may be some of those fitted. Takes a few milliseconds for each wavelength and each of the conventions.
 std::vector<std::string> fit_warnings(const FitResult& result, std::span<const Sample> samples = {},
                                       std::span<const long> numbers = {});
 inline constexpr std::size_t most_checked = 12;
