@@ -155,17 +155,28 @@ Mask cloude_decomposition(const double* from, double* out) {
   return scaled.ordinary;
 }
 
+/// What can be decomposed, over its M11; 1 elsewhere.
+struct DecomposablePack {
+  R n[16], intensity;
+  Mask possible;
+
+  MMBRDF_INLINE explicit DecomposablePack(const double* from) {
+    const ScaledPack scaled(from);
+    possible = scaled.has_intensity() & realizable(scaled.m);
+    intensity = scaled.back * scaled.m[0];
+    const R inverse = R(1.0) / select(possible, scaled.m[0], R(1.0));
+    for (int e = 0; e < 16; ++e) n[e] = select(possible, inverse * scaled.m[e], R(e % 5 == 0 ? 1.0 : 0.0));
+  }
+};
+
 Mask lu_chipman(const double* from, double* out) {
-  const ScaledPack scaled(from);
-  const Mask ordinary = scaled.has_intensity() & realizable(scaled.m);
-  const R inverse = R(1.0) / select(ordinary, scaled.m[0], R(1.0));
-  R n[16], depolarizer[16], retarder[16], diattenuator[16];
-  for (int e = 0; e < 16; ++e) n[e] = select(ordinary, inverse * scaled.m[e], R(e % 5 == 0 ? 1.0 : 0.0));
-  const Mask regular = lu_chipman(n, scaled.back * scaled.m[0], depolarizer, retarder, diattenuator);
+  const DecomposablePack m(from);
+  R depolarizer[16], retarder[16], diattenuator[16];
+  const Mask regular = lu_chipman(m.n, m.intensity, depolarizer, retarder, diattenuator);
   store_matrices(depolarizer, out, 48);
   store_matrices(retarder, out + 16, 48);
   store_matrices(diattenuator, out + 32, 48);
-  return ordinary & regular;
+  return m.possible & regular;
 }
 
 Mask coherency_eigenvalues(const double* from, double* out) {
