@@ -6,6 +6,7 @@
 #include "polarization/kernel/logarithm_pack.hpp"
 #include "polarization/kernel/matrix_pack.hpp"
 #include "polarization/kernel/polar_pack.hpp"
+#include "polarization/kernel/symmetric_pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {
@@ -179,6 +180,18 @@ Mask lu_chipman(const double* from, double* out) {
   return m.possible & regular;
 }
 
+Mask symmetric_decomposition(const double* from, double* out) {
+  const DecomposablePack m(from);
+  SymmetricPack factors;
+  const Mask regular = symmetric_decomposition(m.n, m.intensity, factors);
+  store_matrices(factors.diattenuator2, out, 80);
+  store_matrices(factors.retarder2, out + 16, 80);
+  store_matrices(factors.depolarizer, out + 32, 80);
+  store_matrices(factors.retarder1, out + 48, 80);
+  store_matrices(factors.diattenuator1, out + 64, 80);
+  return m.possible & regular;
+}
+
 Mask coherency_eigenvalues(const double* from, double* out) {
   const ScaledPack scaled(from);
   R values[4];
@@ -200,7 +213,7 @@ bool run(Work work, size_t numbers, const double* from, size_t count, double* ou
   size_t q = 0;
   for (; q + width <= count; q += width) pack(from + 16 * q, out + numbers * q, left + q, width);
   if (q < count) {
-    double matrices[16 * width], results[68 * width];
+    double matrices[16 * width], results[most_numbers * width];
     for (size_t lane = 0; lane < width; ++lane) {
       const double* const matrix = from + 16 * (q + lane < count ? q + lane : count - 1);
       for (size_t e = 0; e < 16; ++e) matrices[16 * lane + e] = matrix[e];
@@ -246,6 +259,9 @@ bool run(Analysis analysis, const double* from, size_t count, double* out, unsig
       return run(cloude_decomposition, numbers, from, count, out, left);
     case Analysis::lu_chipman:
       return run([](const double* m, double* to) { return lu_chipman(m, to); }, numbers, from, count, out, left);
+    case Analysis::symmetric_decomposition:
+      return run([](const double* m, double* to) { return symmetric_decomposition(m, to); }, numbers, from, count, out,
+                 left);
   }
   return false;
 }

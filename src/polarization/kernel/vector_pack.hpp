@@ -50,6 +50,13 @@ struct DiattenuatorPack {
     for (int k = 0; k < 3; ++k) b[k] = fma(half * (plus - minus), axis[k], over_a * across[k]);
   }
 
+  /// A row (first, b) becomes (first, b) A(d).
+  MMBRDF_INLINE void give_to(R& first, R* b) const {
+    const R along = dot(b, d), own = fma(along, R(1.0) / (R(1.0) + a), first);
+    first = first + along;
+    for (int k = 0; k < 3; ++k) b[k] = fma(a, b[k], own * d[k]);
+  }
+
   /// intensity A(d)
   MMBRDF_INLINE void matrix(R intensity, R (&m)[16]) const {
     const R factor = R(1.0) / (R(1.0) + a);
@@ -71,6 +78,12 @@ MMBRDF_INLINE void retarder_of(const R (&rotation)[9], R (&m)[16]) {
     m[i + 1] = m[4 * i + 4] = R(0.0);
     for (int j = 0; j < 3; ++j) m[4 * i + 5 + j] = rotation[3 * i + j];
   }
+}
+MMBRDF_INLINE void retarder_of_columns(const R (&columns)[9], R (&m)[16]) {
+  R rotation[9];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) rotation[3 * i + j] = columns[3 * j + i];
+  retarder_of(rotation, m);
 }
 
 }  // namespace
