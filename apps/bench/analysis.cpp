@@ -49,6 +49,7 @@ constexpr Named analyses[] = {
     {"nearest_realizable", Analysis::nearest_realizable, 0.3},
     {"cloude_decomposition", Analysis::cloude_decomposition, 0},
     {"lu_chipman", Analysis::lu_chipman, 0},
+    {"symmetric_decomposition", Analysis::symmetric_decomposition, 0},
 };
 
 void analyze(benchmark::State& state, const AnalysisKernel& kernel, const Named& named) {
@@ -145,6 +146,7 @@ void register_analysis() {
     add_batch.operator()<bool>("realizable", realizable);
     add_batch.operator()<double>("entropy", entropy);
     add_batch.operator()<LuChipman>("lu_chipman", lu_chipman);
+    add_batch.operator()<SymmetricDecomposition>("symmetric_decomposition", symmetric_decomposition);
   }
 }
 

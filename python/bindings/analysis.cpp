@@ -43,14 +43,6 @@ void define(py::module_& m, const char* name, Result (*one)(const Mueller&), Man
       doc);
 }
 
-template <std::size_t n>
-std::array<double, 16 * n> flat(const std::array<Mueller, n>& matrices) {
-  std::array<double, 16 * n> result;
-  for (std::size_t i = 0; i < n; ++i)
-    std::copy(matrices[i].elements.begin(), matrices[i].elements.end(), result.begin() + 16 * i);
-  return result;
-}
-
 /// (..., 16 n) → n arrays (..., 4, 4).
 py::tuple split_matrices(const py::object& values, py::ssize_t n) {
   const py::array array = values.cast<py::array>();
@@ -67,6 +59,20 @@ py::tuple split_matrices(const py::object& values, py::ssize_t n) {
 
 py::object named(const char* name, const py::tuple& values) {
   return py::module_::import("mmbrdf").attr(name)(*values);
+}
+
+/// A decomposition into matrices alone, which come as the named tuple of that name.
+template <class Factors>
+void define_factors(py::module_& m, const char* name, const char* tuple, Factors (*one)(const Mueller&),
+                    Many<Factors> many, const char* doc) {
+  constexpr py::ssize_t numbers = sizeof(Factors) / sizeof(double);
+  define_over(
+      m, name,
+      [=](const Given& mueller, Refused refused) {
+        return named(tuple,
+                     split_matrices(over_matrices<Factors>(mueller, refused, one, many, {numbers}), numbers / 16));
+      },
+      doc);
 }
 
 py::object standard_uncertainties(const Given& gradient, const Given& covariance) {
@@ -210,24 +216,10 @@ void bind_sums(py::module_& m) {
 }
 
 void bind_factors(py::module_& m) {
-  define_over(
-      m, "lu_chipman",
-      [](const Given& mueller, Refused refused) {
-        return named("LuChipman", split_matrices(over_matrices<LuChipman>(
-                                                     mueller, refused, [](const Mueller& f) { return lu_chipman(f); },
-                                                     lu_chipman, {48}),
-                                                 3));
-      },
-      "LuChipman(depolarizer, retarder, diattenuator): M is their product. Each (..., 4, 4).");
-  define_over(
-      m, "symmetric_decomposition",
-      [](const Given& mueller, Refused refused) {
-        const auto factors = [](const Mueller& f) {
-          const SymmetricDecomposition d = symmetric_decomposition(f);
-          return flat<5>({d.diattenuator2, d.retarder2, d.depolarizer, d.retarder1, d.diattenuator1});
-        };
-        return named("SymmetricDecomposition", split_matrices(over_matrices(mueller, refused, factors), 5));
-      },
+  define_factors<LuChipman>(m, "lu_chipman", "LuChipman", lu_chipman, lu_chipman,
+                            "LuChipman(depolarizer, retarder, diattenuator): M is their product. Each (..., 4, 4).");
+  define_factors<SymmetricDecomposition>(
+      m, "symmetric_decomposition", "SymmetricDecomposition", symmetric_decomposition, symmetric_decomposition,
       "SymmetricDecomposition(diattenuator2, retarder2, depolarizer, retarder1, diattenuator1): M is the product\n"
       "diattenuator2 retarder2 depolarizer retarder1^T diattenuator1. Each (..., 4, 4).");
 }

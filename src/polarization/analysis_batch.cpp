@@ -35,6 +35,7 @@ bool is_plainly_refused(const Mueller& m) {
     case Analysis::nearest_realizable:
       return m(0, 0) < 0;
     case Analysis::lu_chipman:
+    case Analysis::symmetric_decomposition:
       return !(m(0, 0) > 0) || !realizable(m);
     default:
       return !(m(0, 0) > 0);
@@ -149,6 +150,12 @@ std::size_t cloude_decomposition(std::span<const Mueller> matrices, std::span<Cl
 
 std::size_t lu_chipman(std::span<const Mueller> matrices, std::span<LuChipman> out, const MatricesOptions& options) {
   return run<Analysis::lu_chipman, LuChipman>(matrices, out, lu_chipman, options);
+}
+
+std::size_t symmetric_decomposition(std::span<const Mueller> matrices, std::span<SymmetricDecomposition> out,
+                                    const MatricesOptions& options) {
+  return run<Analysis::symmetric_decomposition, SymmetricDecomposition>(matrices, out, symmetric_decomposition,
+                                                                        options);
 }
 
 }  // namespace mmbrdf

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -53,6 +54,18 @@ Matrix4d normalized_realizable(const Mueller& m) {
     throw std::invalid_argument("the matrix is not realizable, by " + shortest(realizability_margin(m)) +
                                 " of M11; nearest_realizable() gives one that is");
   return matrix(normalized(m));
+}
+
+/// Of M11 where the kernel does not scale M, which is realizable; else 0.
+int exponent_far_away(const Mueller& m) {
+  int exponent = 0;
+  std::frexp(m(0, 0), &exponent);
+  return std::abs(exponent) > 300 && realizable(m) ? exponent : 0;
+}
+
+Mueller times_power_of_two(Mueller m, int exponent) {
+  for (double& element : m.elements) element = bounded(std::ldexp(element, exponent));
+  return m;
 }
 
 /// A(d), |d| ≤ 1; (1 − a) / d² = 1 / (1 + a) has no singularity.
@@ -257,22 +270,10 @@ SymmetricDecomposition unfolded(double m11, const Sandwich& s) {
 }  // namespace
 
 LuChipman lu_chipman(const Mueller& m) {
-  if (const auto numbers = answer_of<Analysis::lu_chipman>(m)) {
-    LuChipman result;
-    auto from = numbers->begin();
-    for (Mueller* factor : {&result.depolarizer, &result.retarder, &result.diattenuator}) {
-      std::copy_n(from, 16, factor->elements.begin());
-      from += 16;
-    }
-    return result;
-  }
-  int exponent = 0;
-  std::frexp(m(0, 0), &exponent);
-  if (std::abs(exponent) > 300 && realizable(m)) {  // which the kernel does not scale
-    Mueller x = m;
-    for (double& element : x.elements) element = std::ldexp(element, -exponent);
-    LuChipman result = lu_chipman(x);
-    for (double& element : result.diattenuator.elements) element = std::ldexp(element, exponent);
+  if (const auto numbers = answer_of<Analysis::lu_chipman>(m)) return std::bit_cast<LuChipman>(*numbers);
+  if (const int exponent = exponent_far_away(m)) {
+    LuChipman result = lu_chipman(times_power_of_two(m, -exponent));
+    result.diattenuator = times_power_of_two(result.diattenuator, exponent);
     return result;
   }
   const Matrix4d n = normalized_realizable(m);
@@ -308,6 +309,13 @@ double depolarization_power(const Mueller& m) {
 }
 
 SymmetricDecomposition symmetric_decomposition(const Mueller& m) {
+  if (const auto numbers = answer_of<Analysis::symmetric_decomposition>(m))
+    return std::bit_cast<SymmetricDecomposition>(*numbers);
+  if (const int exponent = exponent_far_away(m)) {
+    SymmetricDecomposition result = symmetric_decomposition(times_power_of_two(m, -exponent));
+    result.depolarizer = times_power_of_two(result.depolarizer, exponent);
+    return result;
+  }
   const Matrix4d n = normalized_realizable(m);
   const Vector3d d = n.row(0).tail<3>(), p = n.col(0).tail<3>();
   const bool product = is_product(n) && (is_complete(d) || is_complete(p));

@@ -61,6 +61,7 @@ constexpr Analysis every_analysis[] = {
     Analysis::realizability_margin,
     Analysis::entropy,
     Analysis::lu_chipman,
+    Analysis::symmetric_decomposition,
     Analysis::coherency_eigenvalues,
     Analysis::cloude_decomposition,
     Analysis::nearest_realizable,
@@ -191,6 +192,15 @@ TEST(AnalysisKernel, HasTheEntropyOfTheEigenvalues) {
   }
 }
 
+/// The matrices that the kernel wrote from number `first` on.
+template <std::size_t count>
+std::array<Mueller, count> matrices_at(const Answers& answers, std::size_t first) {
+  std::array<Mueller, count> result;
+  for (std::size_t f = 0; f < count; ++f)
+    std::copy_n(answers.numbers.begin() + static_cast<std::ptrdiff_t>(first + 16 * f), 16, result[f].elements.begin());
+  return result;
+}
+
 TEST(AnalysisKernel, MultipliesTheFactorsOfLuAndChipmanBack) {
   const std::vector<Mueller> matrices = realizable_matrices(6000, 10);
   for (const AnalysisKernel* kernel : kernels_that_run_here()) {
@@ -199,10 +209,7 @@ TEST(AnalysisKernel, MultipliesTheFactorsOfLuAndChipmanBack) {
     for (std::size_t q = 0; q < matrices.size(); ++q) {
       if (answers.left[q] != 0) continue;
       ++answered;
-      Mueller factor[3];
-      for (std::size_t f = 0; f < 3; ++f)
-        std::copy_n(answers.numbers.begin() + static_cast<std::ptrdiff_t>(48 * q + 16 * f), 16,
-                    factor[f].elements.begin());
+      const std::array<Mueller, 3> factor = matrices_at<3>(answers, 48 * q);
       const Mueller& m = matrices[q];
       ASSERT_LE(largest(factor[0] * factor[1] * factor[2] - m), lu_chipman_error * m(0, 0)) << kernel->name;
       ASSERT_LE(largest(factor[1] * transpose(factor[1]) - identity()), 1e-14);
@@ -212,6 +219,67 @@ TEST(AnalysisKernel, MultipliesTheFactorsOfLuAndChipmanBack) {
     }
     EXPECT_GT(answered, 2000);  // the others have a polarizer or one pure part, or lie beyond 2^±400
   }
+}
+
+double determinant(const Mueller& retarder) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3 + 1, j = (k + 2) % 3 + 1;
+    sum += retarder(1, k + 1) * (retarder(2, i) * retarder(3, j) - retarder(2, j) * retarder(3, i));
+  }
+  return sum;
+}
+
+// The kernel multiplies the factors, and leaves those that are not n to 1e-13; here rounding comes on top.
+TEST(AnalysisKernel, MultipliesTheSymmetricFactorsBack) {
+  const std::vector<Mueller> matrices = realizable_matrices(6000, 18);
+  for (const AnalysisKernel* kernel : kernels_that_run_here()) {
+    const Answers answers = ask(*kernel, Analysis::symmetric_decomposition, matrices);
+    int answered = 0;
+    for (std::size_t q = 0; q < matrices.size(); ++q) {
+      if (answers.left[q] != 0) continue;
+      ++answered;
+      const auto [d2, r2, depolarizer, r1, d1] = matrices_at<5>(answers, 80 * q);
+      const Mueller& m = matrices[q];
+      ASSERT_LE(largest(d2 * r2 * depolarizer * transpose(r1) * d1 - m), 1.5e-13 * m(0, 0)) << kernel->name;
+      for (const Mueller& retarder : {r1, r2}) {
+        ASSERT_LE(largest(retarder * transpose(retarder) - identity()), 1e-14);
+        ASSERT_NEAR(determinant(retarder), 1, 1e-14);
+      }
+      for (const Mueller& d : {d1, d2}) {
+        ASSERT_EQ(d, transpose(d));
+        ASSERT_NEAR(depolarization(d), 1, 1e-14);
+      }
+      const double* e = depolarizer.elements.data();
+      ASSERT_EQ(depolarizer, diagonal(e[0], e[5], e[10], e[15]));
+      ASSERT_TRUE(e[5] >= e[10] && e[10] >= std::abs(e[15])) << e[5] << " " << e[10] << " " << e[15];
+    }
+    EXPECT_GT(answered, 2000);  // the others have a polarizer, or lie beyond 2^±400
+  }
+}
+
+TEST(AnalysisKernel, HasNoDiattenuatorInFrontOfAMatrixThatDoesNotDepolarize) {
+  RandomMueller source(19);
+  std::vector<Mueller> matrices(2000);
+  for (Mueller& m : matrices) m = source.pure(0);
+  for (const AnalysisKernel* kernel : kernels_that_run_here()) {
+    const Answers answers = ask(*kernel, Analysis::symmetric_decomposition, matrices);
+    EXPECT_LT(std::ranges::count(answers.left, 1), 20);  // beside nearly a polarizer digits are few
+    for (std::size_t q = 0; q < matrices.size(); ++q) {
+      if (answers.left[q] != 0) continue;
+      const auto factors = matrices_at<5>(answers, 80 * q);
+      ASSERT_EQ(factors[4], identity()) << kernel->name;
+      ASSERT_NEAR(factors[2](3, 3) / factors[2](0, 0), 1, 1e-12);
+    }
+  }
+}
+
+TEST(AnalysisKernel, LeavesWhatHasNoDiagonalDepolarizerOrManyRetarders) {
+  const Mueller second_type{{2, -1, 0, 0, 1, 0, 0, 0, 0, 0, 0.3, 0, 0, 0, 0, 0.3}};  // Ossikovski 2010
+  const std::vector<Mueller> matrices{second_type, diagonal(1, 0, 0, 0), diagonal(1, 0.5, 0, 0),
+                                      diagonal(1, 0.5, 1e-12, 1e-13)};
+  for (const AnalysisKernel* kernel : kernels_that_run_here())
+    EXPECT_EQ(ask(*kernel, Analysis::symmetric_decomposition, matrices).left, std::vector<unsigned char>(4, 1));
 }
 
 TEST(AnalysisKernel, SumsCloudesPartsToTheMatrix) {
@@ -265,9 +333,14 @@ TEST(AnalysisKernel, LeavesToTheRuleOfRanksWhatIsOfRankTwo) {
 }
 
 TEST(AnalysisBatch, GivesTheSameFactorsInAnyUnit) {
+  RandomMueller source(21);
+  const Mueller other = diagonal(1, 0, 0, 0) + source.pure(3) + source.pure(3) * diagonal(1, 0.5, 0.2, 0.1);
   for (const double scale : {1e-300, 1e-150, 1e-100, 1e100, 1e121, 1e150, 1e300}) {
     const Mueller m = diagonal(1, 1e-9, 1e-9, -3e-16);
     EXPECT_LT(largest(lu_chipman(scale * m).retarder - lu_chipman(m).retarder), 1e-12) << scale;
+    const SymmetricDecomposition f = symmetric_decomposition(other), scaled = symmetric_decomposition(scale * other);
+    EXPECT_LT(largest(scaled.diattenuator1 - f.diattenuator1), 1e-11) << scale;
+    EXPECT_LT(largest((1 / scale) * scaled.depolarizer - f.depolarizer), 1e-11) << scale;
   }
 }
 
@@ -322,6 +395,28 @@ TEST(AnalysisBatch, GivesEachMatrixTheBitsThatItHasAloneOnAnyNumberOfThreads) {
       ASSERT_EQ(factors[q].diattenuator, alone.diattenuator);
     }
   }
+}
+
+TEST(AnalysisBatch, GivesTheSymmetricFactorsTheBitsThatTheyHaveAlone) {
+  const std::vector<Mueller> matrices = realizable_matrices(3000, 20);
+  std::vector<SymmetricDecomposition> factors(matrices.size());
+  const MatricesOptions options{.threads = 3, .refused = Refused::nan};
+  std::size_t refused = symmetric_decomposition(matrices, factors, options);
+  for (std::size_t q = 0; q < matrices.size(); ++q) {
+    const SymmetricDecomposition& f = factors[q];
+    if (std::isnan(f.depolarizer(0, 0))) {
+      EXPECT_THROW(symmetric_decomposition(matrices[q]), std::invalid_argument);
+      --refused;
+      continue;
+    }
+    const SymmetricDecomposition alone = symmetric_decomposition(matrices[q]);
+    ASSERT_EQ(f.diattenuator2, alone.diattenuator2);
+    ASSERT_EQ(f.retarder2, alone.retarder2);
+    ASSERT_EQ(f.depolarizer, alone.depolarizer);
+    ASSERT_EQ(f.retarder1, alone.retarder1);
+    ASSERT_EQ(f.diattenuator1, alone.diattenuator1);
+  }
+  EXPECT_EQ(refused, 0U);
 }
 
 TEST(AnalysisBatch, NamesTheFirstMatrixThatIsRefusedAndHowManyAre) {

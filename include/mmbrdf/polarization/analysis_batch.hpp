@@ -43,5 +43,7 @@ std::size_t cloude_decomposition(std::span<const Mueller> matrices, std::span<Cl
                                  const MatricesOptions& options = {});
 std::size_t lu_chipman(std::span<const Mueller> matrices, std::span<LuChipman> out,
                        const MatricesOptions& options = {});
+std::size_t symmetric_decomposition(std::span<const Mueller> matrices, std::span<SymmetricDecomposition> out,
+                                    const MatricesOptions& options = {});
 
 }  // namespace mmbrdf

@@ -6,6 +6,7 @@
 #include "polarization/kernel/logarithm_pack.hpp"
 #include "polarization/kernel/matrix_pack.hpp"
 #include "polarization/kernel/polar_pack.hpp"
+#include "polarization/kernel/symmetric_pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {
@@ -155,17 +156,40 @@ Mask cloude_decomposition(const double* from, double* out) {
   return scaled.ordinary;
 }
 
+/// What can be decomposed, over its M11; 1 elsewhere.
+struct DecomposablePack {
+  R n[16], intensity;
+  Mask possible;
+
+  MMBRDF_INLINE explicit DecomposablePack(const double* from) {
+    const ScaledPack scaled(from);
+    possible = scaled.has_intensity() & realizable(scaled.m);
+    intensity = scaled.back * scaled.m[0];
+    const R inverse = R(1.0) / select(possible, scaled.m[0], R(1.0));
+    for (int e = 0; e < 16; ++e) n[e] = select(possible, inverse * scaled.m[e], R(e % 5 == 0 ? 1.0 : 0.0));
+  }
+};
+
 Mask lu_chipman(const double* from, double* out) {
-  const ScaledPack scaled(from);
-  const Mask ordinary = scaled.has_intensity() & realizable(scaled.m);
-  const R inverse = R(1.0) / select(ordinary, scaled.m[0], R(1.0));
-  R n[16], depolarizer[16], retarder[16], diattenuator[16];
-  for (int e = 0; e < 16; ++e) n[e] = select(ordinary, inverse * scaled.m[e], R(e % 5 == 0 ? 1.0 : 0.0));
-  const Mask regular = lu_chipman(n, scaled.back * scaled.m[0], depolarizer, retarder, diattenuator);
+  const DecomposablePack m(from);
+  R depolarizer[16], retarder[16], diattenuator[16];
+  const Mask regular = lu_chipman(m.n, m.intensity, depolarizer, retarder, diattenuator);
   store_matrices(depolarizer, out, 48);
   store_matrices(retarder, out + 16, 48);
   store_matrices(diattenuator, out + 32, 48);
-  return ordinary & regular;
+  return m.possible & regular;
+}
+
+Mask symmetric_decomposition(const double* from, double* out) {
+  const DecomposablePack m(from);
+  SymmetricPack factors;
+  const Mask regular = symmetric_decomposition(m.n, m.intensity, factors);
+  store_matrices(factors.diattenuator2, out, 80);
+  store_matrices(factors.retarder2, out + 16, 80);
+  store_matrices(factors.depolarizer, out + 32, 80);
+  store_matrices(factors.retarder1, out + 48, 80);
+  store_matrices(factors.diattenuator1, out + 64, 80);
+  return m.possible & regular;
 }
 
 Mask coherency_eigenvalues(const double* from, double* out) {
@@ -189,7 +213,7 @@ bool run(Work work, size_t numbers, const double* from, size_t count, double* ou
   size_t q = 0;
   for (; q + width <= count; q += width) pack(from + 16 * q, out + numbers * q, left + q, width);
   if (q < count) {
-    double matrices[16 * width], results[68 * width];
+    double matrices[16 * width], results[most_numbers * width];
     for (size_t lane = 0; lane < width; ++lane) {
       const double* const matrix = from + 16 * (q + lane < count ? q + lane : count - 1);
       for (size_t e = 0; e < 16; ++e) matrices[16 * lane + e] = matrix[e];
@@ -235,6 +259,9 @@ bool run(Analysis analysis, const double* from, size_t count, double* out, unsig
       return run(cloude_decomposition, numbers, from, count, out, left);
     case Analysis::lu_chipman:
       return run([](const double* m, double* to) { return lu_chipman(m, to); }, numbers, from, count, out, left);
+    case Analysis::symmetric_decomposition:
+      return run([](const double* m, double* to) { return symmetric_decomposition(m, to); }, numbers, from, count, out,
+                 left);
   }
   return false;
 }

@@ -17,14 +17,16 @@ enum class Analysis {
   purity,
   realizability_margin,
   entropy,
-  coherency_eigenvalues,  ///< rising
-  nearest_realizable,     ///< the matrix; how far it is
-  cloude_decomposition,   ///< weights, falling; components
-  lu_chipman,             ///< depolarizer; retarder; diattenuator
+  coherency_eigenvalues,    ///< rising
+  nearest_realizable,       ///< the matrix; how far it is
+  cloude_decomposition,     ///< weights, falling; components
+  lu_chipman,               ///< depolarizer; retarder; diattenuator
+  symmetric_decomposition,  ///< diattenuator 2, retarder 2; depolarizer; retarder 1, diattenuator 1
 };
 
 /// How many numbers come out of each.
-inline constexpr size_t numbers_of[] = {1, 1, 1, 1, 1, 1, 1, 4, 17, 68, 48};
+inline constexpr size_t numbers_of[] = {1, 1, 1, 1, 1, 1, 1, 4, 17, 68, 48, 80};
+inline constexpr size_t most_numbers = 80;
 
 /// The same functions for one instruction set. What they compute for a matrix does not depend on its neighbours.
 struct AnalysisKernel {

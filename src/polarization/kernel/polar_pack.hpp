@@ -1,30 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Lu and Chipman's factors, one matrix in each lane. Vectors are three Packs, 3 × 3 matrices nine, row by row.
+/// Lu and Chipman's factors, one matrix in each lane.
 #pragma once
 
-#include "numerics/pack.hpp"
-#include "polarization/kernel/coherency_pack.hpp"
+#include "polarization/kernel/vector_pack.hpp"
 
 namespace mmbrdf::MMBRDF_ISA {
 namespace {
-
-MMBRDF_INLINE R dot(const R* a, const R* b) { return fma(a[0], b[0], fma(a[1], b[1], a[2] * b[2])); }
-MMBRDF_INLINE void cross(const R* a, const R* b, R* out) {
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    out[k] = fms(a[i], b[j], a[j] * b[i]);
-  }
-}
-MMBRDF_INLINE R squares(const R (&x)[9]) { return dot(x, x) + dot(x + 3, x + 3) + dot(x + 6, x + 6); }
-/// |x| x⁻ᵀ
-MMBRDF_INLINE void cofactors(const R (&x)[9], R (&out)[9]) {
-  cross(x + 3, x + 6, out), cross(x + 6, x, out + 3), cross(x, x + 3, out + 6);
-}
-/// a bᵀ
-MMBRDF_INLINE void times_transposed(const R (&a)[9], const R (&b)[9], R (&out)[9]) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) out[3 * i + j] = dot(a + 3 * i, b + 3 * j);
-}
 
 /// A rotation y near the one of b = h y, h positive definite, made as exact as rounding allows: b yᵀ = h exp Ω, whose
 /// skew part has the axis (tr h − h) ω; then one step towards yᵀy = 1.
@@ -82,49 +63,30 @@ MMBRDF_INLINE void rotation_of(const R (&b)[9], R (&y)[9]) {
 /// `intensity` is M11. Returns where it is.
 MMBRDF_INLINE Mask lu_chipman(const R (&n)[16], R intensity, R (&depolarizer)[16], R (&retarder)[16],
                               R (&diattenuator)[16]) {
-  const R zero(0.0), one(1.0), half(0.5), *d = n + 1;
-  const R length = sqrt(dot(d, d)), a = sqrt((one - length) * (one + length));
-  const R over_length = select(length.v > 0.0, one / select(length.v > 0.0, length, one), zero);
-  const R axis[3] = {over_length * d[0], over_length * d[1], over_length * d[2]};
-  const R over_plus = one / (one + length), over_minus = one / (one - length), over_a = one / a;
+  const R zero(0.0), one(1.0), half(0.5);
+  const DiattenuatorPack in_front(n + 1);
   R x[9];
   for (int row = 0; row < 3; ++row) {
-    const R *b = n + 4 * row + 5, first = n[4 * row + 4], along = dot(b, axis);
-    R across[3];
-    for (int k = 0; k < 3; ++k) across[k] = fnma(along, axis[k], b[k]);
-    const R rest = dot(across, axis);
-    for (int k = 0; k < 3; ++k) across[k] = fnma(rest, axis[k], across[k]);
-    const R plus = (first + along) * over_plus, minus = (first - along) * over_minus;
-    depolarizer[4 * row + 4] = half * (plus + minus);
-    for (int k = 0; k < 3; ++k) x[3 * row + k] = fma(half * (plus - minus), axis[k], over_a * across[k]);
+    R &first = depolarizer[4 * row + 4], *const b = x + 3 * row;
+    first = n[4 * row + 4];
+    for (int k = 0; k < 3; ++k) b[k] = n[4 * row + 5 + k];
+    in_front.take_from(first, b);
   }
   R cofactor[9], y[9], product[9];
   cofactors(x, cofactor);
   const R determinant = dot(x, cofactor), size = squares(x), sign = copy_sign(one, determinant);
   // With σ1 σ2 at most half of the sum of squares, the last bound leaves no σ3 that the ranks of lu_chipman() count as 0.
-  const Mask singular = (length.v > 1 - 1e-6) | (absolute(determinant).v < (R(1e-8) * size * sqrt(size)).v) |
+  const Mask singular = (in_front.length.v > 1 - 1e-6) | (absolute(determinant).v < (R(1e-8) * size * sqrt(size)).v) |
                         (absolute(determinant).v < (R(1e-12) * size).v) | (size.v < 1e-20);
   for (int k = 0; k < 9; ++k) x[k] = select(singular, k % 4 == 0 ? one : zero, sign * x[k]);
   rotation_of(x, y);
   times_transposed(x, y, product);
-  depolarizer[0] = retarder[0] = one;
-  for (int j = 1; j < 4; ++j) depolarizer[j] = retarder[j] = zero;
-  for (int i = 0; i < 3; ++i) {
-    retarder[4 * i + 4] = zero;
-    for (int j = 0; j < 3; ++j) {
-      depolarizer[4 * i + 5 + j] = sign * (half * (product[3 * i + j] + product[3 * j + i]));
-      retarder[4 * i + 5 + j] = y[3 * i + j];
-    }
-  }
-  const R factor = one / (one + a);
-  diattenuator[0] = intensity;
-  for (int i = 0; i < 3; ++i) {
-    diattenuator[i + 1] = diattenuator[4 * i + 4] = intensity * d[i];
-    for (int j = 0; j < 3; ++j) {
-      const R outer = factor * (d[i] * d[j]);
-      diattenuator[4 * i + 5 + j] = intensity * (i == j ? a + outer : outer);
-    }
-  }
+  depolarizer[0] = one;
+  for (int j = 1; j < 4; ++j) depolarizer[j] = zero;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) depolarizer[4 * i + 5 + j] = sign * (half * (product[3 * i + j] + product[3 * j + i]));
+  retarder_of(y, retarder);
+  in_front.matrix(intensity, diattenuator);
   return ~singular;
 }
 
