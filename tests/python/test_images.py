@@ -330,6 +330,18 @@ def test_small_slips_are_refused_in_a_line(camera):
             images.simulate(shape)
 
 
+@pytest.mark.parametrize("lazy", [False, True])
+@pytest.mark.parametrize("ask", [images.reduce, lambda *of: images.uncertainty(*of, {"shot": 1e-4})])
+def test_a_stack_of_complex_numbers_does_not_lose_a_part_of_them(camera, ask, lazy):
+    stack = camera.stack.astype(complex)
+    if lazy:
+        stack = pytest.importorskip("dask.array", reason="no dask: ./dev packages clusters").from_array(
+            stack, chunks=(3, 8, -1)
+        )
+    with pytest.raises(TypeError, match="^stack: expected real numbers, not complex128$"):
+        ask(stack, camera.instrument.at(0, 0))
+
+
 def test_shapes_that_do_not_fit_are_named(camera, calibrated):
     with pytest.raises(ValueError, match="the last axis has 15 frames, the instrument 16"):
         images.reduce(camera.stack[..., :15], calibrated)

@@ -106,8 +106,6 @@ def reduce(
     if _chunks.is_lazy(stack):
         return _reduced_lazily(stack, own, dark, saturation, mask)
     array = nan_where_masked(stack, np.float32)
-    if array.dtype.kind not in "biuf":
-        raise TypeError(f"stack: expected real numbers, not {array.dtype}")
     _checked(array, own)
     return _reduced(array, own, _dark_for(dark, array), saturation, _mask_for(mask, array), progress)
 

@@ -20,7 +20,9 @@ _ROWS_AT_ONCE = 1 << 15  # pixels: what is in between stays near the cache, what
 
 
 def _checked(stack: Any, instrument: Polarimeter | PixelInstrument) -> None:
-    """Refuses a stack that is not the instrument's, and says which axis it is."""
+    """Refuses a stack of no real numbers, and one that is not the instrument's, and says which axis it is."""
+    if stack.dtype.kind not in "biuf":
+        raise TypeError(f"stack: expected real numbers, not {stack.dtype}")
     shape = stack.shape
     if len(shape) < 1 or shape[-1] != _frames(instrument):
         raise ValueError(
