@@ -6,6 +6,7 @@
 #include <span>
 
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/text/printable.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -24,7 +25,7 @@ std::vector<TypeBTerm> terms_from(const Terms& named) {
   for (const auto& [name, uncertainty] : named.value_or(std::map<std::string, double>{})) {
     const auto what = known.find(name);
     if (what == known.end())
-      throw std::invalid_argument("terms: " + name +
+      throw std::invalid_argument("terms: " + shown_name(name) +
                                   ": expected scale, theta_i_deg, theta_r_deg, azimuth_deg or calibration");
     terms.push_back({name, what->second, name.ends_with("_deg") ? radians(uncertainty) : uncertainty});
   }

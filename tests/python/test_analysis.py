@@ -194,6 +194,8 @@ def test_a_term_is_one_error_for_all_directions(ptfe):
     assert both[0, 0] == pytest.approx(np.hypot(alone[0, 0], 0.003 * mean[0, 0]), rel=1e-6)
     with pytest.raises(ValueError, match="terms: phi"):
         mmbrdf.bihemispherical_uncertainty(ptfe, 532, terms={"phi": 1})
+    with pytest.raises(ValueError, match=r"^terms: 'phi\\x0a': expected scale, [^\n]*$"):
+        mmbrdf.bihemispherical_uncertainty(ptfe, 532, terms={"phi\n": 1})
 
 
 def test_a_budget_can_be_signed(ptfe):
