@@ -190,7 +190,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
     const double dhr = std::inner_product(slopes.begin(), slopes.end(), solution.x.begin(), 0.0);
     if (!(dhr > 0))
       throw std::invalid_argument("the normal-incidence reflectance at " + nanometre_number(wavelength) +
-                                  " nm comes out as " + shortest(dhr) + "; give a reflectance table");
+                                  " nm comes out as " + rounded(dhr, 2) + "; give a reflectance table");
     table.wavelengths.push_back(wavelength);
     table.values.push_back(dhr);
   }

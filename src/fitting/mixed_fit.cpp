@@ -65,7 +65,7 @@ void divide_other_units(const MixedRounds& rounds, FitOptions& options) {
   const auto& [wavelength, only] = *rounds.first().begin();
   const double found = brightness(only, 1);
   if (rounds.first().size() > 1 || options.reflectance || has_variances(found)) return;
-  if (!(found > 0)) throw MixedFailure("the mean of f11 is " + shortest(only.mean));
+  if (!(found > 0)) throw MixedFailure("the mean of f11 is " + rounded(only.mean, 2));
   options.reflectance = ReflectanceTable{{wavelength}, {found}};
 }
 
