@@ -373,7 +373,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
       reason = failure.what();
     }
   FitResult result = FitAccumulator::of_noise(samples, basis, options, weights);
-  result.warnings.push_back(only_noise(reason));
+  result.warnings.push_back(only_noise(reason, options.declared));
   return result;
 }
 

@@ -156,11 +156,20 @@ void say_left_out(const MixedRounds& rounds, FitResult& result) {
   result.warnings.push_back("left out of the fit: " + few);
 }
 
+/// Of blocks that have readings, the elements that have none.
+Elements unread(const std::vector<MixedColumns>& columns, const Elements& known) {
+  Elements result;
+  for (const MixedColumns& block : columns)
+    for (const Element& element : block.isotropic().elements) result[element.index()] = !known[element.index()];
+  return result;
+}
+
 /// What is kept of them.
 Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const DeclaredErrors& declared,
                        BlockFits fits, const BlockSums& sums) {
   const Basis& basis = rounds.basis();
-  PosteriorData data{generous(basis.orders), basis.mapping, ~rounds.kinds().known(), shared_errors(declared), {}, {}};
+  PosteriorData data{generous(basis.orders), basis.mapping, evaluated.not_measured, shared_errors(declared), {}, {}};
+  data.unread = unread(mixed_columns(basis, ~rounds.kinds().known()), rounds.kinds().known());
   for (std::size_t at = 0; const auto& [wavelength, first] : rounds.first()) {
     PosteriorAt known{wavelength, first.law, first.f11, 0, {}};
     for (double& coefficient : known.f11) coefficient /= evaluated.reflectance.at(wavelength);
@@ -184,7 +193,7 @@ Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const 
 FitResult noise_fit(const MixedRounds& rounds, const FitOptions& options, const std::string& reason) {
   FitResult result = least_squares(rounds, options).result;
   say_left_out(rounds, result);
-  result.warnings.push_back(only_noise(reason));
+  result.warnings.push_back(only_noise(reason, options.declared));
   return result;
 }
 
@@ -213,7 +222,10 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
   return std::move(result);
 }
 
-std::string only_noise(const std::string& reason) { return "uncertainties are those of the noise alone: " + reason; }
+std::string only_noise(const std::string& reason, const DeclaredErrors& declared) {
+  return "uncertainties are those of the noise alone: " + reason +
+         (declared == DeclaredErrors{} ? "" : "; what was declared is not in them: give it with --term later");
+}
 
 std::string only_residuals(Covariance covariance) {
   return "the covariance " + to_string(covariance) + " is one of them";
