@@ -245,7 +245,8 @@ std::string uncertain_of(const Model& model) {
 
 std::string missing_from_uncertainty(const Model& model) {
   std::vector<std::string> missing;
-  if (!model.provenance.contains("certificate") && !declares(model, 0, 1)) missing.emplace_back("scale");
+  if (!model.provenance.contains("certificate") && !declares(model, 0, 1))  // that of an instrument is its own
+    missing.emplace_back(model.provenance.contains("instrument") ? "solid angle" : "scale");
   if (!declares(model, 1, declared_errors)) missing.emplace_back("angles");
   if (!model.posterior) missing.emplace_back("sample");
   std::string text;
