@@ -10,6 +10,7 @@
 
 #include "basis/spectral.hpp"
 #include "fitting/fit_to_predict.hpp"
+#include "fitting/undetermined.hpp"
 #include "mixed/block_fit.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "numerics/dense.hpp"
@@ -164,6 +165,43 @@ Elements unread(const std::vector<MixedColumns>& columns, const Elements& known)
   return result;
 }
 
+/// Not lower than those that a fit has by default.
+Basis at_default_orders(Basis basis) {
+  basis.orders = {std::max(basis.orders.f11, Orders{}.f11), std::max(basis.orders.other, Orders{}.other)};
+  return basis;
+}
+
+/// Elements without readings that those of the others leave open at these orders. In few modes they may be determined, and what
+/// the others are then is taken for knowledge that no reading gave.
+Elements left_open(const MixedColumns& columns, const Gram& gram, const Basis& basis) {
+  constexpr double least = 1e-12;  // of the largest eigenvalue: squares of singular values
+  const std::vector<Block> all = blocks(Family::isotropic, basis.orders);
+  const Block& block = *std::ranges::find(all, columns.isotropic().name, &Block::name);
+  const std::vector<Index> kept = columns_of(block, columns.isotropic());
+  const MatrixXd whole = gram.g.selfadjointView<Eigen::Lower>();
+  const auto [vectors, values] = dense::eigensystem(whole(kept, kept));
+  const Index free = (values.array() < least * values(values.size() - 1)).count();
+  Solution solution;
+  solution.x.resize(kept.size());
+  solution.rank = static_cast<int>(values.size() - free);
+  solution.null_space.assign(vectors.data(), vectors.data() + free * vectors.rows());  // values rise
+  Elements result;
+  for (const Element& element : columns.isotropic().elements)
+    if (std::ranges::find(columns.read(), element) == columns.read().end())
+      result[element.index()] = !determines(solution, block, basis, element.index());
+  return result;
+}
+
+/// At one of the wavelengths at least.
+Elements left_open(const MixedRounds& rounds, const std::vector<MixedColumns>& columns, const BlockSums& sums) {
+  Elements result;
+  for (std::size_t b = 0; b < columns.size(); ++b)
+    if (columns[b].read().size() < columns[b].isotropic().elements.size())
+      for (const auto& [wavelength, first] : rounds.first())
+        result |= left_open(columns[b], sums.gram(wavelength, b), at_default_orders(rounds.basis()));
+  return result;
+}
+
 /// What is kept of them.
 Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const DeclaredErrors& declared,
                        BlockFits fits, const BlockSums& sums) {
@@ -207,7 +245,9 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
       throw MixedFailure("f11 at " + shortest(in_nanometres(wavelength)) + " nm is that of an albedo of " +
                          rounded(found, 2) + ": is it in sr^-1, and the reflectance a part of 1?");
   tried([&] {
-    BlockFits fits = block_fits(rounds, model, mixed_columns(rounds.basis(), ~rounds.kinds().known()), sums);
+    const std::vector<MixedColumns> columns = mixed_columns(rounds.basis(), ~rounds.kinds().known());
+    model.not_measured |= left_open(rounds, columns, sums);
+    BlockFits fits = block_fits(rounds, model, columns, sums);
     for (std::size_t b = 0; b < model.blocks.size(); ++b) {
       model.blocks[b].coefficients = through(model.validity.wavelengths, fits, b, model.powers);
       model.blocks[b].covariance.clear();

@@ -311,6 +311,21 @@ TEST(NotMeasured, PartsOfABlockHaveTheUncertaintyOfTheSample) {
   EXPECT_LT(growth, 3);  // four readings are one: 2, where all columns are determined
 }
 
+// Three planes of a goniometer: few modes of 12 give 13, 21 and 31, more do not, and what they are then no reading says.
+TEST(NotMeasured, PartsOfABlockGiveTheOthersAtTheDefaultOrdersOrNotAtAll) {
+  std::vector<Geometry> planes;
+  for (int i = 0; i <= 60; i += 15)
+    for (int plane = 0; plane <= 90; plane += 45)
+      for (int r = -70; r <= 70; r += 10) planes.push_back(in_degrees(i, 0, std::abs(r), plane + (r < 0 ? 0 : 180)));
+  const std::vector<Sample> samples =
+      without(Elements(0xfffc), simulate(material("ptfe-532"), std::array{0.532}, planes, 0.004, 1));
+  const Basis few{Family::isotropic, {4, 2}};
+  EXPECT_EQ(fit(samples, few).model.not_measured & Elements(0x0114), Elements());
+  const Model model = fit_sample(samples, few).model;
+  ASSERT_TRUE(model.posterior);
+  EXPECT_EQ(model.not_measured & Elements(0x0116), Elements(0x0114));
+}
+
 TEST(NotMeasured, PartsOfABlockAreKeptInTheFileOfAModel) {
   const Model model = fit_sample(without(Elements(0xfffc), of_ptfe()), {Family::isotropic, {5, 3}}).model;
   const Folder folder;
