@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "mmbrdf/files/write_file.hpp"
@@ -68,6 +70,21 @@ int wrong_usage(const CLI::App& app, const std::exception& error) {
   return 2;
 }
 
+/// "A and B are required: ", and what the first of the arguments that are not there may be; empty if all of them are.
+std::string missing_arguments(const CLI::App& app) {
+  std::vector<std::string> names;
+  std::string what;
+  for (const CLI::App* chosen : app.get_subcommands())
+    for (const CLI::Option* option : chosen->get_options()) {
+      if (!option->get_required() || !option->get_positional() || !option->empty()) continue;
+      if (names.empty()) what = option->get_description();
+      names.push_back(option->get_name());
+    }
+  if (names.empty()) return "";
+  std::ranges::replace(what, '\n', ' ');
+  return joined(names, " and ") + (names.size() > 1 ? " are" : " is") + " required: " + what;
+}
+
 /// Without the program's name, backwards as CLI11 wants them. "help COMMAND" is "COMMAND --help".
 std::vector<std::string> words_to_parse(const CommandLine& line) {
   std::vector<std::string> words = line.words;
@@ -123,6 +140,9 @@ int run(int argc, char** argv) {
     std::cout << app.help();
   } catch (const CLI::CallForVersion&) {
     std::cout << software() << '\n';
+  } catch (const CLI::RequiredError& error) {
+    const std::string arguments = missing_arguments(app);
+    return wrong_usage(app, arguments.empty() ? std::runtime_error(error.what()) : std::runtime_error(arguments));
   } catch (const CLI::ParseError& error) {
     return wrong_usage(app, error);
   } catch (const WrongUsage& error) {

@@ -13,6 +13,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 
+def said(error: Exception) -> str:
+    """An error in a line: of the system, which file and what."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f"{os.fspath(error.filename)}: {error.strerror}"
+    return str(error)
+
+
 def identity(path: str | os.PathLike[str]) -> tuple[int, ...]:
     """Another one when the file was replaced, or written into."""
     at = os.stat(path)

@@ -22,7 +22,7 @@ import numpy as np
 from . import Dataset, Model, __version__, _table_options, material, materials, report_json
 from ._arguments import number, require
 from ._browser import printed
-from ._files import digest, digest_of_what_was_read, identity
+from ._files import digest, digest_of_what_was_read, identity, said
 from ._mmbrdf import _report_document, _report_markdown, _shown_name_of, _utc_timestamp, _write_text
 from ._pages import PAPERS, document, parts
 
@@ -358,7 +358,6 @@ def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.
         print(f"{own}: a report with pictures needs matplotlib: {error}", file=sys.stderr)
         return 1
     except (OSError, ValueError) as error:
-        said = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
-        print(f"{own}: {said}", file=sys.stderr)
+        print(f"{own}: {said(error)}", file=sys.stderr)
         return 1
     return 0

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import argparse
+import os
 from typing import Any
 
-from . import Dataset, Model, load, read_samples
+from . import Dataset, Model, load, materials, read_samples
 from ._mmbrdf import _holds_samples
 
 FRAMES = ("xy", "sp", "scattering_plane")
@@ -63,7 +64,9 @@ def words(options: argparse.Namespace) -> list[str]:
 
 
 def opened(name: str, options: argparse.Namespace) -> Model | Dataset:
-    """A model, or samples whose table is read as the options say."""
+    """A model, or samples whose table is read as the options say. Raises ValueError where there is no such file."""
+    if not os.path.exists(name):
+        raise ValueError(f"{name}: no such file, and not a built-in model ({', '.join(materials())})")
     if not _holds_samples(name):
         return load(name)
     how: dict[str, Any] = {

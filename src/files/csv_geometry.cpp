@@ -58,6 +58,15 @@ std::string unit_hint(const CsvReader& reader, const std::string& bare, const st
              : "; is " + name + " in degrees or radians? Call it " + bare + "_deg or " + bare + "_rad";
 }
 
+/// ", nor theta_r_deg, nor phi_r_deg": angles behind one that is missing that are missing, too.
+std::string also_missing(const CsvReader& reader, std::size_t after, bool relative_azimuth) {
+  std::string text;
+  for (std::size_t a = after + 1; a < angle_names.size(); ++a)
+    if (reader.find(angle_names[a]) < 0 && reader.find(radian_names[a]) < 0 && !(a % 2 == 1 && relative_azimuth))
+      text.append(", nor ").append(angle_names[a][0]);
+  return text;
+}
+
 }  // namespace
 
 GeometryColumns::GeometryColumns(const CsvReader& reader, double wavelength) : wavelength_(wavelength) {
@@ -86,6 +95,7 @@ GeometryColumns::GeometryColumns(const CsvReader& reader, double wavelength) : w
     }
     if (angles_[a] < 0 && !(a == 1 && relative_azimuth_))
       throw reader.error("no column " + own + " (nor " + std::string(angle_names[a][1]) + ")" +
+                         also_missing(reader, a, relative_azimuth_) +
                          unit_hint(reader, own.substr(0, own.size() - 4), own));
   }
 }

@@ -147,6 +147,24 @@ inline void require_count(const Field& field, std::size_t count, std::size_t nee
     field.refuse(std::to_string(count) + " numbers in place of " + std::to_string(needed) + ", " + what);
 }
 
+inline Elements read_elements(const Field& field) {
+  Elements result;
+  for (const Field& item : field.items()) {
+    std::size_t e = 0;
+    while (e < 16 && item.text() != element_name(e)) ++e;
+    if (e == 16) item.refuse(item.shown() + " is none of the elements 11 ... 44");
+    result.set(e);
+  }
+  return result;
+}
+
+inline nlohmann::ordered_json elements_json(const Elements& elements) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
+  for (std::size_t e = 0; e < 16; ++e)
+    if (elements[e]) result.push_back(element_name(e));
+  return result;
+}
+
 /// The square matrix from its lower triangle.
 inline std::vector<double> read_covariance(const Field& field, std::size_t size) {
   const std::vector<double> triangle = field.numbers();

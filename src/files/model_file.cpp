@@ -123,17 +123,6 @@ std::optional<double> read_polar_angle(const Field& field) {
   return radians(value);
 }
 
-Elements read_elements(const Field& field) {
-  Elements result;
-  for (const Field& item : field.items()) {
-    std::size_t e = 0;
-    while (e < 16 && item.text() != element_name(e)) ++e;
-    if (e == 16) item.refuse(item.shown() + " is none of the elements 11 ... 44");
-    result.set(e);
-  }
-  return result;
-}
-
 SupportedPairs read_supported(const Field& field) {
   field.require_no_other_than({"wavelength_um", "pairs"});
   const auto bytes = from_base64(field["pairs"].text());
@@ -257,8 +246,7 @@ ordered_json model_json(const Model& model) {
     root["validity"]["supported"].push_back({{"wavelength_um", wavelength}, {"pairs", to_base64(pairs.bytes())}});
   if (!model.reflectance.wavelengths.empty()) root["reflectance"] = reflectance_json(model.reflectance);
   root["provenance"] = model.provenance;
-  for (std::size_t e = 0; e < 16; ++e)
-    if (model.not_measured[e]) root["not_measured"].push_back(element_name(e));
+  if (model.not_measured.any()) root["not_measured"] = elements_json(model.not_measured);
   root["blocks"] = ordered_json::array();
   for (const FittedBlock& fitted : model.blocks) root["blocks"].push_back(block_json(fitted));
   if (model.posterior) root["posterior"] = posterior_json(*model.posterior);

@@ -137,6 +137,7 @@ ordered_json posterior_json(const Posterior& posterior) {
   const PosteriorData& data = posterior.data();
   ordered_json result = {{"orders", {data.orders.f11, data.orders.other}}};
   for (const auto& [name, size] : data.errors) result["shared_errors"].push_back({{"name", name}, {"size", size}});
+  if (data.unread.any()) result["unread"] = elements_json(data.unread);
   result["readings"] = ordered_json::array();
   for (const auto& list : data.readings) result["readings"].push_back(readings_json(list));
   for (const PosteriorAt& at : data.wavelengths) {
@@ -153,7 +154,7 @@ ordered_json posterior_json(const Posterior& posterior) {
 }
 
 PosteriorData read_posterior_data(const Field& field, DiscMapping mapping, const Elements& not_measured) {
-  field.require_no_other_than({"orders", "shared_errors", "readings", "wavelengths"});
+  field.require_no_other_than({"orders", "shared_errors", "unread", "readings", "wavelengths"});
   const std::vector<Field> orders = field["orders"].items();
   require_count(field["orders"], orders.size(), 2, "of f11 and of the other elements");
   PosteriorData data{{orders[0].integer(), orders[1].integer()}, mapping, not_measured, {}, {}, {}};
@@ -161,6 +162,7 @@ PosteriorData read_posterior_data(const Field& field, DiscMapping mapping, const
       checked(field["orders"], [&] { return without(not_measured, mmbrdf::blocks(Family::isotropic, data.orders)); });
   for (const Field& error : field["shared_errors"].items())
     data.errors.push_back({error["name"].text(), error["size"].number()});
+  if (field.has("unread")) data.unread = read_elements(field["unread"]);
   for (const Field& list : field["readings"].items()) data.readings.push_back(read_readings(list));
   for (const Field& at : field["wavelengths"].items()) data.wavelengths.push_back(read_at(at, blocks));
   return data;

@@ -8,23 +8,42 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "files/table_layout.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {
+
+// M11, M12, M21, M22 = ½ Σ (1, a, b, ab) f_ab, a = +1 for incident s, b for scattered s (theory 6.1); f_a is the sum over b.
+struct Polarized {
+  std::vector<std::string_view> names;
+  std::string_view shown, all_of_them;
+  std::vector<std::size_t> elements;
+  std::vector<std::vector<double>> signs;  ///< of each element, those of the names
+  double unit;                             ///< of f in sr⁻¹
+};
+
 namespace {
 
 using namespace std::string_view_literals;
+
+const Polarized polarized_tables[] = {
+    {{"f_ss", "f_sp", "f_ps", "f_pp"},
+     "f_ss ... f_pp",
+     "of f_ss, f_sp, f_ps and f_pp all four",
+     {0, 1, 4, 5},
+     {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}},
+     1},
+    {{"f_s", "f_p"}, "f_s and f_p", "f_s and f_p both", {0, 1}, {{1, 1}, {1, -1}}, 1},
+    {{"brf_s", "brf_p"}, "brf_s and brf_p", "brf_s and brf_p both", {0, 1}, {{1, 1}, {1, -1}}, 1 / std::numbers::pi}};
 
 constexpr std::array f11_names = {"f11"sv,           "f_r11"sv,       "fr11"sv,        "brdf"sv,
                                   "f_r11_percent"sv, "f11_percent"sv, "brdf_percent"sv};
 constexpr std::array brf_names = {"brf"sv, "reflectance_factor"sv, "brf_percent"sv, "reflectance_factor_percent"sv};
 constexpr std::array f_cos_names = {"f_cos"sv, "brdf_cos"sv, "f_cos_percent"sv};
 constexpr std::array m11_names = {"m11"sv, "f_r11/f_r11"sv};
-constexpr std::array polarized_names = {"f_ss"sv, "f_sp"sv, "f_ps"sv, "f_pp"sv};
-constexpr std::array<std::size_t, 4> polarized_elements = {0, 1, 4, 5};
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -132,11 +151,11 @@ void require_uncertainties_read(const CsvReader& reader, const std::vector<int>&
 }
 
 /// The columns of standard uncertainties, of all that are measured or of none.
-template <std::size_t count, class Name>
-std::array<int, count> uncertainty_columns(const CsvReader& reader, const std::array<int, count>& values, Name name) {
-  std::array<int, count> columns;
+template <class Columns, class Name>
+Columns uncertainty_columns(const CsvReader& reader, const Columns& values, Name name) {
+  Columns columns = values;
   int some = -1;  // of which the uncertainty is there
-  for (std::size_t e = 0; e < count; ++e) {
+  for (std::size_t e = 0; e < values.size(); ++e) {
     const std::string own = "u_" + name(e),
                       as_its_column = values[e] < 0 ? own : "u_" + reader.keys()[static_cast<std::size_t>(values[e])];
     const bool same_unit = values[e] < 0 || !is_made(reader, values[e]);
@@ -145,7 +164,7 @@ std::array<int, count> uncertainty_columns(const CsvReader& reader, const std::a
     if (columns[e] >= 0 && values[e] < 0) throw reader.error("column " + own + ", but no " + name(e));
     if (columns[e] >= 0 && some < 0) some = static_cast<int>(e);
   }
-  for (std::size_t e = 0; e < count; ++e)
+  for (std::size_t e = 0; e < values.size(); ++e)
     if (some >= 0 && values[e] >= 0 && columns[e] < 0)
       throw reader.error("column u_" + name(static_cast<std::size_t>(some)) + ", but no u_" + name(e) +
                          ": uncertainties are needed of all elements that are there, or of none");
@@ -165,7 +184,7 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
   f11_ = brf >= 0 ? F11::brf : f_cos >= 0 ? F11::f_cos : F11::f;
   elements_[0] = std::max({f11, brf, f_cos});
   percent_ = scale(reader, elements_[0]) != 1;
-  for (std::size_t p = 0; p < 4; ++p) polarized_[p] = reader.find(polarized_names[p]);
+  find_polarized(reader);
   m11_ = find(m11_names);
   for (std::size_t e = 1; e < 16; ++e) {
     const std::string own = sample_element(e), percent = own + "_percent";
@@ -173,30 +192,29 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
     const std::string_view names[] = {own, published, percent};
     elements_[e] = find(names);
   }
-  const long polarized = std::ranges::count_if(polarized_, [](int column) { return column >= 0; });
-  if (polarized == 4) {
-    for (const std::size_t e : polarized_elements)
+  if (polarized()) {
+    for (const std::size_t e : made_of_->elements)
       if (elements_[e] >= 0)
-        throw reader.error("columns f_ss ... f_pp, and " + shown_name(column_name(reader, elements_[e])) +
+        throw reader.error("columns " + polarized_names() + ", and " + shown_name(column_name(reader, elements_[e])) +
                            ", which is made of them: one of the two is needed");
-  } else if (polarized > 0) {
-    throw reader.error("of f_ss, f_sp, f_ps and f_pp all four are needed, there are " + std::to_string(polarized));
   } else if (const int undivided = m11_ >= 0 ? m11_ : undivided_11(reader); elements_[0] < 0 && undivided >= 0) {
     throw reader.error("column " + shown_name(column_name(reader, undivided)) +
                        ", but no f11: samples need the unpolarized BRDF f11 in 1/sr, and m12 ... m44 divided "
                        "by it; a table of elements that are not divided cannot be read as samples");
   } else if (elements_[0] < 0) {
     throw reader.error(
-        "no column f11 (nor brdf, brf = pi f, f_cos; nor f_ss, f_sp, f_ps and f_pp), the unpolarized BRDF in 1/sr" +
+        "no column f11 (nor brdf, brf = pi f, f_cos; nor f_ss, f_sp, f_ps and f_pp, nor f_s and f_p), the unpolarized "
+        "BRDF in 1/sr" +
         other_name_hint("f11", reader.columns()));
   }
   std::array<int, 16> there = elements_;
-  if (polarized == 4)
-    for (std::size_t p = 0; p < 4; ++p) there[polarized_elements[p]] = polarized_[p];
+  for (std::size_t k = 0; polarized() && k < made_of_->elements.size(); ++k)
+    there[made_of_->elements[k]] = polarized_[k];
   require_no_likeness(reader, there);
   uncertainties_ = uncertainty_columns(reader, elements_, sample_element);
-  polarized_uncertainties_ =
-      uncertainty_columns(reader, polarized_, [](std::size_t p) { return std::string(polarized_names[p]); });
+  if (polarized())
+    polarized_uncertainties_ =
+        uncertainty_columns(reader, polarized_, [this](std::size_t p) { return std::string(made_of_->names[p]); });
   require_uncertainties_read(reader, columns(), elements_[0]);
   for (std::size_t e = 0; e < 16; ++e) {
     scales_[e] = scale(reader, elements_[e]);
@@ -204,25 +222,41 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
   }
 }
 
+std::string ElementColumns::polarized_names() const { return std::string(made_of_->shown); }
+
+void ElementColumns::find_polarized(const CsvReader& reader) {
+  for (const Polarized& table : polarized_tables) {
+    std::vector<int> found;
+    for (const std::string_view name : table.names) found.push_back(reader.find(name));
+    const long count = std::ranges::count_if(found, [](int column) { return column >= 0; });
+    if (count == 0) continue;
+    if (count < static_cast<long>(found.size()))
+      throw reader.error(std::string(table.all_of_them) + " are needed, there " + (count == 1 ? "is " : "are ") +
+                         std::to_string(count));
+    if (polarized())
+      throw reader.error("columns " + polarized_names() + ", and " + std::string(table.shown) + ": one is needed");
+    made_of_ = &table;
+    polarized_ = found;
+  }
+}
+
 void ElementColumns::read_polarized(const CsvReader& reader, Sample& sample) const {
-  std::array<double, 4> f, u{};
-  for (std::size_t p = 0; p < 4; ++p) f[p] = measured(reader, polarized_[p]);
-  for (std::size_t p = 0; p < 4 && polarized_uncertainties_[0] >= 0; ++p)
-    u[p] = uncertainty(reader, polarized_uncertainties_[p]);
-  // M11, M12, M21, M22 = ½ Σ (1, a, b, ab) f_ab, a = +1 for incident s, b for scattered s (theory 6.1).
-  constexpr double signs[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
-  sample.f11 = (f[0] + f[1] + f[2] + f[3]) / 2;
-  if (sample.f11 == 0) throw reader.error("f_ss ... f_pp: their sum is 0, by which elements are to be divided");
-  for (std::size_t k = 0; k < 4; ++k) {
-    double sum = 0, squares = 0;
-    for (std::size_t p = 0; p < 4; ++p) sum += signs[k][p] * f[p];
-    const double m = sum / 2 / sample.f11;
-    for (std::size_t p = 0; p < 4; ++p) {
-      const double slope = k == 0 ? 0.5 : (signs[k][p] - m) / 2 / sample.f11;
+  std::vector<double> f, u(polarized_.size());
+  for (const int column : polarized_) f.push_back(made_of_->unit * measured(reader, column));
+  for (std::size_t p = 0; p < u.size() && polarized_uncertainties_[0] >= 0; ++p)
+    u[p] = made_of_->unit * uncertainty(reader, polarized_uncertainties_[p]);
+  sample.f11 = std::accumulate(f.begin(), f.end(), 0.0) / 2;
+  if (sample.f11 == 0) throw reader.error(polarized_names() + ": their sum is 0, by which elements are to be divided");
+  for (std::size_t k = 0; k < made_of_->elements.size(); ++k) {
+    const std::vector<double>& signs = made_of_->signs[k];
+    const double m = std::inner_product(f.begin(), f.end(), signs.begin(), 0.0) / 2 / sample.f11;
+    double squares = 0;
+    for (std::size_t p = 0; p < f.size(); ++p) {
+      const double slope = k == 0 ? 0.5 : (signs[p] - m) / 2 / sample.f11;
       squares += slope * slope * u[p] * u[p];
     }
-    sample.normalized.elements[polarized_elements[k]] = m;
-    sample.uncertainty.elements[polarized_elements[k]] = std::sqrt(squares);
+    sample.normalized.elements[made_of_->elements[k]] = m;
+    sample.uncertainty.elements[made_of_->elements[k]] = std::sqrt(squares);
   }
 }
 
@@ -271,7 +305,7 @@ bool ElementColumns::complete(const CsvReader& reader) const {
 
 std::string ElementColumns::f11_is() const {
   const std::string percent = percent_ ? " / 100" : "";
-  if (polarized()) return "f11, m12, m21, m22 of f_ss ... f_pp";
+  if (polarized()) return (polarized_.size() == 4 ? "f11, m12, m21, m22 of " : "f11, m12 of ") + polarized_names();
   if (f11_ == F11::brf) return "f11 = brf / pi" + percent;
   if (f11_ == F11::f_cos) return "f11 = f_cos / cos theta_r" + percent;
   return percent_ ? "f11 = f11_percent / 100" : "";

@@ -12,6 +12,9 @@
 
 namespace mmbrdf {
 
+/// BRDFs of polarized light that together make elements.
+struct Polarized;
+
 /// f11, the divided elements or the BRDFs between linear polarizations, and their uncertainties.
 class ElementColumns {
  public:
@@ -24,8 +27,9 @@ class ElementColumns {
   /// Whether no field of a row says NA or NaN, or is empty, but for elements that were not measured.
   bool complete(const CsvReader& reader) const;
 
-  /// Whether f_ss … f_pp make the elements 11, 12, 21, 22, which are those of s and p then.
-  bool polarized() const { return polarized_[0] >= 0; }
+  /// Whether f_ss … f_pp make the elements 11, 12, 21, 22, or f_s and f_p 11 and 12, which are those of s and p then.
+  bool polarized() const { return !polarized_.empty(); }
+  std::string polarized_names() const;  ///< of which: "f_ss ... f_pp"
 
   /// Positions of all columns that are read.
   std::vector<int> columns() const;
@@ -36,6 +40,7 @@ class ElementColumns {
  private:
   enum class F11 { f, brf, f_cos };
 
+  void find_polarized(const CsvReader& reader);
   void read_polarized(const CsvReader& reader, Sample& sample) const;
 
   F11 f11_ = F11::f;
@@ -43,7 +48,8 @@ class ElementColumns {
   int m11_ = -1;
   std::array<int, 16> elements_, uncertainties_;  // −1: none
   std::array<double, 16> scales_, uncertainty_scales_;
-  std::array<int, 4> polarized_, polarized_uncertainties_;  // ss, sp, ps, pp
+  const Polarized* made_of_ = nullptr;                    // what of
+  std::vector<int> polarized_, polarized_uncertainties_;  // its columns; empty: none
 };
 
 }  // namespace mmbrdf

@@ -82,7 +82,7 @@ SampleReader::SampleReader(std::istream& in, const std::string& name, const Samp
                           " is no name of a column of samples");
   }
   if (elements_->polarized() && table.frame == Frame::xy)
-    throw reader_.error("f_ss ... f_pp are of s and p, not of the frame xy");
+    throw reader_.error(elements_->polarized_names() + " are of s and p, not of the frame xy");
   if (!table_.frame) table_.frame = elements_->polarized() ? Frame::sp : Frame::xy;
 }
 
@@ -135,7 +135,7 @@ Frame SampleReader::frame_of_row() const {
     }
   }();
   if (frame == Frame::xy && elements_->polarized())
-    throw reader_.error("f_ss ... f_pp are of s and p, not of the frame xy");
+    throw reader_.error(elements_->polarized_names() + " are of s and p, not of the frame xy");
   return frame;
 }
 

@@ -100,9 +100,9 @@ MatrixXd weighted_products(const MixedColumns& columns, const PosteriorAt& at, s
   const Eigen::VectorXd weights =
       reading_weights(at.law, geometries,
                       is_f11 && at.law.relative ? first_f11(at.f11, columns.mapping(), geometries) : Eigen::VectorXd());
-  const MatrixXd rows = columns.at(geometries);
+  const MatrixXd rows = columns.read_at(geometries);
   MatrixXd effects(rows.rows(), static_cast<Index>(errors.size()));
-  for (Index row = 0; const Element& element : columns.isotropic().elements)
+  for (Index row = 0; const Element& element : columns.read())
     for (std::size_t s = 0; s < samples.size(); ++s, ++row) {
       const double w = weights(static_cast<Index>(s));
       for (std::size_t k = 0; k < errors.size(); ++k)
@@ -122,7 +122,7 @@ Posterior with_shared_errors(const Model& model, std::span<const Sample> samples
   const double reflectance = model.reflectance.at(at.wavelength);
   for (std::size_t k = 0; k < errors.size(); ++k) data.errors.push_back({"instrument", 1});
   for (std::size_t b = 0; b < at.blocks.size(); ++b) {
-    const MixedColumns columns(model.posterior->blocks()[b], data.mapping);
+    const MixedColumns columns(model.posterior->blocks()[b], data.mapping, data.unread);
     const MatrixXd effects = covariance_of_all(data, at, at.blocks[b], columns).topRows(columns.isotropic_count()) *
                              weighted_products(columns, at, samples, errors, reflectance) / at.blocks[b].noise_variance;
     const Eigen::MatrixXf shared = effects.cast<float>();

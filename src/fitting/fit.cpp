@@ -190,7 +190,7 @@ ReflectanceTable FitAccumulator::own_reflectance(const FitOptions& options, SvdC
     const double dhr = std::inner_product(slopes.begin(), slopes.end(), solution.x.begin(), 0.0);
     if (!(dhr > 0))
       throw std::invalid_argument("the normal-incidence reflectance at " + nanometre_number(wavelength) +
-                                  " nm comes out as " + shortest(dhr) + "; give a reflectance table");
+                                  " nm comes out as " + rounded(dhr, 2) + "; give a reflectance table");
     table.wavelengths.push_back(wavelength);
     table.values.push_back(dhr);
   }
@@ -373,7 +373,7 @@ FitResult fit(std::span<const Sample> samples, const Basis& basis, const FitOpti
       reason = failure.what();
     }
   FitResult result = FitAccumulator::of_noise(samples, basis, options, weights);
-  result.warnings.push_back(only_noise(reason));
+  result.warnings.push_back(only_noise(reason, options.declared));
   return result;
 }
 

@@ -98,12 +98,7 @@ std::string no_mixed_model(const MeasuredKinds& kinds, const Basis& basis) {
     if (kinds.incomplete(wavelength) * most_incomplete > kinds.samples(wavelength))
       return kinds.any_as_measured() ? "some elements are missing in the frame in which they were measured"
                                      : "missing in some samples: " + element_names(known & kinds.missing());
-  const std::vector<Block> generous_blocks = blocks(basis.family, generous_orders);
-  for (const Block& block : generous_blocks)
-    for (const Element& element : block.elements)
-      if (known[element.index()] != known[block.elements.front().index()])
-        return "of the elements " + block.name + ", which belong together, some were not measured";
-  if (blocks(basis.family, basis.orders).size() < generous_blocks.size())
+  if (blocks(basis.family, basis.orders).size() < blocks(basis.family, generous_orders).size())
     return "orders " + std::to_string(basis.orders.f11) + "," + std::to_string(basis.orders.other) +
            " leave elements without modes";
   for (const double wavelength : kinds.wavelengths())

@@ -10,6 +10,7 @@
 
 #include "basis/spectral.hpp"
 #include "fitting/fit_to_predict.hpp"
+#include "fitting/undetermined.hpp"
 #include "mixed/block_fit.hpp"
 #include "mmbrdf/samples/comparison.hpp"
 #include "numerics/dense.hpp"
@@ -65,7 +66,7 @@ void divide_other_units(const MixedRounds& rounds, FitOptions& options) {
   const auto& [wavelength, only] = *rounds.first().begin();
   const double found = brightness(only, 1);
   if (rounds.first().size() > 1 || options.reflectance || has_variances(found)) return;
-  if (!(found > 0)) throw MixedFailure("the mean of f11 is " + shortest(only.mean));
+  if (!(found > 0)) throw MixedFailure("the mean of f11 is " + rounded(only.mean, 2));
   options.reflectance = ReflectanceTable{{wavelength}, {found}};
 }
 
@@ -156,11 +157,57 @@ void say_left_out(const MixedRounds& rounds, FitResult& result) {
   result.warnings.push_back("left out of the fit: " + few);
 }
 
+/// Of blocks that have readings, the elements that have none.
+Elements unread(const std::vector<MixedColumns>& columns, const Elements& known) {
+  Elements result;
+  for (const MixedColumns& block : columns)
+    for (const Element& element : block.isotropic().elements) result[element.index()] = !known[element.index()];
+  return result;
+}
+
+/// Not lower than those that a fit has by default.
+Basis at_default_orders(Basis basis) {
+  basis.orders = {std::max(basis.orders.f11, Orders{}.f11), std::max(basis.orders.other, Orders{}.other)};
+  return basis;
+}
+
+/// Elements without readings that those of the others leave open at these orders. In few modes they may be determined, and what
+/// the others are then is taken for knowledge that no reading gave.
+Elements left_open(const MixedColumns& columns, const Gram& gram, const Basis& basis) {
+  constexpr double least = 1e-12;  // of the largest eigenvalue: squares of singular values
+  const std::vector<Block> all = blocks(Family::isotropic, basis.orders);
+  const Block& block = *std::ranges::find(all, columns.isotropic().name, &Block::name);
+  const std::vector<Index> kept = columns_of(block, columns.isotropic());
+  const MatrixXd whole = gram.g.selfadjointView<Eigen::Lower>();
+  const auto [vectors, values] = dense::eigensystem(whole(kept, kept));
+  const Index free = (values.array() < least * values(values.size() - 1)).count();
+  Solution solution;
+  solution.x.resize(kept.size());
+  solution.rank = static_cast<int>(values.size() - free);
+  solution.null_space.assign(vectors.data(), vectors.data() + free * vectors.rows());  // values rise
+  Elements result;
+  for (const Element& element : columns.isotropic().elements)
+    if (std::ranges::find(columns.read(), element) == columns.read().end())
+      result[element.index()] = !determines(solution, block, basis, element.index());
+  return result;
+}
+
+/// At one of the wavelengths at least.
+Elements left_open(const MixedRounds& rounds, const std::vector<MixedColumns>& columns, const BlockSums& sums) {
+  Elements result;
+  for (std::size_t b = 0; b < columns.size(); ++b)
+    if (columns[b].read().size() < columns[b].isotropic().elements.size())
+      for (const auto& [wavelength, first] : rounds.first())
+        result |= left_open(columns[b], sums.gram(wavelength, b), at_default_orders(rounds.basis()));
+  return result;
+}
+
 /// What is kept of them.
 Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const DeclaredErrors& declared,
                        BlockFits fits, const BlockSums& sums) {
   const Basis& basis = rounds.basis();
-  PosteriorData data{generous(basis.orders), basis.mapping, ~rounds.kinds().known(), shared_errors(declared), {}, {}};
+  PosteriorData data{generous(basis.orders), basis.mapping, evaluated.not_measured, shared_errors(declared), {}, {}};
+  data.unread = unread(mixed_columns(basis, ~rounds.kinds().known()), rounds.kinds().known());
   for (std::size_t at = 0; const auto& [wavelength, first] : rounds.first()) {
     PosteriorAt known{wavelength, first.law, first.f11, 0, {}};
     for (double& coefficient : known.f11) coefficient /= evaluated.reflectance.at(wavelength);
@@ -184,7 +231,7 @@ Posterior posterior_of(const MixedRounds& rounds, const Model& evaluated, const 
 FitResult noise_fit(const MixedRounds& rounds, const FitOptions& options, const std::string& reason) {
   FitResult result = least_squares(rounds, options).result;
   say_left_out(rounds, result);
-  result.warnings.push_back(only_noise(reason));
+  result.warnings.push_back(only_noise(reason, options.declared));
   return result;
 }
 
@@ -198,7 +245,9 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
       throw MixedFailure("f11 at " + shortest(in_nanometres(wavelength)) + " nm is that of an albedo of " +
                          rounded(found, 2) + ": is it in sr^-1, and the reflectance a part of 1?");
   tried([&] {
-    BlockFits fits = block_fits(rounds, model, mixed_columns(rounds.basis(), ~rounds.kinds().known()), sums);
+    const std::vector<MixedColumns> columns = mixed_columns(rounds.basis(), ~rounds.kinds().known());
+    model.not_measured |= left_open(rounds, columns, sums);
+    BlockFits fits = block_fits(rounds, model, columns, sums);
     for (std::size_t b = 0; b < model.blocks.size(); ++b) {
       model.blocks[b].coefficients = through(model.validity.wavelengths, fits, b, model.powers);
       model.blocks[b].covariance.clear();
@@ -213,7 +262,10 @@ FitResult mixed_fit(const MixedRounds& rounds, FitOptions options, const BlockSu
   return std::move(result);
 }
 
-std::string only_noise(const std::string& reason) { return "uncertainties are those of the noise alone: " + reason; }
+std::string only_noise(const std::string& reason, const DeclaredErrors& declared) {
+  return "uncertainties are those of the noise alone: " + reason +
+         (declared == DeclaredErrors{} ? "" : "; what was declared is not in them: give it with --term later");
+}
 
 std::string only_residuals(Covariance covariance) {
   return "the covariance " + to_string(covariance) + " is one of them";

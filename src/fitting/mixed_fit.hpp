@@ -17,7 +17,7 @@ struct MixedFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 /// The warning of a fit that is least squares for that.
-std::string only_noise(const std::string& reason);
+std::string only_noise(const std::string& reason, const DeclaredErrors& declared);
 /// Why there is none with a covariance other than residuals.
 std::string only_residuals(Covariance covariance);
 

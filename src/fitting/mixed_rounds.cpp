@@ -89,7 +89,7 @@ Orders generous(const Orders& evaluated) {
 std::vector<MixedColumns> mixed_columns(const Basis& basis, const Elements& not_measured) {
   std::vector<MixedColumns> result;
   for (const Block& block : without(not_measured, blocks(Family::isotropic, generous(basis.orders))))
-    result.emplace_back(block, basis.mapping);
+    result.emplace_back(block, basis.mapping, not_measured);
   return result;
 }
 
@@ -104,9 +104,9 @@ Gram sums_of(const MixedColumns& columns, std::span<const Sample> samples, const
     const VectorXd weights = reading_weights(
         first.law, geometries, relative ? first_f11(first.f11, columns.mapping(), geometries) : VectorXd());
     const ArmErrors arms = arm_errors(model, geometries);
-    MatrixXd rows = columns.at(geometries), errors = MatrixXd::Zero(rows.rows(), result.d.cols());
+    MatrixXd rows = columns.read_at(geometries), errors = MatrixXd::Zero(rows.rows(), result.d.cols());
     VectorXd values(rows.rows());
-    for (Index at = 0; const Element& element : columns.isotropic().elements) {
+    for (Index at = 0; const Element& element : columns.read()) {
       const std::size_t e = element.index();
       for (Index s = 0; s < count; ++s, ++at) {
         const auto sample = static_cast<std::size_t>(s);
@@ -116,7 +116,7 @@ Gram sums_of(const MixedColumns& columns, std::span<const Sample> samples, const
         errors(at, 2) = arms.receiver[sample].elements[e];
       }
     }
-    const VectorXd w = weights.replicate(columns.elements(), 1);
+    const VectorXd w = weights.replicate(index(columns.read().size()), 1);
     rows.array().colwise() *= w.array();
     errors.array().colwise() *= w.array();
     values.array() *= w.array();

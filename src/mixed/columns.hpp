@@ -20,12 +20,13 @@ inline constexpr int nonreciprocal_order = 7;     ///< f11 alone
 
 class MixedColumns {
  public:
-  /// `isotropic` is a block of the isotropic family.
-  MixedColumns(const Block& isotropic, DiscMapping mapping);
+  /// `isotropic` is a block of the isotropic family, of which readings tell of all elements but those `unread`.
+  MixedColumns(const Block& isotropic, DiscMapping mapping, const Elements& unread = {});
 
   const Block& isotropic() const { return isotropic_; }
   DiscMapping mapping() const { return mapping_; }
   const std::vector<FreeMode>& free() const { return free_; }
+  const std::vector<Element>& read() const { return read_; }  ///< elements of which there are readings
   Eigen::Index isotropic_count() const { return static_cast<Eigen::Index>(isotropic_.modes.size()); }
   Eigen::Index calibration_count() const { return calibration_; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(rows_.columns()) + calibration_; }
@@ -33,15 +34,21 @@ class MixedColumns {
 
   /// Rows of all elements at some geometries, element after element, each in the xy frame.
   Eigen::MatrixXd at(std::span<const Geometry> geometries) const;
+  /// Rows of those that are read alone.
+  Eigen::MatrixXd read_at(std::span<const Geometry> geometries) const;
   /// The first columns of them, the isotropic ones.
   Eigen::MatrixXd isotropic_at(std::span<const Geometry> geometries) const;
 
  private:
-  Eigen::MatrixXd filled(const Rows& rows, Eigen::Index width, std::span<const Geometry> geometries) const;
-  void add_calibration(std::span<const Geometry> geometries, Eigen::MatrixXd& rows) const;
+  Eigen::MatrixXd filled(const Rows& rows, Eigen::Index width, std::span<const Geometry> geometries,
+                         const std::vector<Element>& elements) const;
+  Eigen::MatrixXd all_columns(std::span<const Geometry> geometries, const std::vector<Element>& elements) const;
+  void add_calibration(std::span<const Geometry> geometries, const std::vector<Element>& elements,
+                       Eigen::MatrixXd& rows) const;
 
   Block isotropic_;
   DiscMapping mapping_;
+  std::vector<Element> read_;
   std::vector<FreeMode> free_;
   Rows isotropic_rows_, rows_;
   Eigen::Index calibration_;

@@ -113,7 +113,7 @@ Numbers::Numbers(PosteriorData from, const std::vector<Block>& blocks)
   require(data.errors.size() >= declared_errors, "number of shared errors");
   for (const auto& list : data.readings) require_measurable(list);
   for (const auto& [name, size] : data.errors) require(size >= 0 && std::isfinite(size), "size of the error " + name);
-  for (const Block& block : blocks) columns.emplace_back(block, data.mapping);
+  for (const Block& block : blocks) columns.emplace_back(block, data.mapping, data.unread);
   double before = 0;
   for (const PosteriorAt& at : data.wavelengths) {
     require(at.wavelength > before && std::isfinite(at.wavelength), "wavelengths must be positive and rise");

@@ -50,9 +50,9 @@ Gram gram_of(const MixedColumns& columns, std::span<const ReadingDirections> rea
     const bool relative = law.relative && feeds_f11(columns.isotropic());
     const VectorXd f = relative ? first_f11(f11, columns.mapping(), geometries) : VectorXd();
     const VectorXd weights = reading_weights(law, geometries, f).cwiseProduct(times);
-    Eigen::MatrixXd rows = columns.at(geometries);
-    for (Index e = 0; e < columns.elements(); ++e)
-      rows.middleRows(e * count, count).array().colwise() *= weights.array();
+    Eigen::MatrixXd rows = columns.read_at(geometries);
+    const VectorXd of_rows = weights.replicate(rows.rows() / count, 1);
+    rows.array().colwise() *= of_rows.array();
     result.add(rows, VectorXd::Zero(rows.rows()), Eigen::MatrixXd(rows.rows(), 0));
   }
   return result;

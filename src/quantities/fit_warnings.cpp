@@ -128,7 +128,7 @@ std::vector<std::string> fit_warnings(const FitResult& result, std::span<const S
   for (std::size_t i = 0; i < count; ++i) {
     const double wavelength = wavelengths[i * wavelengths.size() / count];
     const F11Diagnostics found = f11_diagnostics(model, wavelength, fitted_theta_max(model.validity), coarser);
-    if (found.dhr - found.u_dhr > brightest.dhr - brightest.u_dhr) brightest = found;
+    if (found.dhr - surely * found.u_dhr > brightest.dhr - surely * brightest.u_dhr) brightest = found;
     const double here = unsupported_share(model.validity, wavelength);
     if (here > share) emptiest = wavelength;
     share = std::max(share, here);

@@ -39,7 +39,8 @@ Warnings range_warnings(const ReportSubject& reported) {
     const std::size_t count = fitted.coefficients.size(), rank = static_cast<std::size_t>(fitted.rank);
     if (rank > 0 && rank < count)
       warnings.push_back("the data left " + std::to_string(count - rank) + " of " + count_of(count, "combination") +
-                         " of block " + fitted.block.name + " free");
+                         " of block " + fitted.block.name + " free" +
+                         (model.posterior ? ": what that leaves open is in u" : ""));
   }
   return warnings;
 }

@@ -221,7 +221,7 @@ std::string not_positive_line(const F11Diagnostics& found, const std::string& wh
 }
 
 std::string energy_line(const F11Diagnostics& found, const std::string& where) {
-  if (!(found.dhr - 1 > found.u_dhr)) return "";
+  if (!(found.dhr - 1 > surely * found.u_dhr)) return "";
   return "the directional-hemispherical reflectance reaches " + fixed(found.dhr, 4) +
          (found.u_dhr > 0 ? " +- " + rounded(found.u_dhr, 2) : "") + " at theta_i " +
          rounded(degrees(found.dhr_theta_i), 4) + " degrees, " + where + ": more light comes back than falls in; " +
@@ -245,7 +245,8 @@ std::string uncertain_of(const Model& model) {
 
 std::string missing_from_uncertainty(const Model& model) {
   std::vector<std::string> missing;
-  if (!model.provenance.contains("certificate") && !declares(model, 0, 1)) missing.emplace_back("scale");
+  if (!model.provenance.contains("certificate") && !declares(model, 0, 1))  // that of an instrument is its own
+    missing.emplace_back(model.provenance.contains("instrument") ? "solid angle" : "scale");
   if (!declares(model, 1, declared_errors)) missing.emplace_back("angles");
   if (!model.posterior) missing.emplace_back("sample");
   std::string text;

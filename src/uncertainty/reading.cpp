@@ -50,7 +50,7 @@ struct ReadingPrediction::State {
         uncertainty(prepare_uncertainty(from, here().wavelength)) {
     for (std::size_t b = 0; b < here().blocks.size(); ++b) {
       const BlockPosterior& p = here().blocks[b];
-      const MixedColumns columns(model.posterior->blocks()[b], model.mapping);
+      const MixedColumns columns(model.posterior->blocks()[b], model.mapping, model.posterior->data().unread);
       const Index free = columns.size() - columns.isotropic_count();
       const VectorXd v = prior_of(columns).variances(
           Eigen::Map<const VectorXd>(p.hyperparameters.data(), static_cast<Index>(p.hyperparameters.size())));

@@ -239,9 +239,10 @@ TEST(TablesOfOthers, SayWhereCommasAreDecimalAndSeparate) {
 }
 
 TEST(TablesOfOthers, WithoutAzimuthsSayWhichThoseOfOnePlaneAre) {
-  EXPECT_TRUE(
-      says(refusal("wavelength_nm,theta_i_deg,theta_r_deg,f11\n532,45,30,0.3\n"),
-           {"d.csv:1: no column phi_i_deg (nor phi); in the plane of incidence it is 0, or 180 on the other side"}));
+  EXPECT_TRUE(says(
+      refusal("wavelength_nm,theta_i_deg,theta_r_deg,f11\n532,45,30,0.3\n"),
+      {"d.csv:1: no column phi_i_deg (nor phi), nor phi_r_deg; in the plane of incidence it is 0, or 180 on the other "
+       "side"}));
 }
 
 TEST(TablesOfOthers, SayWhatAFileIsThatIsNoText) {
@@ -368,6 +369,33 @@ TEST(TablesOfOthers, HaveBrdfsOfSAndP) {
             "d.csv:1: of f_ss, f_sp, f_ps and f_pp all four are needed, there are 2");
   EXPECT_EQ(refusal(first + ",m22\n532,45,0,30,180,0.2,0.1,0.12,0.18,0.1\n"),
             "d.csv:1: columns f_ss ... f_pp, and m22, which is made of them: one of the two is needed");
+}
+
+// What a receiver of all light reads of s and of p: the sums of the four over what is scattered.
+TEST(TablesOfOthers, HaveBrdfsOfSAndPOfTheSourceAlone) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,";
+  const Read both = read(first + "f_s,f_p,u_f_s,u_f_p\n532,45,0,30,120,0.3,0.2,0.01,0\n");
+  const Sample& s = both.samples[0];
+  EXPECT_DOUBLE_EQ(s.f11, 0.25);
+  EXPECT_DOUBLE_EQ(s.normalized(0, 1), 0.2);
+  EXPECT_TRUE(std::isnan(s.normalized(1, 0)) && std::isnan(s.normalized(0, 2)));
+  EXPECT_DOUBLE_EQ(s.uncertainty(0, 0), 0.005);
+  EXPECT_DOUBLE_EQ(s.uncertainty(0, 1), 0.01 * (1 - 0.2) / 0.5);
+  EXPECT_EQ(both.understood, "f11, m12 of f_s and f_p, frame sp");
+  const Read factors = read(first + "brf_s,brf_p\n532,45,0,30,120,0.9,0.6\n");
+  EXPECT_DOUBLE_EQ(factors.samples[0].f11, 0.75 / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(factors.samples[0].normalized(0, 1), 0.2);
+  EXPECT_EQ(refusal(first + "f_s\n532,45,0,30,180,0.2\n"), "d.csv:1: f_s and f_p both are needed, there is 1");
+  EXPECT_EQ(refusal(first + "f_s,f_p,brf_s,brf_p\n532,45,0,30,180,1,1,1,1\n"),
+            "d.csv:1: columns f_s and f_p, and brf_s and brf_p: one is needed");
+  EXPECT_EQ(refusal(first + "f_s,f_p,f11\n532,45,0,30,180,1,1,1\n"),
+            "d.csv:1: columns f_s and f_p, and f11, which is made of them: one of the two is needed");
+}
+
+TEST(TablesOfOthers, AreToldOfAllAnglesThatTheyLackAtOnce) {
+  EXPECT_TRUE(says(refusal("wavelength_nm;AOI;det;f11\n532;45;30;0.3\n"),
+                   {"no column theta_i_deg (nor thetai), nor phi_i_deg, nor theta_r_deg, nor phi_r_deg; if it has "
+                    "another name, give that: columns theta_i_deg=NAME, of wavelength_nm, AOI, det, f11"}));
 }
 
 }  // namespace

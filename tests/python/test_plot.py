@@ -283,6 +283,26 @@ def test_in_plane_curves_are_the_polarized_brdf_with_bands():
     assert figure.axes == [axes]
 
 
+def test_of_a_scalar_brdf_in_plane_curves_are_f11_alone_with_what_was_measured():
+    ptfe = mmbrdf.material("ptfe-532")
+    where = mmbrdf.in_plane(45, np.arange(-60.0, 61, 5))
+    f11 = ptfe.evaluate(532, *where)[:, 0, 0]
+    mueller = np.full((f11.size, 4, 4), np.nan)
+    mueller[:, 0, 0] = f11
+    u = np.full_like(mueller, 0.001)
+    data = mmbrdf.Dataset(532, *where, mueller, uncertainty=u)
+    random = mmbrdf.simulate(ptfe, 532, mmbrdf.random_geometries(300, seed=1), speckle=0.01)
+    scalar = random.mueller.copy()
+    scalar[:, :, 1:] = scalar[:, 1:, :] = np.nan
+    model = mmbrdf.fit(mmbrdf.Dataset(532, *random.geometry, scalar), orders=(4, 2)).model
+    _, axes = mmbrdf.plot.in_plane_curves(model, 532, 45, data=data, theta_r_deg=[-30, 0, 30])
+    curve, points = axes.lines[0], next(line for line in axes.lines if line.get_gid() == "measured-f11")
+    np.testing.assert_array_equal(curve.get_ydata(), model.evaluate(532, *mmbrdf.in_plane(45, [-30, 0, 30]))[:, 0, 0])
+    np.testing.assert_array_equal(points.get_ydata(), f11)
+    np.testing.assert_allclose(points.get_xdata(), np.arange(-60.0, 61, 5), rtol=1e-12)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [r"$f_{\mathrm{r},11}$"]
+
+
 def test_curves_are_in_the_plane_of_the_source_that_the_maps_have(anisotropic):
     plot = mmbrdf.plot
     for azimuth in ({}, {"phi_i_deg": 70.0}):

@@ -147,6 +147,17 @@ def test_a_residual_over_u_needs_the_noise_of_the_samples_and_a_covariance(ptfe,
         plot.map(mmbrdf.load(tmp_path / "model.csv"), "11", 532, 60, show="u")
 
 
+def test_models_without_a_name_are_told_apart_in_a_title(ptfe):
+    nameless = ptfe.renamed("")
+    for source, minus, title in (
+        (nameless, ptfe, "model $-$ ptfe"),
+        (ptfe, nameless, "ptfe $-$ model"),
+        (nameless, nameless, "model $-$ another"),
+    ):
+        _, axes = plot.map(source, "11", 532, 45, minus=minus, samples=21)
+        assert axes.get_title().startswith(title)
+
+
 def test_the_difference_of_two_models_is_a_map(ptfe):
     other = mmbrdf.material("ptfe-532")
     _, axes = plot.map(ptfe, "11", 532, 45, minus=other, samples=SAMPLES)

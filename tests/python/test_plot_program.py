@@ -111,7 +111,9 @@ def test_wrong_usage_is_said_with_status_2(files, capsys, words, message):
 @pytest.mark.parametrize(
     "words, message",
     [
-        ("hemisphere nowhere.json -o a.png", "nowhere.json"),
+        ("hemisphere nowhere.json -o a.png", ": nowhere.json: no such file, and not a built-in model (ptfe, "),
+        ("residual-map model.json nowhere.csv -o a.png", ": nowhere.csv: no such file"),
+        ("calibration nowhere.json references.csv -o a.png", ": nowhere.json: "),
         ("hemisphere ptfe -w 532 633 -o a.png", "hemisphere takes one wavelength"),
         ("hemisphere ptfe -o a.png", "the model depends on the wavelength"),
         ("directions ptfe -o a.png", "ptfe: expected samples"),
@@ -131,7 +133,7 @@ def test_wrong_usage_is_said_with_status_2(files, capsys, words, message):
         ),
         ("hemisphere ptfe -w 532 --columns f11=BRDF -o a.png", "--columns: of a table of samples, and ptfe is none"),
         ("directions data.csv --columns f11=BRDF -o a.png", "data.csv:1: no column BRDF"),
-        ("hemisphere model.json -o nowhere/a.png", "nowhere/a.png"),
+        ("hemisphere model.json -o nowhere/a.png", ": nowhere/a.png: No such file or directory\n"),
     ],
 )
 def test_bad_input_is_said_in_a_line_with_status_1_and_nothing_is_written(files, capsys, words, message):

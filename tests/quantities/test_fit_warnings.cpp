@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "given/cases.hpp"
 #include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/quantities/trust.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 
@@ -102,11 +105,41 @@ TEST(FitWarnings, AllowAReflectanceAboveOneByItsUncertainty) {
   for (const double speckle : {0.002, 0.05})
     for (const double reflectance : {0.99, 1.005, 1.1}) {
       const F11Diagnostics found = scaled(reflectance, speckle);
-      EXPECT_EQ(energy_line(found, "here").empty(), found.dhr <= 1 + found.u_dhr) << reflectance << " " << speckle;
+      EXPECT_EQ(energy_line(found, "here").empty(), found.dhr <= 1 + 5 * found.u_dhr) << reflectance << " " << speckle;
       EXPECT_EQ(found.u_dhr > 0, found.dhr > 1);
     }
   EXPECT_FALSE(energy_line(scaled(1.1, 0.002), "here").empty());
   EXPECT_TRUE(energy_line(scaled(0.97, 0.002), "here").empty());
+}
+
+// Half a diffuser under a lobe of 17 degrees, which orders of 7 miss: at grazing incidence fits to few samples may be above 1 by
+// one or two u, and the sample is none the less honest.
+TEST(FitWarnings, DoNotAskAShinySampleForAFactorOfPi) {
+  const auto f11 = [](const Geometry& g) {
+    const auto vector = [](const Direction& d) {
+      return std::array{std::sin(d.theta) * std::cos(d.phi), std::sin(d.theta) * std::sin(d.phi), std::cos(d.theta)};
+    };
+    const auto i = vector(g.incident), r = vector(g.reflected);
+    const double x = i[0] + r[0], y = i[1] + r[1], z = i[2] + r[2], slope = (x * x + y * y) / (z * z);
+    return (0.5 + 0.3 * std::exp(-slope / 0.09) / (0.09 * std::pow(z, 4) / (x * x + y * y + z * z))) / std::numbers::pi;
+  };
+  double above = 0;  // the most, in u
+  for (unsigned long seed = 1; seed <= 6; ++seed) {
+    std::vector<Sample> samples =
+        simulate(material("ptfe-532"), std::array{0.532}, random_geometries(100, seed), 0.01, seed);
+    for (Sample& s : samples) {
+      s.f11 *= f11(s.geometry) / prepare(material("ptfe-532"), 0.532).f11(s.geometry);
+      s.normalized.elements.fill(std::numeric_limits<double>::quiet_NaN());
+      s.normalized(0, 0) = 1;
+    }
+    FitOptions options;
+    options.minimum_norm = true;
+    const FitResult result = fit(samples, {}, options);
+    const F11Diagnostics found = f11_diagnostics(result.model, 0.532, fitted_theta_max(result.model.validity));
+    if (found.u_dhr > 0) above = std::max(above, (found.dhr - 1) / found.u_dhr);
+    EXPECT_EQ(energy_line(found, "here"), "") << seed;
+  }
+  EXPECT_GT(above, 1);  // of the fit that comes nearest
 }
 
 TEST(FitWarnings, SayWhereF11IsNotPositive) {

@@ -341,6 +341,10 @@ TEST(Report, WarnsOfWhatIsNotKnown) {
   Model free = model;
   free.blocks[0].rank = 39;
   EXPECT_TRUE(warns(report(free), "the data left 1 of 40 combinations of block 11 free"));
+  Model mixed = material("ptfe-532");  // whose u is of the modes behind it
+  mixed.blocks[0].rank = 39;
+  EXPECT_TRUE(
+      warns(report(mixed), "the data left 1 of 40 combinations of block 11 free: what that leaves open is in u"));
 }
 
 TEST(Report, OfAModelOfNoKnownWavelengthNamesNone) {

@@ -36,11 +36,18 @@ struct Options {
   bool as_printed = false;
 };
 
+std::string none_in_common(const Model& first, const Model& second, const Options& options) {
+  const std::string of_first = base_name(options.first), of_second = base_name(options.second);
+  for (const auto& [model, name] : {std::pair(&first, of_first), std::pair(&second, of_second)})
+    if (model->validity.wavelengths.empty()) return name + " does not say to which it was fitted";
+  return of_first + " was fitted to " + nanometre_list(first.validity.wavelengths) + ", " + of_second + " to " +
+         nanometre_list(second.validity.wavelengths);
+}
+
 std::vector<double> wavelengths_of(const Model& first, const Model& second, const Options& options) {
   if (options.wavelengths_nm) return micrometres(*options.wavelengths_nm);
   std::vector<double> common = common_wavelengths(first, second);
-  if (common.empty())
-    throw WrongUsage("--wavelength is required", "there is none of which both models say that they were fitted to it");
+  if (common.empty()) throw WrongUsage("--wavelength is required", none_in_common(first, second, options));
   return common;
 }
 

@@ -92,7 +92,8 @@ Table elements(const FitResult& result) {
     }
     std::ranges::move(fitted ? block_row(result, b) : Table::Row{without, 0, 0}, std::back_inserter(row));
     row.resize(6 + of_blocks.size());
-    row.push_back(fitted ? measured ? "" : "from the others" : without);
+    const bool from_others = fitted && !result.model.not_measured[element];
+    row.push_back(fitted && measured ? "" : from_others ? "from the others" : without);
     table.rows.push_back(row);
   }
   return table;

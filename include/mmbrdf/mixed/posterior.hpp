@@ -86,6 +86,7 @@ struct PosteriorData {
   std::vector<SharedError> errors;                       ///< those that are declared first
   std::vector<std::vector<ReadingDirections>> readings;  ///< lists of directions, each for one or several wavelengths
   std::vector<PosteriorAt> wavelengths;                  ///< rising
+  Elements unread{};  ///< of blocks that are there, elements of which no reading tells
 };
 
 /// iso, slope, q1, q2, q3, free_slope, odd, and nonreciprocal for block 11 or calibration for the others.

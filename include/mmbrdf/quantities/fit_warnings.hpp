@@ -36,7 +36,7 @@ std::vector<std::string> data_warnings(const FitResult& result);
 /// than most_checked of the fitted wavelengths:
 ///
 ///   - pairs of directions that no samples support: unsupported_line()
-///   - a directional-hemispherical reflectance above 1 by more than its standard uncertainty: energy_line()
+///   - a directional-hemispherical reflectance above 1 by more than `surely` standard uncertainties: energy_line()
 ///   - f11 that is not positive: not_positive_line()
 ///
 /// and, if there are samples, what these show (row_findings(), which names them by `numbers`), that their angles are

@@ -41,10 +41,11 @@ ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double
 /// The largest polar angle of the data that a model was fitted to; π/2 if that is not known.
 double fitted_theta_max(const Validity& validity);
 
-/// A sentence on f11 that is not positive, and one on a reflectance above 1 by more than its uncertainty, with what is
-/// usually the cause; empty if there is none. `where` is such as "within the fitted angles at 532 nm".
+/// A sentence on f11 that is not positive, and one on a reflectance above 1 by more than `surely` standard
+/// uncertainties, with what is usually the cause; empty if there is none. `where` is such as "within the fitted angles at 532 nm".
 std::string not_positive_line(const F11Diagnostics& found, const std::string& where);
 std::string energy_line(const F11Diagnostics& found, const std::string& where);
+inline constexpr double surely = 5;  ///< honest fits of shiny samples are above 1 by two or three
 
 /// Share of the pairs of directions within the fitted polar angles that no samples support at a wavelength, by their
 /// projected solid angles. And a sentence on it where it is more than a twentieth, with the part where most are missing.

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import Dataset, Model, _table_options, load_instrument, material, materials, plot
+from .._files import said
 from .._report import _require_kept, titled, write
 
 FORMATS = (".pdf", ".png", ".svg")
@@ -228,7 +229,7 @@ def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.
             _drawn(options, asked, prog.split()[0] if prog.startswith("mmbrdf") else prog), options.output, options.dpi
         )
     except (OSError, ValueError, TypeError) as error:
-        print(f"{parser.prog}: {error}", file=sys.stderr)
+        print(f"{parser.prog}: {said(error)}", file=sys.stderr)
         return 1
     return 0
 

@@ -39,6 +39,9 @@ COMPONENTS = {
 """Of each pair of linear polarizations, the incident one first: black, red, green and blue as in Germer (2017), of lightness
 0, 47, 64 and 28 so that they stay apart in grey."""
 
+UNPOLARIZED = {"f11": Stroke("#000000", r"$f_{\mathrm{r},11}$")}
+"""Of unpolarized light alone."""
+
 UNMEASURED = "#ededed"
 """Ground of what was not measured or has no meaning; it is hatched, too, since grey scales come near it."""
 

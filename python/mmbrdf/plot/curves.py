@@ -12,9 +12,9 @@ from matplotlib.ticker import MultipleLocator
 
 import mmbrdf
 
-from .._arguments import number, own_wavelength, require, require_measured, several_models, unmasked
+from .._arguments import number, own_wavelength, require, several_models, unmasked
 from . import disc, labels, sizes
-from .colours import COMPONENTS, series
+from .colours import COMPONENTS, UNPOLARIZED, Stroke, series
 from .scalars import measured_in, sample_uncertainty, scalar
 
 if TYPE_CHECKING:
@@ -71,39 +71,57 @@ def in_plane_curves(
     uncertainties, if they have some; their source may be at any azimuth if the model is isotropic. Without ``axes`` the
     ordinate spans the curves within the fitted angles, and the points; what lies beyond
     is grey. ``linestyle`` is one for all four lines, which have their own without it. Returns the figure and its axes; the four
-    lines are drawn in the order ss, sp, ps, pp. ValueError if there are no such samples.
+    lines are drawn in the order ss, sp, ps, pp; of a model that does not know all of them it is one line, f11. ValueError if there
+    are no such samples.
     """
     require("model", model, mmbrdf.Model)
-    require_measured(model, ("12", "21", "22"))
+    strokes = strokes_of(model)
     wavelength_nm, theta_i_deg = own_wavelength(model, wavelength_nm), number("theta_i_deg", theta_i_deg)
     angles = np.arange(-90.0, 91.0) if theta_r_deg is None else np.asarray(unmasked("theta_r_deg", theta_r_deg), float)
     geometry = in_plane(theta_i_deg, phi_i_deg, angles)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mmbrdf.ExtrapolationWarning)
-        curves = mmbrdf.polarized_curve(model, wavelength_nm, geometry)
         with_bands = model.has_covariance if bands is None else bands
-        uncertainty = mmbrdf.polarized_uncertainty(model, wavelength_nm, geometry) if with_bands else None
+        curves, uncertainty = _curves(model, wavelength_nm, geometry, strokes, with_bands)
     points = None
     if data is not None:
         azimuth = None if model.family == "isotropic" else phi_i_deg
-        points = _measured_points(data, wavelength_nm, theta_i_deg, azimuth, tolerance_deg)
+        points = _measured_points(data, wavelength_nm, theta_i_deg, azimuth, tolerance_deg, strokes)
     if axes is None:
-        axes = _plane_axes(model.theta_r_max_deg, theta_i_deg, angles, np.array(curves), points, width_cm)
-    for name, stroke in COMPONENTS.items():
-        curve = getattr(curves, name)
+        axes = _plane_axes(
+            model.theta_r_max_deg, theta_i_deg, angles, np.array(list(curves.values())), points, width_cm
+        )
+    for name, stroke in strokes.items():
+        curve = curves[name]
         style = stroke.style if linestyle is None else linestyle
         axes.plot(angles, curve, color=stroke.color, linestyle=style, linewidth=linewidth, label=stroke.label, zorder=2)
         if uncertainty is not None:
-            half = coverage * getattr(uncertainty, name)
+            half = coverage * uncertainty[name]
             axes.fill_between(angles, curve - half, curve + half, color=stroke.color, alpha=0.2, linewidth=0, zorder=1)
     if points is not None:
-        for name in COMPONENTS:
-            _draw_points(axes, points, name, coverage)
+        for name, stroke in strokes.items():
+            _draw_points(axes, points, name, stroke, coverage)
     if legend:
         axes.set_title(labels.title(labels.plain(model.name), wavelength_nm, theta_i_deg, source=model))
-        handles = component_handles(linewidth, linestyle, points=points is not None)
+        handles = component_handles(linewidth, linestyle, points=points is not None, strokes=strokes)
         sizes.legend_below(axes, handles, _what_is_drawn(points, with_bands, coverage), columns=4)
     return axes.figure, axes
+
+
+def strokes_of(model: Model) -> dict[str, Stroke]:
+    """The lines of a model: pairs of polarizations, or f11 alone where it does not know them."""
+    return UNPOLARIZED if {"12", "21", "22"} & set(model.not_measured) else COMPONENTS
+
+
+def _curves(model, wavelength_nm, geometry, strokes, with_uncertainty) -> tuple[dict, dict | None]:
+    """Values of each line, and their uncertainties."""
+    asked = wavelength_nm, *geometry
+    if strokes is COMPONENTS:
+        of_polarizations = (model, wavelength_nm, geometry)
+        u = mmbrdf.polarized_uncertainty(*of_polarizations)._asdict() if with_uncertainty else None
+        return mmbrdf.polarized_curve(*of_polarizations)._asdict(), u
+    u = {"f11": model.evaluate_uncertainty(*asked)[..., 0, 0]} if with_uncertainty else None
+    return {"f11": model.evaluate(*asked)[..., 0, 0]}, u
 
 
 def _what_is_drawn(points: Points | None, bands: bool, coverage: float) -> str | None:
@@ -116,14 +134,14 @@ def _what_is_drawn(points: Points | None, bands: bool, coverage: float) -> str |
 
 
 class Points(NamedTuple):
-    """Measured BRDFs by pair of polarizations, at signed polar angles; ``u`` is None for samples without uncertainties."""
+    """Measured BRDFs by line, at signed polar angles; ``u`` is None for samples without uncertainties."""
 
     theta_r_deg: NDArray[np.float64]
     values: dict[str, NDArray[np.float64]]
     u: dict[str, NDArray[np.float64]] | None
 
 
-def _measured_points(data, wavelength_nm, theta_i_deg: float, azimuth: float | None, tolerance_deg: float) -> Points:
+def _measured_points(data, wavelength_nm, theta_i_deg: float, azimuth: float | None, tolerance_deg, strokes) -> Points:
     require("data", data, mmbrdf.Dataset)
     nm = own_wavelength(data, wavelength_nm)
     sine = np.sin(np.radians(data.theta_r_deg)) * np.sin(np.radians(data.phi_r_deg - data.phi_i_deg))
@@ -138,16 +156,19 @@ def _measured_points(data, wavelength_nm, theta_i_deg: float, azimuth: float | N
         )
     chosen = data[near]
     forward = np.cos(np.radians(chosen.phi_r_deg - chosen.phi_i_deg)) <= 0
-    measured = mmbrdf.co_and_cross_polarized(measured_in(chosen, "sp"))
-    u = None
-    if chosen.uncertainty is not None:
-        u = {name: sample_uncertainty(scalar(f"f_{name}"), chosen) for name in COMPONENTS}
     angles = np.where(forward, 1, -1) * np.abs(chosen.theta_r_deg)
-    return Points(angles, {name: getattr(measured, name) for name in COMPONENTS}, u)
+    u = None
+    if strokes is UNPOLARIZED:
+        if chosen.uncertainty is not None:
+            u = {"f11": chosen.uncertainty[:, 0, 0]}
+        return Points(angles, {"f11": chosen.f11}, u)
+    measured = mmbrdf.co_and_cross_polarized(measured_in(chosen, "sp"))
+    if chosen.uncertainty is not None:
+        u = {name: sample_uncertainty(scalar(f"f_{name}"), chosen) for name in strokes}
+    return Points(angles, {name: getattr(measured, name) for name in strokes}, u)
 
 
-def _draw_points(axes: Axes, points: Points, name: str, coverage: float) -> None:
-    stroke = COMPONENTS[name]
+def _draw_points(axes: Axes, points: Points, name: str, stroke: Stroke, coverage: float) -> None:
     bars = None if points.u is None else coverage * points.u[name]
     style = dict(color=stroke.color, markerfacecolor="white", markersize=4.0, markeredgewidth=0.9, elinewidth=0.7)
     drawn = axes.errorbar(points.theta_r_deg, points.values[name], bars, fmt=stroke.marker, zorder=3, **style)
@@ -170,7 +191,7 @@ def subset_study(
     """In-plane curves of fits to disjoint parts of the data, thin, over those of a reference, thick (Fig. 7).
 
     ``parts`` and ``reference`` are models; wavelength in nm, angles in degrees as for ``in_plane_curves``.
-    Returns the figure and its axes; the four lines of the reference come first.
+    Returns the figure and its axes; the lines of the reference come first.
     """
     parts = several_models("parts", parts)
     require("reference", reference, mmbrdf.Model)
@@ -185,14 +206,18 @@ def subset_study(
             Line2D([], [], color="0.4", linewidth=0.9, label=f"{len(parts)} disjoint parts"),
         ]
         axes.set_title(labels.title("", own_wavelength(reference, wavelength_nm), theta_i_deg))
-        sizes.legend_below(axes, component_handles() + thick_and_thin, columns=3)
+        sizes.legend_below(axes, component_handles(strokes=strokes_of(reference)) + thick_and_thin, columns=3)
     return figure, axes
 
 
 def component_handles(
-    linewidth: float = 1.6, linestyle: str | tuple | None = None, *, points: bool = False
+    linewidth: float = 1.6,
+    linestyle: str | tuple | None = None,
+    *,
+    points: bool = False,
+    strokes: dict[str, Stroke] = COMPONENTS,
 ) -> list[Line2D]:
-    """Lines for a legend of the four pairs of polarizations."""
+    """Lines for a legend, of the four pairs of polarizations unless of others."""
     return [
         Line2D(
             [],
@@ -203,7 +228,7 @@ def component_handles(
             label=stroke.label,
             **dict(marker=stroke.marker, markerfacecolor="white", markersize=4.0) if points else {},
         )
-        for stroke in COMPONENTS.values()
+        for stroke in strokes.values()
     ]
 
 
@@ -308,7 +333,7 @@ def _finish_half_disc(axes: PolarAxes, theta_i_deg: float, largest: float) -> No
 
 
 def _plane_axes(theta_r_max_deg: float | None, theta_i_deg: float, theta_r_deg, values, points, width_cm) -> Axes:
-    """Axes with labels and units for curves of the shape (4, angles), grey where the model was not fitted."""
+    """Axes with labels and units for curves of the shape (lines, angles), grey where the model was not fitted."""
     axes = sizes.figure(width_cm, 6.4, 4.6, layout="constrained").add_subplot()
     axes.set(xlim=(-90, 90), xticks=range(-90, 91, 30), ylabel=r"$f_\mathrm{r}$ / sr$^{-1}$", xlabel=ANGLE_LABEL)
     fitted = np.abs(theta_r_deg) <= (90 if theta_r_max_deg is None else theta_r_max_deg)

@@ -151,9 +151,11 @@ def map(
 
 
 def named(source: Model | Dataset, minus: Model | None = None) -> str:
-    """ "measured", or the name of the model, less that of another."""
+    """ "measured", or the name of the model, less that of another; those without a name are told apart as well."""
     name = "measured" if isinstance(source, mmbrdf.Dataset) else labels.plain(source.name)
-    return name if minus is None else f"{name} $-$ {labels.plain(minus.name) or 'model'}"
+    if minus is None:
+        return name
+    return f"{name or 'model'} $-$ {labels.plain(minus.name) or ('model' if name else 'another')}"
 
 
 def residual_scale(values: NDArray[np.float64], over_u: bool, cmap: Colormap | str | None = None) -> Scale:
