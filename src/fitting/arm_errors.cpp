@@ -13,7 +13,6 @@ double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1
 Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Vector3 negative(const Vector3& a) { return {-a[0], -a[1], -a[2]}; }
 
 /// Rodrigues' rotation.
 Vector3 turned(const Vector3& v, const Vector3& axis, double angle) {
@@ -23,12 +22,12 @@ Vector3 turned(const Vector3& v, const Vector3& axis, double angle) {
           v[2] * c + across[2] * s + axis[2] * along};
 }
 
-/// Axes x and y of a beam along k in the xy frame (theory 1.1).
+/// Axes x and y of a scattered beam along k in the xy frame (theory 1.1).
 struct Axes {
   Vector3 x, y;
   explicit Axes(const Vector3& k) {
-    const double sign = k[2] < 0 ? -1 : 1, a = 1 + std::abs(k[2]);
-    x = {1 - k[0] * k[0] / a, -k[0] * k[1] / a, -sign * k[0]};
+    const double a = 1 + k[2];
+    x = {1 - k[0] * k[0] / a, -k[0] * k[1] / a, -k[0]};
     y = cross(x, k);
   }
 };
@@ -50,7 +49,7 @@ Mueller reading(const PreparedModel& model, const Geometry& g, double source, do
   Mueller m = model.evaluate({direction(s2), direction(r2)});
   const double f11 = m(0, 0);
   for (double& element : m.elements) element /= f11;
-  m = rotated(m, carried(r2, r, axis, receiver), carried(negative(s2), negative(s), axis, source));
+  m = rotated(m, carried(r2, r, axis, receiver), 0);  // the source stays on its meridian, along which axes are carried
   m(0, 0) = f11;
   return m;
 }

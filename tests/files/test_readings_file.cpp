@@ -113,8 +113,17 @@ TEST(Readings, OfReferencesThatCannotBeAreRefusedWithTheirLine) {
   EXPECT_TRUE(says(complains("532,empty,1.5,0,1,1,1,0,1,1\n"), {"r.csv:3: number: 1.5 is not an integer"}));
   EXPECT_TRUE(says(complains("532,empty,2,0,0,1,1,0,1,1\n"), {"r.csv:3: generator_state: 0"}));
   EXPECT_TRUE(says(complains("532,polarizer,1,0,2,1,1,0,1,1\n"), {"r.csv:3: measurement 1: another reference", "2"}));
+  EXPECT_TRUE(says(complains("532,empty,1,5,2,1,1,0,1,1\n"), {"r.csv:3: measurement 1: another angle_deg", "line 2"}));
   EXPECT_TRUE(says(complaint([&] { parsed_references(references_csv("")); }), {"r.csv: no readings"}));
   EXPECT_TRUE(says(complaint([&] { parsed_references("wavelength_nm,reference\n"); }), {"r.csv:1: no column"}));
+}
+
+TEST(Readings, OfOneReferenceHaveOneSignOfEachKind) {
+  const std::string names = "wavelength_nm,reference,angle_deg,number,generator_state,analyzer_state,intensity,",
+                    first = "532,wafer,45,1,1,1,1,1\n", second = "532,wafer,45,1,2,1,1,-1\n";
+  for (const std::string sign : {"s_exceeds_p", "delta_sign"})
+    EXPECT_TRUE(says(complaint([&] { parsed_references(names + sign + "\n" + first + second); }),
+                     {"r.csv:3: measurement 1: another " + sign + " than in line 2"}));
 }
 
 TEST(Readings, LackOfColumnsIsSaidOfAllAtOnce) {

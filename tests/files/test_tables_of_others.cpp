@@ -194,6 +194,8 @@ TEST(TablesOfOthers, HaveReflectanceFactorsCosinesAndPercent) {
   const Read brf = read(first + "brf,u_brf\n" + row + "0.97,0.01\n");
   EXPECT_DOUBLE_EQ(brf.samples[0].uncertainty(0, 0), 0.01 / pi);
   EXPECT_EQ(brf.understood, "f11 = brf / pi");
+  const Sample f_cos = read(first + "f_cos,u_f_cos\n" + row + "0.26,0.01\n").samples[0];
+  EXPECT_DOUBLE_EQ(f_cos.uncertainty(0, 0) / f_cos.f11, 0.01 / 0.26);
   EXPECT_EQ(refusal(first + "f11,brf\n" + row + f(0.3)),
             "d.csv:1: columns f11 and brf: both say what f11 is, one of them is needed");
   EXPECT_EQ(refusal(first + "f_cos\n532,45,0,90,180,0.1\n"),

@@ -139,10 +139,11 @@ TEST(Apertures, MeansHaveWeightsThatAddUpToOne) {
 
 RC_GTEST_PROP(Apertures, HaveNodesAboveTheHorizonAndBelowTheirLargestPolarAngle, ()) {
   const Direction axis{between(0, 1.5), between(-4, 4)};
-  const double room = pi / 2 - axis.theta, half = room * between(0.1, 1);
+  const double room = pi / 2 - axis.theta, half = room * between(0.1, 1), turn = between(-4, 4);
   for (const Aperture& aperture :
        {Aperture::cone(axis, half), Aperture::annulus(axis, 0.5 * half, half), Aperture::ring(axis.theta, pi / 2),
-        Aperture::ellipse(axis, 0.9 * half, 0.6 * half, 0.5), Aperture::rectangle(axis, 0.5 * half, 0.4 * half, 0.5)}) {
+        Aperture::ellipse(axis, 0.9 * half, 0.6 * half, turn),
+        Aperture::rectangle(axis, 0.5 * half, 0.4 * half, turn)}) {
     double largest = 0;
     for (const auto& [direction, weight] : aperture.quadrature(20)) {
       RC_ASSERT(weight > 0);

@@ -9,15 +9,18 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "given/halton.hpp"
 #include "mixed/block_fit.hpp"
+#include "mixed/prior.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
+#include "mmbrdf/uncertainty/reading.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -102,6 +105,40 @@ TEST(Posterior, InItsRoundedFormHoldsEveryUncertaintyToOnePercent) {
     for (std::size_t e = 0; e < 16; ++e)  // an independent implementation has .6 %
       EXPECT_NEAR(v.elements[e], u.elements[e], 0.01 * u.elements[e] + 1e-6);
   }
+}
+
+// Theory 8.2: ln v = l − s ln(1 + ((n + m) / 3)²) of free modes.
+TEST(Prior, OfFreeModesFallsWithTheSquareOfTheirDegree) {
+  const Model model = fitted();
+  for (const Block& block : model.posterior->blocks()) {
+    const MixedColumns columns(block, DiscMapping::lambert);
+    const Prior prior = prior_of(columns);
+    Eigen::VectorXd flat = prior.mean;
+    const double slope = std::exchange(flat(5), 0);
+    ASSERT_EQ(hyperparameter_names(block)[5], "free_slope");
+    const Eigen::VectorXd v = prior.variances(prior.mean), without = prior.variances(flat);
+    Eigen::Index column = columns.isotropic_count();
+    for (const FreeMode& mode : columns.free()) {
+      EXPECT_NEAR(v(column) / without(column), std::pow(1 + std::pow(mode.degree / 3.0, 2), -slope), 1e-12);
+      ++column;
+    }
+  }
+}
+
+// A hundred readings of one direction, and many of others from one azimuth, where nothing tells the isotropic mean from
+// anisotropy: the next reading there is uncertain by its noise and a hundredth more. 0.05: f11 of two orders.
+TEST(Posterior, OfADirectionThatWasReadVeryOftenLeavesTheNoiseAlone) {
+  const Geometry often{{0.8, 0}, {0.6, 2}};
+  std::vector<Geometry> geometries = random_geometries(150, 4);
+  for (Geometry& g : geometries) g.reflected.phi -= std::exchange(g.incident.phi, 0);
+  geometries.resize(250, often);
+  const Model model = fit_sample(simulate(material("ptfe-532"), std::array{0.532}, geometries, 0.006, 5)).model;
+  const ReadingPrediction readings = predict_readings(model, 0.532);
+  const double noise = std::sqrt(model.posterior->data().wavelengths[0].blocks[0].noise_variance *
+                                 std::cos(often.incident.theta) / std::cos(often.reflected.theta));
+  const PredictedReading here = readings.at_its_azimuth(often), anywhere = readings.at_some_azimuth(often);
+  EXPECT_NEAR(std::pow(here.uncertainty(0, 0) / here.value(0, 0) / noise, 2), 1.01, 0.05);
+  for (std::size_t e = 0; e < 16; ++e) EXPECT_LT(here.uncertainty.elements[e], anywhere.uncertainty.elements[e]) << e;
 }
 
 TEST(Posterior, InItsRoundedFormComesBackFromAFile) {

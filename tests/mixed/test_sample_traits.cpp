@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,18 @@ TEST(SampleTraits, At351NanometresSourceAndReceiverAreNotInterchangeable) {
   const Posterior posterior = *fit_sample(grid_at(0.351)).model.posterior;
   EXPECT_NEAR(sample_traits(posterior, 0)[0].nonreciprocal, 0.0018, 0.0002);  // of the reference
   EXPECT_TRUE(has(described_sample(posterior), "351 nm: source and receiver are not interchangeable"));
+}
+
+// f11 goes up and down once per turn of the sample, by as much in all directions. That is one mode, where the prior thinks
+// of many: half of it is found.
+TEST(SampleTraits, HaveTheAnisotropyOfASampleThatIsBrighterOnOneSide) {
+  constexpr double size = 0.005;
+  std::vector<Sample> samples = simulate(material("ptfe-532"), std::array{0.532}, random_geometries(300, 2), 0.002, 2);
+  for (Sample& sample : samples) sample.f11 += size * std::sqrt(2.0) * std::cos(sample.geometry.incident.phi - 1);
+  const std::vector<SampleTraits> traits = sample_traits(*fit_sample(samples).model.posterior, 0);
+  EXPECT_GT(traits[0].anisotropy[0], size / 3);
+  EXPECT_LT(traits[0].anisotropy[0], 1.5 * size);
+  for (std::size_t k = 1; k < traits[0].anisotropy.size(); ++k) EXPECT_LT(traits[0].anisotropy[k], 0.1 * size) << k;
 }
 
 TEST(SampleTraits, AnIsotropicSampleInAllDirectionsLeavesLittleToSay) {

@@ -184,6 +184,7 @@ TEST(Calibration, FigureOfMeritShowsErrorsOfTheReferences) {
   const FigureOfMerit& m = found.figure_of_merit;
   EXPECT_NEAR(3 * m.total * m.total, m.empty * m.empty + m.polarizer * m.polarizer + m.wafer * m.wafer, 1e-15);
   EXPECT_GT(m.polarizer, m.empty);
+  EXPECT_NEAR(m.corrected / m.total, std::sqrt(54 * 16 / static_cast<double>(found.degrees_of_freedom)), 1e-12);
 }
 
 TEST(Calibration, SaysWhatIsMissing) {

@@ -204,6 +204,8 @@ TEST(RotatingRetarders, RefuseNumbersThatAreNone) {
   };
   EXPECT_EQ(refusal([](RotatingRetarders& r) { r.analyzer.diattenuation = 1.5; }),
             "a diattenuation of 1.5, must be within -1 ... 1");
+  EXPECT_EQ(refusal([](RotatingRetarders& r) { r.generator.diattenuation = -1.5; }),
+            "a diattenuation of -1.5, must be within -1 ... 1");
   EXPECT_EQ(refusal([](RotatingRetarders& r) { r.extinction = -0.1; }), "extinction -0.1 is not in [0, 1]");
   EXPECT_EQ(refusal([](RotatingRetarders& r) { r.generator.offset = std::nan(""); }),
             "a number of the rotating retarders is not finite");

@@ -46,9 +46,10 @@ def test_dark_frames_saturation_and_masks(camera):
     mask = np.ones(SHAPE, bool)
     mask[0, 1] = False
     raw[2, 3, 5] = 4095
+    raw[5, 6, 7] = 4000  # at the limit
     reduced = images.reduce(raw, instrument, dark=dark, mask=mask, saturation=4000)
     bad = np.isnan(reduced).all(axis=(-2, -1))
-    assert np.argwhere(bad).tolist() == [[0, 1], [2, 3]] and np.isnan(reduced).sum() == 32
+    assert np.argwhere(bad).tolist() == [[0, 1], [2, 3], [5, 6]] and np.isnan(reduced).sum() == 48
     assert relative(reduced, matrices)[~bad].max() < 1e-4  # a dark signal ten times the readings takes digits
     raw[4, 4, 0] = np.inf
     assert np.isnan(images.reduce(raw, instrument)[4, 4]).all()
@@ -240,6 +241,16 @@ def test_uncertainties_are_the_scatter_of_repeated_frames():
         assert np.std((values - mmbrdf.depolarization(matrix[0, 0])) / of_quantity) == pytest.approx(1, abs=0.1)
 
 
+@pytest.mark.parametrize("dials", [None, DIALS], ids=["grid", "retarders"])
+def test_uncertainties_by_the_instrument_of_a_pixel_are_those_of_that_instrument_alone(dials):
+    camera = images.simulate(SHAPE, dials_deg=dials, noise=0, seed=2)
+    law = {"shot": 1e-4, "relative": 0.01}
+    u = images.uncertainty(camera.stack, camera.instrument, law)
+    for pixel in ((0, 0), (3, 4), (5, 7)):
+        alone = images.uncertainty(camera.stack[pixel], camera.instrument.at(*pixel), law)
+        np.testing.assert_allclose(u[pixel], alone, rtol=1e-5)  # of single precision
+
+
 def test_images_are_analyzed_where_they_have_values(camera, calibrated):
     matrices = images.reduce(camera.stack, calibrated, mask=np.arange(8) > 0 * np.ones((6, 1)))
     found = images.quantities(matrices, ["depolarization", "purity"])
@@ -256,6 +267,9 @@ def test_instruments_can_be_sent_and_cut(camera, calibrated):
     np.testing.assert_array_equal(
         images.reduce(camera.stack[1:3, 2:7], part), images.reduce(camera.stack, calibrated)[1:3, 2:7]
     )
+    turning = images.simulate((3, 4), dials_deg=DIALS, noise=0, seed=2)  # read frame by frame
+    whole = images.reduce(turning.stack, turning.instrument)
+    np.testing.assert_array_equal(images.reduce(turning.stack[1:, :3], turning.instrument[1:, :3]), whole[1:, :3])
 
 
 def test_rows_that_are_calibrated_apart_are_one_instrument(camera, calibrated):

@@ -95,10 +95,11 @@ def test_functions_for_pythonic_disort_are_moments_about_the_forward_direction()
         total = sum(mode(mu, mu_p) * np.cos(m * np.radians(from_forward)) for m, mode in enumerate(modes))
         expected = PTFE.evaluate(532, theta_i, 0, theta_r, 180 + from_forward, frame="sp")
         np.testing.assert_allclose(total, np.pi * expected[..., 0, 0], rtol=1e-12)
-    of_s = mmbrdf.pythonic_disort_modes(PTFE, 532, streams=16, channel="f_ss")
-    total = sum(mode(mu, mu_p) for mode in of_s)
-    expected = mmbrdf.f_ss(PTFE.evaluate(532, theta_i, 0, theta_r, 180, frame="sp"))
-    np.testing.assert_allclose(total, np.pi * expected, rtol=1e-11)
+    for channel in ["f_ss", "f_sp", "f_ps", "f_pp"]:
+        of_channel = mmbrdf.pythonic_disort_modes(PTFE, 532, streams=16, channel=channel)
+        total = sum(mode(mu, mu_p) for mode in of_channel)
+        expected = getattr(mmbrdf, channel)(PTFE.evaluate(532, theta_i, 0, theta_r, 180, frame="sp"))
+        np.testing.assert_allclose(total, np.pi * expected, rtol=1e-11)
 
 
 def test_more_moments_than_the_quadrature_carries_are_refused():

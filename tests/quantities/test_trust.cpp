@@ -89,4 +89,12 @@ TEST(ModelDiagnostics, SayWhereTheWorstPlacesAre) {
   EXPECT_EQ(model_diagnostics(model, 1.064, 0).geometries, 25);
 }
 
+// It rises with the angle up to 60 degrees, so that the largest of each of these ranges is at its end.
+TEST(F11Diagnostics, OfARisingReflectanceFindTheEndOfTheRange) {
+  for (const double theta_max : {20., 40., 55.}) {
+    const F11Diagnostics found = f11_diagnostics(material("ptfe-351"), 0.351, radians(theta_max));
+    EXPECT_NEAR(degrees(found.dhr_theta_i), theta_max, 1e-12);  // rounding of radians
+  }
+}
+
 }  // namespace mmbrdf

@@ -72,6 +72,9 @@ TEST(Certificate, NarrowsTheRangeOfTheModelToItsWavelengths) {
   EXPECT_EQ(certified(least_squares("ptfe"), plaque).model.validity.wavelengths, (std::vector{0.443, 0.532, 0.6}));
   const std::vector<CertifiedReflectance> one{{0.5, 0.98, 0.01}};
   EXPECT_EQ(certified(least_squares("ptfe"), one).model.validity.wavelengths, (std::vector{0.5}));
+  const std::vector<CertifiedReflectance> at_fitted{{0.351, 0.98, 0.01}, {0.633, 0.98, 0.01}};  // each stays one
+  const Model model = certified(least_squares("ptfe"), at_fitted).model;
+  EXPECT_EQ(model.validity.wavelengths, (std::vector{0.351, 0.532, 0.633}));
 }
 
 TEST(Certificate, IsDrawnFromAsItIsUncertain) {

@@ -278,10 +278,14 @@ TEST(WeightsOfTheData, NeedTheUncertaintyOfEachElementOfEachSample) {
 }
 
 TEST(WeightsOfTheData, AreNotThoseOfOneSampleAlone) {
-  std::vector<Sample> samples = with_own_noise(material("ptfe-532"), green, 1);
-  samples[5].uncertainty(0, 1) = 1e-12;
-  EXPECT_EQ(message_of([&] { fit(samples, {}, {}, Weights::data); }),
-            "sample 6: u_m12 = 1e-12 outweighs all other samples together; is it a fill value?");
+  const std::vector<Sample> sound = with_own_noise(material("ptfe-532"), green, 1);
+  for (std::size_t e = 0; e < 16; ++e) {
+    std::vector<Sample> samples = sound;
+    samples[5].uncertainty.elements[e] = 1e-12;
+    EXPECT_EQ(
+        message_of([&] { fit(samples, {}, {}, Weights::data); }),
+        "sample 6: u_" + sample_element(e) + " = 1e-12 outweighs all other samples together; is it a fill value?");
+  }
 }
 
 /// The law of the isotropic fit to the samples of one file, at one wavelength (nm).

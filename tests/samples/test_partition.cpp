@@ -71,6 +71,16 @@ TEST(Partition, ByDirectionKeepsRepeatsTogether) {
             "folds: 2, more than the 1 directions of the samples");
 }
 
+// The circle of azimuths is closed at 180 degrees, however these are written.
+TEST(Partition, ByDirectionKnowsThatMinus180DegreesAre180) {
+  std::vector<Sample> samples = in_random_directions(6);
+  samples[1].geometry = samples[0].geometry = {{0.5, 0}, {0.7, std::numbers::pi}};
+  samples[1].geometry.reflected.phi = -std::numbers::pi;
+  const Partition partition = folds_by_direction(samples, 5);
+  EXPECT_EQ(partition.fold[1], partition.fold[0]);
+  expect_all_used(partition, 6);
+}
+
 TEST(Partition, PartsAreTheSamplesOfEachFoldInTheirOrder) {
   std::vector<Sample> samples(5);
   for (std::size_t s = 0; s < 5; ++s) samples[s].f11 = static_cast<double>(s);

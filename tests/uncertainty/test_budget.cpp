@@ -67,6 +67,21 @@ TEST(Budget, IsTheSumOfItsTermsAndKeepsThem) {
 }
 
 // GUM: u(f)/f = tan θr u(θr) where the BRDF itself does not vary (theory 4.6).
+// A fit of several wavelengths has a reflectance table of its own, which is uncertain, too.
+TEST(Budget, OfAFitAloneIsItsCovarianceHoweverItCameByItsReflectance) {
+  for (const char* name : {"ptfe-532", "ptfe"}) {
+    const Model model = least_squares(name);
+    const PreparedUncertainty fit = prepare_uncertainty(model, 0.532);
+    for (const Frame frame : {Frame::xy, Frame::sp, Frame::scattering_plane}) {
+      const MuellerCovariance all = fit.evaluate(oblique, frame);
+      const std::vector<BudgetTerm> parts = fit.parts(oblique, frame);
+      ASSERT_EQ(parts.size(), 1U);
+      for (std::size_t i = 0; i < 256; ++i)  // rounding of sums over the coefficients
+        EXPECT_NEAR(parts[0].covariance.values[i], all.values[i], 1e-9 * all(0, 0)) << name;
+    }
+  }
+}
+
 TEST(Budget, OfADetectorAngleHasTheTangentOfTheMeasurementEquation) {
   Model lambertian = least_squares("ptfe-532");
   for (FittedBlock& block : lambertian.blocks)

@@ -34,6 +34,15 @@ TEST(ExpandedUncertainty, HasTheCoverageFactorsOfStudentsDistribution) {
   EXPECT_EQ(coverage_factor(infinite), 2);
 }
 
+// Abramowitz and Stegun 26.7.5 to ν⁻², of which the next term is 2.5 ν⁻³.
+TEST(ExpandedUncertainty, HasTheCoverageFactorsOfManyDegreesOfFreedomToo) {
+  const double x = 1.959963984540054, x3 = x * x * x, x5 = x3 * x * x;
+  for (const double freedom : {101., 150., 400., 3e3, 1e5, 9e5}) {
+    const double k = x + (x3 + x) / (4 * freedom) + (5 * x5 + 16 * x3 + 3 * x) / (96 * freedom * freedom);
+    EXPECT_NEAR(coverage_factor(freedom), k, 3 / std::pow(freedom, 3) + 2e-9) << freedom;  // of the bisection
+  }
+}
+
 // GUM 2008, G.4.1, note 3: gauge block, H.1.6.
 TEST(ExpandedUncertainty, HasTheEffectiveDegreesOfFreedomOfTheGaugeBlock) {
   const ExpandedUncertainty u =
