@@ -297,6 +297,17 @@ TEST(SymmetricDecomposition, OfSingularMatricesIsWhatTheHeaderSays) {
   EXPECT_LT(miss(ideal, polarizer(0.2)), 1e-14);
 }
 
+// Dyads to rounding, by which no factor but these is determined; fast arithmetic finds others in some of them.
+TEST(SymmetricDecomposition, HasADarkDepolarizerBesideAPolarizerToRounding) {
+  for (int bits = 44; bits < 53; ++bits) {
+    const double missing = std::ldexp(1, -bits);
+    Mueller m = dyad({1 - missing, 0, 0}, {0, 0, 0});
+    m(2, 2) = m(3, 3) = missing;
+    EXPECT_EQ(symmetric_decomposition(m).depolarizer, diagonal(1, 0, 0, 0)) << bits;
+    EXPECT_EQ(symmetric_decomposition(transpose(m)).depolarizer, diagonal(1, 0, 0, 0)) << bits;
+  }
+}
+
 TEST(SymmetricDecomposition, GivesTheSignOfTheDeterminantToTheSmallestElement) {
   const SymmetricDecomposition f = symmetric_decomposition(diagonal(1, 0.4, 0.3, -0.2));
   EXPECT_LT(largest(f.depolarizer - diagonal(1, 0.4, 0.3, -0.2)), 1e-15);
