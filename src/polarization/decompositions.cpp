@@ -137,6 +137,9 @@ Matrix3d rotation_of(const Matrix3d& m) {
 /// Whether n = (1, p)(1, d)ᵀ, as for every realizable matrix with |d| = 1 or |p| = 1.
 bool is_product(const Matrix4d& n) { return (n - n.col(0) * n.row(0)).cwiseAbs().maxCoeff() <= rounding; }
 
+/// Whether n depolarizes nothing.
+bool is_pure(const Matrix4d& n) { return n.squaredNorm() >= 4 - rounding; }
+
 bool is_complete(const Vector3d& v) { return v.norm() >= 1 - rounding; }
 
 /// Factors of n = diattenuator2 · middle · diattenuator1, middle = (d0, 0; 0, m').
@@ -164,10 +167,11 @@ Sandwich sandwich(const Matrix4d& n, const Vector3d& d1) {
 double distance(const Matrix4d& a, const Matrix4d& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
 /// The eigenvector (1, −d1) by squaring G nᵀ G n, which maps Stokes vectors to Stokes vectors. Where the eigenvalue is
-/// not a single one, that part of unpolarized light which belongs to it.
+/// not a single one, that part of unpolarized light which belongs to it: all of it where n is pure.
 Sandwich leading(const Matrix4d& n) {
   const Vector4d g(1, -1, -1, -1);
   Sandwich best = sandwich(n, Vector3d::Zero());
+  if (is_pure(n)) return best;
   double error = distance(best.product(), n);
   Matrix4d power = g.asDiagonal() * n.transpose() * g.asDiagonal() * n;
   for (int i = 0; i < 60 && error > sufficient && power(0, 0) > 0; ++i) {
@@ -234,6 +238,7 @@ Sandwich refined(const Matrix4d& n, Sandwich best) {
   for (int i = 0; i < 30 && error > sufficient; ++i) {
     const double before = error;
     Matrix16d columns = slopes(best);
+    if (is_pure(n)) columns.middleCols<3>(3).setZero();  // d1 stays 0
     for (const double threshold : {1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4})
       attempt(improved(n, best, columns, threshold));
     columns.leftCols<6>().setZero();

@@ -297,6 +297,31 @@ TEST(SymmetricDecomposition, OfSingularMatricesIsWhatTheHeaderSays) {
   EXPECT_LT(miss(ideal, polarizer(0.2)), 1e-14);
 }
 
+// Dyads to rounding, by which no factor but these is determined; fast arithmetic finds others in some of them.
+TEST(SymmetricDecomposition, HasADarkDepolarizerBesideAPolarizerToRounding) {
+  for (int bits = 44; bits < 53; ++bits) {
+    const double missing = std::ldexp(1, -bits);
+    Mueller m = dyad({1 - missing, 0, 0}, {0, 0, 0});
+    m(2, 2) = m(3, 3) = missing;
+    EXPECT_EQ(symmetric_decomposition(m).depolarizer, diagonal(1, 0, 0, 0)) << bits;
+    EXPECT_EQ(symmetric_decomposition(transpose(m)).depolarizer, diagonal(1, 0, 0, 0)) << bits;
+  }
+}
+
+TEST(SymmetricDecomposition, HasNoDiattenuatorInFrontOfPureMatricesDownToPolarizersWithALeak) {
+  RandomMueller source(5);
+  for (int i = 0; i < 3000; ++i) {
+    const auto a = source.complex(), b = source.complex(), c = source.complex(), d = source.complex();
+    const double leak = std::pow(10, source.between(-7, 0));
+    const Jones other = source.jones();
+    const Mueller m = mueller_of(
+        {a * c + leak * other[0], a * d + leak * other[1], b * c + leak * other[2], b * d + leak * other[3]});
+    const SymmetricDecomposition f = symmetric_decomposition(m);
+    ASSERT_EQ(f.diattenuator1, identity()) << leak;
+    ASSERT_LT(miss(f, m), 1e-12) << leak;
+  }
+}
+
 TEST(SymmetricDecomposition, GivesTheSignOfTheDeterminantToTheSmallestElement) {
   const SymmetricDecomposition f = symmetric_decomposition(diagonal(1, 0.4, 0.3, -0.2));
   EXPECT_LT(largest(f.depolarizer - diagonal(1, 0.4, 0.3, -0.2)), 1e-15);

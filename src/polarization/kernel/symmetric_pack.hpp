@@ -229,8 +229,8 @@ MMBRDF_INLINE Mask symmetric_decomposition(const R (&n)[16], R intensity, Symmet
   for (int k = 0; k < 3; ++k) factors.depolarizer[5 * k + 5] = intensity * m.sigma[k];
   retarder_of_columns(m.v, factors.retarder1);
   s.in_front.matrix(R(1.0), factors.diattenuator1);
-  return (s.behind.length.v < 1 - 1e-6) & (s.in_front.length.v < 1 - 1e-6) & (m.sigma[1].v > 1e-10) &
-         (error_of(s, m, n).v < 1e-13);
+  const Mask no_dyad = s.behind.length.v < 1 - 1e-6;  // of dyads those with |d1| near 1 never multiply back
+  return no_dyad & (m.sigma[1].v > 1e-10) & (error_of(s, m, n).v < 1e-13);
 }
 
 }  // namespace
