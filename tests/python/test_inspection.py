@@ -217,6 +217,15 @@ def test_what_a_fit_of_low_order_leaves_is_in_percent(samples):
     assert "%" in axes.get_ylabel() and "theta" in axes.get_xlabel()
 
 
+def test_another_wavelength_has_no_fit_of_low_order_and_no_empty_picture(ptfe):
+    data = mmbrdf.simulate(ptfe, [351, 532], mmbrdf.random_geometries(100, seed=1), speckle=0.01, seed=2)
+    seen = mmbrdf.inspect(data)
+    _, axes = mmbrdf.plot.low_order_residuals(data, inspection=seen)
+    assert np.isfinite(points(axes)).all() and len(points(axes)) == 100
+    with pytest.raises(ValueError, match="^no fit of low order at 532 nm: it is at 351 nm, that of the first sample$"):
+        mmbrdf.plot.low_order_residuals(data, 532, inspection=seen)
+
+
 def test_samples_of_xy_that_are_given_as_sp_are_found_in_a_part_and_a_pickle_too(samples):
     wrong = mmbrdf.Dataset(samples.wavelength_nm, *samples.geometry, samples.mueller, frame="sp")
     for data in (wrong, wrong[:1500], pickle.loads(pickle.dumps(wrong))):

@@ -167,12 +167,26 @@ def low_order_residuals(
 ) -> tuple[Figure | SubFigure, Axes]:
     """The same of what a fit of low order leaves of f11, in percent of its root mean square: noise, fine structure, faults.
 
-    Only the wavelength of the first sample has such a fit.
+    Only the wavelength of the first sample has such a fit: ValueError for another, and where there are too few samples for one.
     """
+    require("data", data, mmbrdf.Dataset)
+    seen = mmbrdf.inspect(data) if inspection is None else inspection
     name = "f11 less a fit of low order / %"
-    figure, axes = _against_theta_r(data, wavelength_nm, inspection, axes, width_cm, _residuals, name)
+    figure, axes = _against_theta_r(data, _of_low_order(data, wavelength_nm), seen, axes, width_cm, _residuals, name)
     axes.axhline(0, color="0.3", linewidth=0.6, zorder=0)
     return figure, axes
+
+
+def _of_low_order(data: Dataset, wavelength_nm: float | None) -> float | None:
+    """The wavelength that has a fit of low order."""
+    if len(data) == 0 or not np.isfinite(data.wavelength_nm[0]):
+        return wavelength_nm
+    first = float(data.wavelength_nm[0])
+    if wavelength_nm is not None and not np.isclose(wavelength_nm, first, rtol=1e-6):
+        raise ValueError(
+            f"no fit of low order at {wavelength_nm:g} nm: it is at {first:g} nm, that of the first sample"
+        )
+    return first
 
 
 def _f11(data: Dataset, seen: Inspection) -> NDArray:
