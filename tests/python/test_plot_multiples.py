@@ -51,6 +51,29 @@ def f11_alone(data):
     return mmbrdf.Dataset(data.wavelength_nm, *data.geometry, mueller)
 
 
+def places(figure):
+    """Of the words of titles, labels and legends."""
+    rendered(figure)
+    labels = [label for axes in figure.axes for label in (axes.title, axes.xaxis.label, axes.yaxis.label)]
+    legends = [text for legend in figure.legends for text in legend.get_texts()]
+    words = [text for text in [*labels, *legends, *figure.texts, figure._supxlabel] if text and text.get_text().strip()]
+    return {text.get_text(): text.get_window_extent() for text in words if text.get_visible()}
+
+
+@pytest.mark.parametrize("width_cm", [8, 12, 17, None])
+def test_words_beside_four_wavelengths_neither_meet_nor_leave_the_figure(ptfe, width_cm):
+    data = mmbrdf.simulate(ptfe, ptfe.wavelengths_nm, mmbrdf.random_geometries(40, seed=1), speckle=0.01, seed=2)
+    for figure, _ in (
+        plot.by_wavelength(ptfe, samples=21, width_cm=width_cm),
+        plot.residuals(ptfe, data, width_cm=width_cm),
+    ):
+        found = places(figure)
+        assert len(found) > 6
+        for name, place in found.items():
+            assert place.x0 >= 0 and place.y0 >= 0 and place.x1 <= figure.bbox.x1 and place.y1 <= figure.bbox.y1, name
+            assert not [other for other, at in found.items() if other != name and at.overlaps(place)], name
+
+
 def test_what_was_not_measured_has_no_row(samples):
     model = mmbrdf.fit(f11_alone(samples), orders=(3, 2)).model
     assert plot.by_wavelength(model, samples=21)[1].shape == (1, 1)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
@@ -64,7 +65,7 @@ def by_wavelength(
     for row, row_axes in zip(rows, axes):
         _draw_maps(figure, row, row_axes, view)
     if curves:
-        _draw_curves(model, wavelengths, theta_i_deg, phi_i_deg, axes[-1], coverage)
+        _draw_curves(model, wavelengths, theta_i_deg, phi_i_deg, axes[-1], coverage, _is_narrow(width_cm))
     for nm, top in zip(wavelengths, axes[0]):
         top.set_title(labels.title("", nm, source=model))
     name = labels.title(labels.plain(model.name), None, theta_i_deg)
@@ -88,6 +89,11 @@ def _maps(model, quantity: str, wavelengths, view: disc.View, samples: int) -> _
     return _Row(maps, chosen_scale(values, fitted, measured=False))
 
 
+def _is_narrow(width_cm: float | None) -> bool:
+    """One column of a journal: a line of it is too short for all that a legend says."""
+    return width_cm is not None and width_cm < 12
+
+
 _LEFT, _RIGHT, _TOP, _BOTTOM, _GAP = 6.0, 7.2, 3.6, 5.6, 0.8
 """Of the grid, in ems: room for words and scales around it, and between its cells."""
 
@@ -99,7 +105,8 @@ def _grid(maps: int, columns: int, curves: bool, width_cm: float | None) -> tupl
     left, right, gap = _LEFT * em, _RIGHT * em, _GAP * em
     side = min((width - left - right - (columns - 1) * gap) / columns, 2.6)
     heights = [side] * maps + ([0.85 * side + 1.2 * em] if curves else [])
-    height = sum(heights) + (len(heights) - 1) * gap + (_TOP + (_BOTTOM if curves else 3.6)) * em
+    bottom = (_BOTTOM + 1.4 * _is_narrow(width_cm)) if curves else 3.6
+    height = sum(heights) + (len(heights) - 1) * gap + (_TOP + bottom) * em
     figure = labels.Picture(figsize=(width, height))
     axes = np.empty((len(heights), columns), object)
     top = height - _TOP * em
@@ -123,10 +130,12 @@ def _draw_maps(figure, row: _Row, axes, view: disc.View) -> None:
     bar = figure.colorbar(
         ScalarMappable(row.scale.norm, row.scale.cmap), cax=figure.add_axes(place), extend=row.scale.extend
     )
-    bar.set_label(row.maps[0].label.replace(" depolarization", "\ndepolarization"))
+    name = row.maps[0].label.replace(" depolarization", "\ndepolarization")
+    is_longer = last.height * figure.bbox.height / figure.dpi < 0.5 * em * len(name.splitlines()[-1])
+    bar.set_label(name, loc="top" if is_longer else "center")  # and goes on below, beside the curves
 
 
-def _draw_curves(model, wavelengths, theta_i_deg: float, phi_i_deg: float, axes, coverage: float) -> None:
+def _draw_curves(model, wavelengths, theta_i_deg: float, phi_i_deg: float, axes, coverage: float, narrow: bool) -> None:
     limit = 90.0 if model.theta_r_max_deg is None else model.theta_r_max_deg
     ends: list[float] = []
     for nm, each in zip(wavelengths, axes):
@@ -156,9 +165,9 @@ def _draw_curves(model, wavelengths, theta_i_deg: float, phi_i_deg: float, axes,
         handles.append(Line2D([], [], linestyle="none", label=bands))
     figure.legend(
         handles=handles,
-        ncol=5,
+        ncol=3 if narrow else 5,
         loc="lower center",
-        bbox_to_anchor=(middle, 0.3 * sizes.em() / height),
+        bbox_to_anchor=(0.5 if narrow else middle, 0.3 * sizes.em() / height),
         frameon=False,
         borderpad=0,
     )
@@ -185,15 +194,18 @@ def residuals(
     found = [_left(model, data, nm) for nm in wavelengths]
     rows = 1 if all(np.isnan(others).all() for _, _, others in found) else 2
     columns = len(wavelengths)
-    figure = sizes.figure(width_cm, 7.2, 0.8 + 1.3 * rows, layout="constrained")
+    tall = 0.8 + 1.3 * rows
+    if _is_narrow(width_cm):
+        tall *= 1.5  # in which the words beside it have room
+    figure = sizes.figure(width_cm, 7.2, tall, layout="constrained")
     axes = figure.subplots(rows, columns, sharex=True, sharey="row", squeeze=False)
     points = None
     for (here, f11, others), nm, pair in zip(found, wavelengths, axes.T):
         for values, each in zip((f11, others), pair):
             points = _scatter(each, here, values, both_sides=values is f11)
         pair[0].set_title(labels.title("", nm))
-        pair[-1].set_xlabel(r"$\theta_\mathrm{r}$, forward positive / °")
-    axes[0, 0].set_ylabel(r"residual of $f_{\mathrm{r},11}$ / %")
+    figure.supxlabel(r"$\theta_\mathrm{r}$, forward positive / °", fontsize=rcParams["axes.labelsize"])
+    axes[0, 0].set_ylabel("residual of\n$f_{\\mathrm{r},11}$ / %")
     if rows == 2:
         axes[1, 0].set_ylabel("rms residual of\nother $m_{ij}$")
         axes[1, 0].set_ylim(0, None)
