@@ -140,9 +140,13 @@ void require_uncertainties_read(const CsvReader& reader, const std::vector<int>&
   for (std::size_t c = 0; c < reader.keys().size(); ++c) {
     const std::string& key = reader.keys()[c];
     if (!key.starts_with("u_") || std::ranges::find(read, static_cast<int>(c)) != read.end()) continue;
-    const std::string of = key.substr(2);
+    const std::string of = key.substr(2), without_unit = of.substr(0, of.rfind("_percent"));
     const auto is_among = [&](const auto& names) { return std::ranges::find(names, of) != names.end(); };
-    if (is_among(f11_names) || is_among(brf_names) || is_among(f_cos_names) || !like_an_element(of).empty())
+    const auto is_of = [&](const Polarized& table) {
+      return std::ranges::find(table.names, without_unit) != table.names.end();
+    };
+    if (is_among(f11_names) || is_among(brf_names) || is_among(f_cos_names) || !like_an_element(of).empty() ||
+        std::ranges::any_of(polarized_tables, is_of))
       throw reader.error("column " + shown_name(reader.columns()[c]) + " is of no column that is read" +
                          (f11 < 0 ? ""
                                   : "; that of " + shown_name(column_name(reader, f11)) + " is called u_" +
@@ -212,9 +216,7 @@ ElementColumns::ElementColumns(const CsvReader& reader) {
     there[made_of_->elements[k]] = polarized_[k];
   require_no_likeness(reader, there);
   uncertainties_ = uncertainty_columns(reader, elements_, sample_element);
-  if (polarized())
-    polarized_uncertainties_ =
-        uncertainty_columns(reader, polarized_, [this](std::size_t p) { return std::string(made_of_->names[p]); });
+  if (polarized()) find_polarized_uncertainties(reader);
   require_uncertainties_read(reader, columns(), elements_[0]);
   for (std::size_t e = 0; e < 16; ++e) {
     scales_[e] = scale(reader, elements_[e]);
@@ -227,7 +229,10 @@ std::string ElementColumns::polarized_names() const { return std::string(made_of
 void ElementColumns::find_polarized(const CsvReader& reader) {
   for (const Polarized& table : polarized_tables) {
     std::vector<int> found;
-    for (const std::string_view name : table.names) found.push_back(reader.find(name));
+    for (const std::string_view name : table.names) {
+      const std::string percent = std::string(name) + "_percent";
+      found.push_back(reader.find(std::array{name, std::string_view(percent)}));
+    }
     const long count = std::ranges::count_if(found, [](int column) { return column >= 0; });
     if (count == 0) continue;
     if (count < static_cast<long>(found.size()))
@@ -237,14 +242,27 @@ void ElementColumns::find_polarized(const CsvReader& reader) {
       throw reader.error("columns " + polarized_names() + ", and " + std::string(table.shown) + ": one is needed");
     made_of_ = &table;
     polarized_ = found;
+    percent_ = scale(reader, found[0]) != 1;
   }
+}
+
+void ElementColumns::find_polarized_uncertainties(const CsvReader& reader) {
+  polarized_uncertainties_ =
+      uncertainty_columns(reader, polarized_, [this](std::size_t p) { return std::string(made_of_->names[p]); });
+  const bool has = polarized_uncertainties_[0] >= 0;
+  for (std::size_t e = 0; e < 16; ++e)
+    if (elements_[e] >= 0 && (uncertainties_[e] >= 0) != has)
+      throw reader.error("uncertainties of " + (has ? polarized_names() : sample_element(e)) + ", but none of " +
+                         (has ? sample_element(e) : polarized_names()) +
+                         ": they are needed of all elements that are there, or of none");
 }
 
 void ElementColumns::read_polarized(const CsvReader& reader, Sample& sample) const {
   std::vector<double> f, u(polarized_.size());
-  for (const int column : polarized_) f.push_back(made_of_->unit * measured(reader, column));
+  const auto unit = [&](int column) { return made_of_->unit * scale(reader, column); };
+  for (const int column : polarized_) f.push_back(unit(column) * measured(reader, column));
   for (std::size_t p = 0; p < u.size() && polarized_uncertainties_[0] >= 0; ++p)
-    u[p] = made_of_->unit * uncertainty(reader, polarized_uncertainties_[p]);
+    u[p] = unit(polarized_uncertainties_[p]) * uncertainty(reader, polarized_uncertainties_[p]);
   sample.f11 = std::accumulate(f.begin(), f.end(), 0.0) / 2;
   if (sample.f11 == 0) throw reader.error(polarized_names() + ": their sum is 0, by which elements are to be divided");
   for (std::size_t k = 0; k < made_of_->elements.size(); ++k) {
@@ -305,7 +323,8 @@ bool ElementColumns::complete(const CsvReader& reader) const {
 
 std::string ElementColumns::f11_is() const {
   const std::string percent = percent_ ? " / 100" : "";
-  if (polarized()) return (polarized_.size() == 4 ? "f11, m12, m21, m22 of " : "f11, m12 of ") + polarized_names();
+  if (polarized())
+    return (polarized_.size() == 4 ? "f11, m12, m21, m22 of " : "f11, m12 of ") + polarized_names() + percent;
   if (f11_ == F11::brf) return "f11 = brf / pi" + percent;
   if (f11_ == F11::f_cos) return "f11 = f_cos / cos theta_r" + percent;
   return percent_ ? "f11 = f11_percent / 100" : "";

@@ -41,6 +41,7 @@ class ElementColumns {
   enum class F11 { f, brf, f_cos };
 
   void find_polarized(const CsvReader& reader);
+  void find_polarized_uncertainties(const CsvReader& reader);
   void read_polarized(const CsvReader& reader, Sample& sample) const;
 
   F11 f11_ = F11::f;

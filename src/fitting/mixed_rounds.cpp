@@ -327,7 +327,10 @@ void MixedRounds::begin_fourth() {
   options.reflectance = ReflectanceTable{};
   options.minimum_norm = true;
   options.rank_tolerance = first_tolerance;
-  for (auto& [wavelength, first] : first_) first.model = squares_.at(wavelength).solve(options).model;
+  for (auto& [wavelength, first] : first_) {
+    first.model = squares_.at(wavelength).solve(options).model;
+    first.model.not_measured = {};  // arms mix what rows leave open into others: the shortest solution is a number
+  }
 }
 
 bool MixedRounds::leaves_out() const {

@@ -55,6 +55,20 @@ void require_measurable(const std::vector<ReadingDirections>& readings) {
             "directions must have polar angles of 0 to 90 degrees and be counted");
 }
 
+/// Of a block that is there some reading tells, and what is unknown of it is not what was read.
+void require_read(const PosteriorData& data, const std::vector<Block>& blocks) {
+  Elements there;
+  for (const Block& block : blocks) {
+    Elements own;
+    for (const Element& element : block.elements) own.set(element.index());
+    require((own & ~data.unread).any(), "unread are all elements of block " + block.name);
+    there |= own;
+  }
+  const Elements none = data.unread & ~there, read = data.not_measured & there & ~data.unread;
+  require(none.none(), "unread, and of no block that is there: " + element_names(none));
+  require(read.none(), "not measured, and not among those unread: " + element_names(read));
+}
+
 /// C = S R Rᵀ S: S the standard deviations, the rows of R of norm 1 but for rounding.
 MatrixXd from_rounded(const BlockPosterior& p) {
   const Index n = index(p.mean.size());
@@ -113,6 +127,7 @@ Numbers::Numbers(PosteriorData from, const std::vector<Block>& blocks)
   require(data.errors.size() >= declared_errors, "number of shared errors");
   for (const auto& list : data.readings) require_measurable(list);
   for (const auto& [name, size] : data.errors) require(size >= 0 && std::isfinite(size), "size of the error " + name);
+  require_read(data, blocks);
   for (const Block& block : blocks) columns.emplace_back(block, data.mapping, data.unread);
   double before = 0;
   for (const PosteriorAt& at : data.wavelengths) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,22 @@ std::string in_words(const ReportSubject& reported, double wavelength) {
   return reported.known_wavelengths ? nm(wavelength) : "its wavelength";
 }
 
+/// Once for all wavelengths of which the same is true.
+Warnings unsupported_warnings(const ReportSubject& reported) {
+  std::vector<std::pair<std::string, std::vector<double>>> lines;
+  for (const double wavelength : reported.wavelengths) {
+    const std::string line = unsupported_line(reported.model.validity, wavelength);
+    if (line.empty()) continue;
+    auto same = std::ranges::find(lines, line, [](const auto& one) { return one.first; });
+    if (same == lines.end()) same = lines.insert(lines.end(), {line, {}});
+    same->second.push_back(wavelength);
+  }
+  Warnings warnings;
+  for (const auto& [line, where] : lines)
+    warnings.push_back((reported.known_wavelengths ? nanometre_list(where) : "its wavelength") + ": " + line);
+  return warnings;
+}
+
 Warnings range_warnings(const ReportSubject& reported) {
   const Model& model = reported.model;
   Warnings warnings;
@@ -30,9 +48,7 @@ Warnings range_warnings(const ReportSubject& reported) {
     if (outside(model.validity, wavelength) & outside_wavelength)
       warnings.push_back(nm(wavelength) + " lies outside the fitted range: what is said of it is extrapolated from " +
                          nanometre_list(model.validity.wavelengths));
-  for (const double wavelength : reported.wavelengths)
-    if (std::string line = unsupported_line(model.validity, wavelength); !line.empty())
-      warnings.push_back(in_words(reported, wavelength) + ": " + line);
+  std::ranges::move(unsupported_warnings(reported), std::back_inserter(warnings));
   if (!knows_uncertainty(model))
     warnings.push_back("the covariance of the coefficients is not known, or not of all, and no uncertainty with it");
   for (const FittedBlock& fitted : model.blocks) {

@@ -394,6 +394,34 @@ TEST(TablesOfOthers, HaveBrdfsOfSAndPOfTheSourceAlone) {
             "d.csv:1: columns f_s and f_p, and f11, which is made of them: one of the two is needed");
 }
 
+TEST(TablesOfOthers, HaveBrdfsOfPolarizedLightInPercent) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,";
+  const std::string values = "\n532,45,0,30,180,90,60,3,0\n";
+  const Read percent = read(first + "brf_s [%],brf_p [%],u_brf_s [%],u_brf_p [%]" + values);
+  EXPECT_DOUBLE_EQ(percent.samples[0].f11, 0.75 / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(percent.samples[0].normalized(0, 1), 0.2);
+  EXPECT_DOUBLE_EQ(percent.samples[0].uncertainty(0, 0), 0.015 / std::numbers::pi);
+  EXPECT_TRUE(says(percent.understood, {"f11, m12 of brf_s and brf_p / 100, frame sp"}));
+  EXPECT_TRUE(says(refusal(first + "brf_s [%],brf_p [%],u_brf_s,u_brf_p" + values),
+                   {"column u_brf_s is of no column that is read"}));
+}
+
+// Or they would be 0, which stands for none, next to others that are not.
+TEST(TablesOfOthers, HaveUncertaintiesOfBrdfsOfPolarizedLightThatAreRead) {
+  const std::string first = "wavelength_nm,theta_i_deg,phi_i_deg,theta_r_deg,phi_r_deg,";
+  for (const std::string columns : {"brf_s,brf_p,u_f_s", "f_s,f_p,u_f_ss", "f11,m12,u_f_p", "f11,m12,u_f_sp"})
+    EXPECT_TRUE(says(refusal(first + columns + "\n532,45,0,30,180,0.2,0.1,0.01\n"), {"is of no column that is read"}))
+        << columns;
+  EXPECT_EQ(
+      refusal(first + "f_s,f_p,m33,u_m33\n532,45,0,30,180,0.2,0.1,0.5,0.01\n"),
+      "d.csv:1: uncertainties of m33, but none of f_s and f_p: they are needed of all elements that are there, or "
+      "of none");
+  EXPECT_EQ(
+      refusal(first + "f_s,f_p,u_f_s,u_f_p,m33\n532,45,0,30,180,0.2,0.1,0.01,0.01,0.5\n"),
+      "d.csv:1: uncertainties of f_s and f_p, but none of m33: they are needed of all elements that are there, or "
+      "of none");
+}
+
 TEST(TablesOfOthers, AreToldOfAllAnglesThatTheyLackAtOnce) {
   EXPECT_TRUE(says(refusal("wavelength_nm;AOI;det;f11\n532;45;30;0.3\n"),
                    {"no column theta_i_deg (nor thetai), nor phi_i_deg, nor theta_r_deg, nor phi_r_deg; if it has "

@@ -311,6 +311,17 @@ TEST(NotMeasured, PartsOfABlockHaveTheUncertaintyOfTheSample) {
   EXPECT_LT(growth, 3);  // four readings are one: 2, where all columns are determined
 }
 
+// 22 alone gives no imaginary part of its block, which the arms of a goniometer mix into it.
+TEST(NotMeasured, PartsOfABlockThatLeaveTheOthersOpenHaveTheUncertaintyOfTheSample) {
+  for (const std::size_t e : {5UL, 6UL, 10UL}) {
+    const Elements kept = Elements(1) | Elements(1UL << e);
+    const FitResult fitted = fit_sample(without(~kept, of_ptfe()));
+    ASSERT_TRUE(fitted.model.posterior) << fitted.warnings[0];
+    EXPECT_FALSE(fitted.model.not_measured[e]);
+    EXPECT_TRUE(fitted.model.not_measured[e == 6 ? 5 : 9]);
+  }
+}
+
 // Three planes of a goniometer: few modes of 12 give 13, 21 and 31, more do not, and what they are then no reading says.
 TEST(NotMeasured, PartsOfABlockGiveTheOthersAtTheDefaultOrdersOrNotAtAll) {
   std::vector<Geometry> planes;

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,8 @@ TEST(Posterior, RefusesWhatIsNone) {
       [](PosteriorData& d) { d.readings[0][5].count = 0; },
       [nan](PosteriorData& d) { d.readings[0][5].angles[2] = nan; },
       [](PosteriorData& d) { d.readings[0][5].angles[0] = 3; },
+      [](PosteriorData& d) { d.unread.set(0); },              // all of block 11
+      [](PosteriorData& d) { d.unread = Elements(0x0116); },  // all of block 12, 13, 21, 31
   };
   EXPECT_NO_THROW(Posterior{sound});
   for (std::size_t f = 0; f < faults.size(); ++f) {
@@ -56,6 +59,33 @@ TEST(Posterior, RefusesWhatIsNone) {
     faults[f](doctored);
     EXPECT_THROW(Posterior{doctored}, std::invalid_argument) << f;
   }
+}
+
+TEST(Posterior, KnowsOfEachBlockWhatIsReadAndWhatIsNot) {
+  std::vector<Sample> samples = simulate(material("ptfe"), std::array{0.532}, random_geometries(120, 3), 0.006, 3);
+  for (Sample& sample : samples)
+    for (const std::size_t e : {8UL, 15UL})  // 31 and 44
+      sample.normalized.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  const PosteriorData sound = fit_sample(samples).model.posterior->data();
+  const auto refusal = [](const PosteriorData& data) {
+    try {
+      Posterior{data};
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(sound), "");
+  PosteriorData doctored = sound;
+  doctored.unread = Elements(0x0116);
+  EXPECT_EQ(refusal(doctored), "posterior: unread are all elements of block 12,13,21,31");
+  doctored.unread = Elements(0x8100);
+  EXPECT_EQ(refusal(doctored), "posterior: unread, and of no block that is there: 44");
+  doctored = sound;
+  doctored.not_measured.set(4);
+  EXPECT_EQ(refusal(doctored), "posterior: not measured, and not among those unread: 21");
+  doctored.unread.set(4);
+  EXPECT_EQ(refusal(doctored), "");
 }
 
 TEST(Posterior, MakesItsDataWhenTheyAreFirstAskedFor) {

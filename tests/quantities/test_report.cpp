@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -84,6 +85,27 @@ TEST(Report, HasItsFieldsInOrder) {
     for (const Json& row : rows) EXPECT_EQ(names(row), names(rows.front())) << name;
   }
   EXPECT_EQ(beside["residuals"].size(), 17U);
+}
+
+// Two of three wavelengths with the same directions are warned of in one line.
+TEST(Report, SaysOnceForAllWavelengthsWhatNoSamplesSupport) {
+  std::vector<Geometry> forward, further;
+  for (const Geometry& g : random_geometries(300, 3)) {
+    const double cosine = std::cos(g.reflected.phi - g.incident.phi);
+    if (cosine < 0) forward.push_back(g);
+    if (cosine < -0.5) further.push_back(g);
+  }
+  const Model truth = material("ptfe");
+  std::vector<Sample> samples = simulate(truth, std::array{0.351, 0.633}, forward, 0.006, 1);
+  std::ranges::move(simulate(truth, green, further, 0.006, 1), std::back_inserter(samples));
+  FitOptions options;
+  options.minimum_norm = true;
+  std::vector<std::string> found;
+  const Json all = report(fit(samples, {Family::isotropic, {4, 2}}, options).model);
+  for (const Json& line : all["warnings"])
+    if (const auto at = line.get<std::string>().find(": no samples support"); at != std::string::npos)
+      found.push_back(line.get<std::string>().substr(0, at));
+  EXPECT_EQ(found, (std::vector<std::string>{"351, 633 nm", "532 nm"}));
 }
 
 /// A scale that is 1 % uncertain adds 1 % of each value to its u.

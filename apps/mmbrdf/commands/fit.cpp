@@ -210,9 +210,9 @@ void fit_data(const Options& options, const CommandLine& line) {
 constexpr const char* footer =
     "DATA.csv has the columns of the published data (lambda in micrometres) or wavelength_nm, theta_i_deg, phi_i_deg,\n"
     "theta_r_deg, phi_r_deg, f11 (in sr^-1), m12 ... m44 (divided by f11); - is standard input. Tables as numpy, R or\n"
-    "spreadsheets write them, in radians, of brf = pi f or of f_ss, f_sp, f_ps, f_pp are understood, which a note "
-    "says.\n"
-    "Columns that are not there, but for f11, and empty fields were not measured: their elements are unknown.\n"
+    "spreadsheets write them, in radians, of brf = pi f or of f_ss, f_sp, f_ps, f_pp or f_s, f_p are understood,\n"
+    "which a note says. Columns that are not there, but for f11, and empty fields were not measured: their elements\n"
+    "are unknown.\n"
     "--weights data needs their standard uncertainties too: u_f11, u_m12 ... u_m44.\n"
     "\n"
     "rms is the root mean square of measured - model, for f11 in sr^-1 after division by the reflectance, for the\n"

@@ -82,8 +82,8 @@ inline constexpr std::size_t most_directions = 9000;  ///< beyond these the cova
 struct PosteriorData {
   Orders orders;  ///< of the isotropic modes: generous
   DiscMapping mapping = DiscMapping::lambert;
-  Elements not_measured{};                               ///< there is nothing of their blocks
-  std::vector<SharedError> errors;                       ///< those that are declared first
+  Elements not_measured{};          ///< unknown: of blocks that are not there, or left open by the readings of theirs
+  std::vector<SharedError> errors;  ///< those that are declared first
   std::vector<std::vector<ReadingDirections>> readings;  ///< lists of directions, each for one or several wavelengths
   std::vector<PosteriorAt> wavelengths;                  ///< rising
   Elements unread{};  ///< of blocks that are there, elements of which no reading tells
@@ -96,7 +96,8 @@ std::vector<std::string> hyperparameter_names(const Block& block);
 /// for all copies. May be used in many threads at once.
 class Posterior {
  public:
-  /// Throws std::invalid_argument unless sizes agree, numbers are finite, variances positive and wavelengths rise.
+  /// Throws std::invalid_argument unless sizes agree, numbers are finite, variances positive and wavelengths rise, and of each
+  /// block some element is read.
   explicit Posterior(PosteriorData data);
   /// The same, of data that are made when more of them is asked for than is given here. Whatever asks then throws what
   /// `data` throws, and std::invalid_argument as above or for data that are of something else.
