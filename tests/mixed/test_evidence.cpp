@@ -165,6 +165,37 @@ TEST(BlockFit, HasTheEffectsOfSharedErrorsAndTheCovarianceOfThePosterior) {
   }
 }
 
+// Coefficients drawn from the prior, readings of them with noise: (β − μ)ᵀ V⁻¹ (β − μ) of the isotropic modes is a χ², and
+// intervals of 95 % of what is predicted hold 95 % of the truths. 4 standard deviations of 100 draws.
+TEST(BlockFit, ContainsTheTruthAsOftenAsItSays) {
+  constexpr int draws = 100;
+  Invented block(1);
+  const Index n = block.columns.isotropic_count();
+  const Geometry there{{0.4, 0.2}, {0.7, 2}};
+  const MatrixXd h = block.columns.isotropic_at({&there, 1});
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal;
+  double chi_squared = 0, within = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    VectorXd truth = block.variances().cwiseSqrt();
+    for (double& one : truth) one *= normal(engine);
+    block.y = block.x * truth;
+    for (double& one : block.y) one += std::sqrt(block.noise()) * normal(engine);
+    block.gram.z = block.x.transpose() * block.y;
+    block.gram.yy = block.y.squaredNorm();
+    const Evidence found = block.found(block.at);
+    const VectorXd roots = block.variances().head(n).cwiseSqrt();
+    const MatrixXd v = roots.asDiagonal() * found.inverse.matrix.topLeftCorner(n, n) * roots.asDiagonal();
+    const VectorXd apart = truth.head(n) - found.mean.head(n);
+    chi_squared += apart.dot(v.ldlt().solve(apart));
+    const VectorXd u = (h * v * h.transpose()).diagonal().cwiseSqrt();
+    within += ((h * apart).cwiseAbs().array() < 1.959964 * u.array()).cast<double>().mean();
+  }
+  const double freedom = static_cast<double>(n);
+  EXPECT_NEAR(chi_squared / draws, freedom, 4 * std::sqrt(2 * freedom / draws));
+  EXPECT_NEAR(within / draws, 0.95, 4 * std::sqrt(0.95 * 0.05 / draws));
+}
+
 /// Nodes of the mean over a direction uniform in projected cosine, up to 75 degrees.
 std::vector<Node> polar_nodes() {
   std::vector<Node> result = gauss_legendre(20);
