@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mixed model of the published measurements against an independent implementation in numpy (tests/data).
+// The mixed model: of invented readings against sums over each, of the published measurements against an independent
+// implementation in numpy (tests/data).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -16,6 +18,11 @@
 #include "given/first_pass.hpp"
 #include "given/published_samples.hpp"
 #include "mixed/block_fit.hpp"
+#include "mmbrdf/files/materials.hpp"
+#include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/samples/simulation.hpp"
+#include "numerics/eigen_index.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -214,6 +221,94 @@ TEST(MixedFit, SumsOfPartsOfASeriesAddUp) {
   EXPECT_NEAR(a.evidence, b.evidence, 1e-4);  // the top is flat: rounding ends the search elsewhere
   for (std::size_t h = 0; h < a.hyperparameters.size(); ++h)
     EXPECT_NEAR(a.hyperparameters[h], b.hyperparameters[h], 1e-3);
+}
+
+std::vector<Sample> simulated(int count) {
+  return simulate(material("ptfe-532"), std::array{0.532}, random_geometries(count, 3), 0.006, 3);
+}
+
+double f11_of(const PreparedModel& model, Geometry g, double source, double receiver) {
+  g.incident.theta += source;
+  g.reflected.theta += receiver;
+  return model.f11(g);
+}
+
+// Theory 8.1 and 8.4. Looked at in the plane of incidence, the sample sees both arms turn from the source to the receiver:
+// the one rises as the other sinks. 1e-6: differences of 1e-5 of the arms.
+TEST(MixedFit, HasTheSumsOfWeighedReadingsAndOfErrorsThatTheyShare) {
+  std::vector<Sample> samples = simulated(60);
+  for (Sample& sample : samples) sample.geometry.reflected.phi = sample.geometry.incident.phi + std::numbers::pi;
+  FirstPass first = first_pass(samples, {}, {});
+  first.law = {2, 0.5, true};
+  const PreparedModel model = prepare(first.model, 0.532);
+  const MixedColumns seventh(blocks(Family::isotropic, {first_order, 0}).front(), DiscMapping::lambert);
+  std::vector<Geometry> at;
+  for (const Sample& sample : samples) at.push_back(sample.geometry);
+  const VectorXd f11 = seventh.isotropic_at(at) * Eigen::Map<const VectorXd>(first.f11.data(), index(first.f11.size()));
+  for (const std::size_t b : {0U, 1U}) {
+    const MixedColumns columns(blocks(Family::isotropic, {3, 2})[b], DiscMapping::lambert);
+    const MatrixXd x = columns.at(at);
+    VectorXd w2(x.rows()), y(x.rows());
+    MatrixXd d = MatrixXd::Zero(x.rows(), 3);
+    for (Index row = 0; row < x.rows(); ++row) {
+      const auto s = static_cast<std::size_t>(row % index(at.size()));
+      const Element& element = columns.isotropic().elements[static_cast<std::size_t>(row) / at.size()];
+      w2(row) = std::sqrt(std::cos(at[s].reflected.theta)) / std::pow(std::cos(at[s].incident.theta), 2);
+      y(row) = b == 0 ? samples[s].f11 : samples[s].normalized.elements[element.index()];
+      if (b > 0) continue;
+      w2(row) /= std::pow(f11(row), 2);
+      constexpr double step = 1e-5;
+      d(row, 0) = model.f11(at[s]);
+      d(row, 1) = -(f11_of(model, at[s], step, 0) - f11_of(model, at[s], -step, 0)) / (2 * step);
+      d(row, 2) = (f11_of(model, at[s], 0, step) - f11_of(model, at[s], 0, -step)) / (2 * step);
+    }
+    const Gram found = sums_of(columns, samples, first);
+    const MatrixXd g = x.transpose() * w2.asDiagonal() * x, errors = x.transpose() * w2.asDiagonal() * d;
+    const VectorXd z = x.transpose() * w2.cwiseProduct(y);
+    const double yy = w2.dot(y.cwiseAbs2());
+    EXPECT_EQ(found.n, x.rows());
+    EXPECT_NEAR(found.yy / yy, 1, 1e-12);
+    EXPECT_LT((found.z - z).cwiseAbs().maxCoeff(), 1e-12 * z.cwiseAbs().maxCoeff());
+    EXPECT_LT((MatrixXd(found.g.selfadjointView<Eigen::Lower>()) - g).cwiseAbs().maxCoeff(), 1e-12 * g.maxCoeff());
+    if (b > 0) {
+      EXPECT_EQ(found.d.col(0).cwiseAbs().maxCoeff(), 0);  // a scale is none of normalised elements
+      continue;
+    }
+    for (Index e = 0; e < 3; ++e)
+      EXPECT_LT((found.d.col(e) - errors.col(e)).cwiseAbs().maxCoeff(), 1e-6 * errors.col(e).cwiseAbs().maxCoeff())
+          << e;
+  }
+}
+
+// Theory 8.3, round 2: noise is relative where the least f11 of the first fit exceeds the typical size of what it leaves.
+TEST(MixedFit, TakesNoiseForRelativeOnlyWhereF11StandsAboveIt) {
+  std::vector<Sample> samples = simulated(100);
+  EXPECT_TRUE(first_pass(samples, {}, {}).law.relative);
+  for (std::size_t s = 0; s < samples.size(); ++s) samples[s].f11 += s % 2 == 0 ? 0.5 : -0.5;
+  EXPECT_FALSE(first_pass(samples, {}, {}).law.relative);
+}
+
+// f11 and the reflectance in other units are the same sample. 1e-4, 1e-5: the top of the evidence is flat, and rounding
+// ends the search elsewhere.
+TEST(MixedFit, IsTheSameInUnitsOfAnotherReflectance) {
+  constexpr double unit = 7;
+  std::vector<Sample> samples = simulated(60);
+  for (Sample& sample : samples)  // f11 alone: one block, in little time
+    for (std::size_t e = 1; e < 16; ++e) sample.normalized.elements[e] = std::nan("");
+  std::vector<Sample> others = samples;
+  for (Sample& sample : others) sample.f11 *= unit;
+  FitOptions options, scaled;
+  options.declared = scaled.declared = {0.01, 0.01, 0.01};
+  options.reflectance = ReflectanceTable{{0.532}, {1}};
+  scaled.reflectance = ReflectanceTable{{0.532}, {unit}};
+  const PosteriorAt a = fit_sample(samples, {}, options).model.posterior->data().wavelengths[0],
+                    b = fit_sample(others, {}, scaled).model.posterior->data().wavelengths[0];
+  for (std::size_t j = 0; j < a.f11.size(); ++j) EXPECT_NEAR(b.f11[j], a.f11[j], 1e-9 * std::abs(a.f11[0]));
+  const BlockPosterior &p = a.blocks[0], &q = b.blocks[0];
+  EXPECT_NEAR(q.noise_variance / p.noise_variance, 1, 1e-4);
+  for (std::size_t j = 0; j < p.mean.size(); ++j) EXPECT_NEAR(q.mean[j], p.mean[j], 1e-4 * std::abs(p.mean[0])) << j;
+  for (std::size_t j = 0; j < p.shared.size(); ++j)
+    EXPECT_NEAR(q.shared[j], p.shared[j], 1e-4F * std::abs(p.shared[0])) << j;
 }
 
 /// At some azimuth of the receiver each, from one on.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -15,10 +16,14 @@
 #include "given/first_pass.hpp"
 #include "given/halton.hpp"
 #include "given/published_samples.hpp"
+#include "mixed/prior.hpp"
 
 namespace mmbrdf {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 using nlohmann::json;
 
 constexpr std::array<const char*, 6> block_names{"11", "g", "14", "uv", "h", "44"};
@@ -107,6 +112,78 @@ TEST(Plan, AgreesWithTheReferenceForItsDesigns) {
          turned_by(samples, [](std::size_t i, auto&) { return i % 2 == 1 ? 180.0 : 0; }));
   expect("golden-ratio azimuth per reading", turned_by(samples, golden_ratio));
   expect("golden-ratio azimuth, every 4th reading", turned_by(samples, golden_ratio, 4));
+}
+
+/// V of theory 8.6 of a block, of isotropic modes, by a dense inverse of readings at each geometry and element.
+MatrixXd dense_covariance(const VarianceComponents& components, const MixedColumns& columns, std::size_t block,
+                          const std::vector<Geometry>& design) {
+  const auto& [hyperparameters, noise] = components.blocks[block];
+  const VectorXd v = prior_of(columns).variances(Eigen::Map<const VectorXd>(hyperparameters.data(), 8));
+  const MatrixXd x = columns.at(design);
+  VectorXd variances(x.rows());  // of the readings; f11 is 1/pi
+  for (Index row = 0; row < x.rows(); ++row) {
+    const auto& [i, r] = design[static_cast<std::size_t>(row) % design.size()];
+    variances(row) = noise * std::cos(i.theta) / std::cos(r.theta);
+    if (block == 0) variances(row) /= std::numbers::pi * std::numbers::pi;
+  }
+  const MatrixXd vx = v.asDiagonal() * x.transpose();
+  const MatrixXd k = x * vx + MatrixXd(variances.asDiagonal());
+  const Index n = columns.isotropic_count();
+  return (MatrixXd(v.asDiagonal()) - vx * k.llt().solve(vx.transpose())).topLeftCorner(n, n);
+}
+
+// 1e-6: K has a condition of 1e8. The hemisphere is a sum over the midpoints of equal parts: 1e-3.
+TEST(Plan, HasTheUncertaintiesOfTheDenseCovariance) {
+  VarianceComponents components = default_components();
+  components.orders = {5, 4};
+  const std::vector<Geometry> design = random_geometries(30, 3), spread = halton_directions(1000, 0, 70);
+  const Geometry one{{0.3, 0.4}, {0.9, 2}};
+  const std::vector<PlanTarget> targets{{PlanTarget::Kind::block, 0, {}},
+                                        {PlanTarget::Kind::f11, 0, one},
+                                        {PlanTarget::Kind::dhr, 0, {{0.3, 0}, {}}},
+                                        {PlanTarget::Kind::block, 2, {}},
+                                        {PlanTarget::Kind::block, 3, {}}};
+  const std::vector<double> found = expected_uncertainties(components, design, targets);
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const std::size_t b = targets[t].block;
+    const MixedColumns columns(blocks(Family::isotropic, components.orders)[b], components.mapping);
+    MatrixXd h = columns.isotropic_at(spread);
+    if (targets[t].kind == PlanTarget::Kind::f11) h = columns.isotropic_at({&one, 1});
+    if (targets[t].kind == PlanTarget::Kind::dhr) {  // the mean of pi f11 over projected cosine
+      std::vector<Geometry> all;
+      for (int a = 0; a < 200; ++a)
+        for (int p = 0; p < 12; ++p)
+          all.push_back({{0.3, 0}, {std::asin(std::sqrt((a + 0.5) / 200)), 2 * std::numbers::pi * p / 12}});
+      h = std::numbers::pi * columns.isotropic_at(all).colwise().mean();
+    }
+    const MatrixXd v = dense_covariance(components, columns, b, design);
+    const double u = std::sqrt((h * v).cwiseProduct(h).rowwise().sum().mean());
+    EXPECT_NEAR(found[t] / u, 1, targets[t].kind == PlanTarget::Kind::dhr ? 1e-3 : 1e-6) << t;
+  }
+}
+
+// Without readings, u² is the prior's; a reading never makes it larger; with many, they are of the noise alone, as 1/√n.
+TEST(Plan, GoesFromThePriorToTheNoiseAsReadingsAreAdded) {
+  VarianceComponents components = default_components();
+  components.orders = {3, 2};
+  const std::vector<PlanTarget> targets{{PlanTarget::Kind::block, 2, {}}};
+  const MixedColumns columns(blocks(Family::isotropic, components.orders)[2], components.mapping);
+  const MatrixXd h = columns.isotropic_at(halton_directions(1000, 0, 70));
+  const VectorXd v =
+      prior_of(columns).variances(Eigen::Map<const VectorXd>(components.blocks[2].hyperparameters.data(), 8));
+  const double prior = std::sqrt((h.cwiseAbs2() * v.head(h.cols())).mean());
+  EXPECT_NEAR(expected_uncertainties(components, {}, targets)[0] / prior, 1, 1e-9);
+  double before = prior;
+  for (const int count : {1, 2, 5, 20, 100}) {
+    const double u = expected_uncertainties(components, random_geometries(count, 4), targets)[0];
+    EXPECT_LT(u, before);
+    before = u;
+  }
+  for (VarianceComponents::OfBlock& block : components.blocks) block.noise_variance = 1e-14;
+  const std::vector<Geometry> many = random_geometries(600, 4);
+  const double less = expected_uncertainties(components, many, targets)[0];
+  for (VarianceComponents::OfBlock& block : components.blocks) block.noise_variance = 4e-14;
+  EXPECT_NEAR(expected_uncertainties(components, many, targets)[0] / less, 2, 0.01);
 }
 
 TEST(Plan, ChoosesAsTryingEachCandidateDoes) {

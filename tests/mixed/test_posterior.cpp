@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -16,6 +18,7 @@
 #include "given/halton.hpp"
 #include "mixed/block_fit.hpp"
 #include "mixed/prior.hpp"
+#include "mixed/readings.hpp"
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
@@ -137,22 +140,126 @@ TEST(Posterior, InItsRoundedFormHoldsEveryUncertaintyToOnePercent) {
   }
 }
 
-// Theory 8.2: ln v = l − s ln(1 + ((n + m) / 3)²) of free modes.
-TEST(Prior, OfFreeModesFallsWithTheSquareOfTheirDegree) {
-  const Model model = fitted();
-  for (const Block& block : model.posterior->blocks()) {
+/// Theory 8.2, of hyperparameters in the order of hyperparameter_names().
+double variance_of(const Mode& mode, const Eigen::VectorXd& theta) {
+  if (mode.n <= 2 && mode.m <= 2) return 100;
+  return std::exp(theta(0)) * std::pow((1 + mode.n + mode.m) / 6.0, -2 * theta(1));
+}
+double variance_of(const FreeMode& mode, const Eigen::VectorXd& theta) {
+  const double level = mode.kind == FreeMode::Kind::harmonic ? theta(1 + mode.harmonic)
+                       : mode.kind == FreeMode::Kind::odd    ? theta(6)
+                                                             : theta(7);
+  return std::exp(level) * std::pow(1 + std::pow(mode.degree / 3.0, 2), -theta(5));
+}
+
+TEST(Prior, HasTheVariancesOfTheTheory) {
+  for (const Block& block : blocks(Family::isotropic, generous_orders)) {
     const MixedColumns columns(block, DiscMapping::lambert);
-    const Prior prior = prior_of(columns);
-    Eigen::VectorXd flat = prior.mean;
-    const double slope = std::exchange(flat(5), 0);
-    ASSERT_EQ(hyperparameter_names(block)[5], "free_slope");
-    const Eigen::VectorXd v = prior.variances(prior.mean), without = prior.variances(flat);
-    Eigen::Index column = columns.isotropic_count();
-    for (const FreeMode& mode : columns.free()) {
-      EXPECT_NEAR(v(column) / without(column), std::pow(1 + std::pow(mode.degree / 3.0, 2), -slope), 1e-12);
-      ++column;
-    }
+    ASSERT_EQ(hyperparameter_names(block),
+              (std::vector<std::string>{"iso", "slope", "q1", "q2", "q3", "free_slope", "odd",
+                                        feeds_f11(block) ? "nonreciprocal" : "calibration"}));
+    Eigen::VectorXd theta(8);
+    theta << -10, 2.5, -11, -12, -13, 1.7, -14, -9;
+    const Eigen::VectorXd v = prior_of(columns).variances(theta);
+    Eigen::Index column = 0;
+    for (const Mode& mode : block.modes) EXPECT_NEAR(v(column++) / variance_of(mode, theta), 1, 1e-12);
+    for (const FreeMode& mode : columns.free()) EXPECT_NEAR(v(column++) / variance_of(mode, theta), 1, 1e-12);
+    while (column < columns.size()) EXPECT_NEAR(v(column++) / std::exp(theta(7)), 1, 1e-12);
   }
+}
+
+TEST(Prior, KeepsLogarithmsOfVariancesFromMinus40To10) {
+  const MixedColumns columns(blocks(Family::isotropic, {3, 2})[1], DiscMapping::lambert);
+  const Prior prior = prior_of(columns);
+  const Eigen::Index last = columns.size() - 1;  // of the calibration
+  for (const auto& [asked, kept] : {std::pair{-50, -40}, {-39, -39}, {9, 9}, {20, 10}})
+    EXPECT_NEAR(std::log(prior.variances(Eigen::VectorXd::Constant(8, asked))(last)), kept, 1e-12);
+}
+
+// Theory 8.1: harmonics have no preferred azimuth, and f11 that is not reciprocal is as likely as its opposite.
+TEST(Prior, OfF11IsTheSameOfATurnedSampleAndOfSourceAndReceiverExchanged) {
+  const MixedColumns columns(blocks(Family::isotropic, {5, 2}).front(), DiscMapping::lambert);
+  const Prior prior = prior_of(columns);
+  const Eigen::VectorXd roots = prior.variances(prior.mean).cwiseSqrt();
+  std::vector<Geometry> as_is = random_geometries(20, 5), turned = as_is, exchanged = as_is;
+  for (Geometry& g : turned) g = {{g.incident.theta, g.incident.phi + 0.7}, {g.reflected.theta, g.reflected.phi + 0.7}};
+  for (Geometry& g : exchanged) std::swap(g.incident, g.reflected);
+  const auto covariance = [&](const std::vector<Geometry>& at) {
+    const Eigen::MatrixXd rows = columns.at(at) * roots.asDiagonal();
+    return Eigen::MatrixXd(rows * rows.transpose());
+  };
+  const Eigen::MatrixXd expected = covariance(as_is);
+  for (const auto& other : {turned, exchanged})
+    EXPECT_LT((covariance(other) - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.maxCoeff());
+}
+
+// Theory 8.1: a calibration leaves a constant error of each element in the scattering plane.
+TEST(MixedColumns, OfTheCalibrationAreConstantInTheScatteringPlane) {
+  const std::vector<Geometry> at = random_geometries(10, 2);
+  for (const Block& block : blocks(Family::isotropic, {2, 2})) {
+    const MixedColumns columns(block, DiscMapping::lambert);
+    const Eigen::MatrixXd rows = columns.at(at);
+    for (Eigen::Index c = 0; c < columns.calibration_count(); ++c)
+      for (std::size_t g = 0; g < at.size(); ++g) {
+        Mueller seen{};
+        for (std::size_t e = 0; e < block.elements.size(); ++e)
+          seen.elements[block.elements[e].index()] =
+              rows(static_cast<Eigen::Index>(e * at.size() + g), columns.size() - columns.calibration_count() + c);
+        const Mueller there = change_frame(seen, at[g], Frame::xy, Frame::scattering_plane);
+        for (std::size_t e = 0; e < block.elements.size(); ++e)
+          EXPECT_NEAR(there.elements[block.elements[e].index()], static_cast<Eigen::Index>(e) == c ? 1 : 0, 1e-12);
+      }
+  }
+}
+
+// Theory 8.1: a reading of noise variance 1 has σ² = cos^a θi / cos^b θr, of f11 relative times f11²; each counts as often
+// as it was taken. 1e-6: angles are kept in single precision.
+TEST(Readings, WeighByTheirLawAndCountAsOftenAsTheyWereTaken) {
+  std::vector<double> f11(blocks(Family::isotropic, {first_order, 0}).front().modes.size());
+  for (std::size_t j = 0; j < f11.size(); ++j) f11[j] = (j == 0 ? 1 : 0.02) / (1 + static_cast<double>(j));
+  const MixedColumns first(blocks(Family::isotropic, {first_order, 0}).front(), DiscMapping::lambert);
+  const std::vector<Geometry> at = random_geometries(8, 6);
+  std::vector<ReadingDirections> readings;
+  for (const Geometry& g : at)
+    readings.push_back({{static_cast<float>(g.incident.theta), static_cast<float>(g.incident.phi),
+                         static_cast<float>(g.reflected.theta), static_cast<float>(g.reflected.phi)},
+                        static_cast<std::uint32_t>(1 + readings.size() % 3)});
+  const Eigen::VectorXd f =
+      first.isotropic_at(at) * Eigen::Map<const Eigen::VectorXd>(f11.data(), static_cast<Eigen::Index>(f11.size()));
+  for (const std::size_t b : {0U, 1U})
+    for (const ReadingLaw& law : {ReadingLaw{}, ReadingLaw{2, 0.5, true}, ReadingLaw{0.5, 3, false}}) {
+      const MixedColumns columns(blocks(Family::isotropic, {3, 2})[b], DiscMapping::lambert);
+      const Eigen::MatrixXd x = columns.at(at);
+      Eigen::VectorXd weights(x.rows());
+      for (Eigen::Index row = 0; row < x.rows(); ++row) {
+        const std::size_t g = static_cast<std::size_t>(row) % at.size();
+        weights(row) = readings[g].count * std::pow(std::cos(at[g].reflected.theta), law.reflected_exponent) /
+                       std::pow(std::cos(at[g].incident.theta), law.incident_exponent);
+        if (b == 0 && law.relative) weights(row) /= std::pow(f(row), 2);
+      }
+      const Eigen::MatrixXd expected = x.transpose() * weights.asDiagonal() * x;
+      const Eigen::MatrixXd found = gram_of(columns, readings, law, f11).g.selfadjointView<Eigen::Lower>();
+      EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.maxCoeff()) << b;
+    }
+}
+
+// The covariance is that of the readings at the wavelength, symmetric, and no larger than that of fewer readings.
+TEST(Posterior, HasTheCovarianceOfTheReadingsAtEachWavelength) {
+  PosteriorData few = fitted().posterior->data(), both = few;
+  few.readings[0].resize(40);
+  both.wavelengths.push_back(both.wavelengths[0]);
+  both.wavelengths[1].wavelength += 0.1;
+  both.wavelengths[1].readings = 1;
+  both.readings.push_back(few.readings[0]);
+  const Posterior one(few), two(both);
+  const auto modes = static_cast<Eigen::Index>(two.blocks()[2].modes.size());
+  const Eigen::Map<const Eigen::MatrixXd> expected(one.covariance(0, 2).data(), modes, modes),
+      less(two.covariance(1, 2).data(), modes, modes), more(two.covariance(0, 2).data(), modes, modes);
+  EXPECT_EQ((less - expected).cwiseAbs().maxCoeff(), 0);
+  EXPECT_LT((more - more.transpose()).cwiseAbs().maxCoeff(), 1e-12 * more.diagonal().maxCoeff());
+  const Eigen::VectorXd gains = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(less - more).eigenvalues();
+  EXPECT_GT(gains(0), -1e-8 * gains(modes - 1));  // rounding of matrices of a condition of 1e9
+  EXPECT_GT(gains.sum(), 0.1 * less.trace());
 }
 
 // A hundred readings of one direction, and many of others from one azimuth, where nothing tells the isotropic mean from
