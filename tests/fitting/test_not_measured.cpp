@@ -300,7 +300,7 @@ TEST(NotMeasured, PartsOfABlockHaveTheUncertaintyOfTheSample) {
     const Mueller m = normalized(found.evaluate(g)), t = normalized(true_model.evaluate(g)),
                   u = standard_uncertainty(of_part.normalized(g)),
                   before = standard_uncertainty(of_whole.normalized(g));
-    for (const std::size_t e : {1, 2, 4, 8}) {
+    for (const std::size_t e : {1u, 2u, 4u, 8u}) {
       within += std::abs(m.elements[e] - t.elements[e]) < 2 * u.elements[e];
       growth += u.elements[e] / before.elements[e] / 800;
       ++count;
@@ -346,7 +346,7 @@ TEST(NotMeasured, PartsOfABlockAreKeptInTheFileOfAModel) {
   const Geometry g = in_degrees(45, 0, 30, 150);
   const MuellerCovariance u = prepare_uncertainty(model, 0.532).evaluate(g),
                           u_again = prepare_uncertainty(again, 0.532).evaluate(g);
-  for (const std::size_t e : {0, 1, 2, 4, 8}) EXPECT_EQ(u_again(e, e), u(e, e));
+  for (const std::size_t e : {0u, 1u, 2u, 4u, 8u}) EXPECT_EQ(u_again(e, e), u(e, e));
 }
 
 TEST(NotMeasured, ADeclaredErrorThatANoiseFitHasNoPlaceForIsSaidToBeMissing) {
