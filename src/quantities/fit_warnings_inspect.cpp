@@ -97,8 +97,8 @@ std::string no_reflectance(const Inspection& seen, const Looked& at) {
 
 /// Of a reflectance of which a fit of low order says little, its standard uncertainty too.
 bool is_beyond_doubt(const F11Diagnostics& found) {
-  constexpr double large = 10, doubtful = 2;
-  return found.dhr > large || (found.dhr > doubtful && found.dhr - 1 > surely * found.u_dhr);
+  constexpr double doubtful = 2;
+  return found.dhr > impossible || (found.dhr > doubtful && found.dhr - 1 > surely * found.u_dhr);
 }
 
 void look_at_scale(Inspection& result, const Looked& at) {

@@ -221,7 +221,7 @@ std::string not_positive_line(const F11Diagnostics& found, const std::string& wh
 }
 
 std::string energy_line(const F11Diagnostics& found, const std::string& where) {
-  if (!(found.dhr - 1 > surely * found.u_dhr)) return "";
+  if (!(found.dhr > impossible || found.dhr - 1 > surely * found.u_dhr)) return "";
   return "the directional-hemispherical reflectance reaches " + fixed(found.dhr, 4) +
          (found.u_dhr > 0 ? " +- " + rounded(found.u_dhr, 2) : "") + " at theta_i " +
          rounded(degrees(found.dhr_theta_i), 4) + " degrees, " + where + ": more light comes back than falls in; " +

@@ -42,10 +42,12 @@ ModelDiagnostics model_diagnostics(const Model& model, double wavelength, double
 double fitted_theta_max(const Validity& validity);
 
 /// A sentence on f11 that is not positive, and one on a reflectance above 1 by more than `surely` standard
-/// uncertainties, with what is usually the cause; empty if there is none. `where` is such as "within the fitted angles at 532 nm".
+/// uncertainties, or above `impossible`, with what is usually the cause; empty if there is none. `where` is such as
+/// "within the fitted angles at 532 nm".
 std::string not_positive_line(const F11Diagnostics& found, const std::string& where);
 std::string energy_line(const F11Diagnostics& found, const std::string& where);
-inline constexpr double surely = 5;  ///< honest fits of shiny samples are above 1 by two or three
+inline constexpr double surely = 5;       ///< honest fits of shiny samples are above 1 by two or three
+inline constexpr double impossible = 10;  ///< a reflectance is not, whatever its uncertainty
 
 /// Share of the pairs of directions within the fitted polar angles that no samples support at a wavelength, by their
 /// projected solid angles. And a sentence on it where it is more than a twentieth, with the part where most are missing.
