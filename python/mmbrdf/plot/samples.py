@@ -167,7 +167,7 @@ def low_order_residuals(
 ) -> tuple[Figure | SubFigure, Axes]:
     """The same of what a fit of low order leaves of f11, in percent of its root mean square: noise, fine structure, faults.
 
-    Only the wavelength of the first sample has such a fit: ValueError for another. Of too few samples nothing is drawn.
+    Only the wavelength of the first sample has such a fit: ValueError for another. Where none can be made nothing is drawn.
     """
     require("data", data, mmbrdf.Dataset)
     seen = mmbrdf.inspect(data) if inspection is None else inspection
