@@ -58,6 +58,7 @@ void register_textbook();
 void register_evaluation();
 void register_batches();
 void register_analysis();
+void register_influence();
 void register_reduction();
 void register_sampling();
 void register_uncertainty();

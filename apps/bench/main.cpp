@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   mmbrdf::bench::register_batches();
   mmbrdf::bench::register_analysis();
   mmbrdf::bench::register_reduction();
+  mmbrdf::bench::register_influence();
   mmbrdf::bench::register_sampling();
   mmbrdf::bench::register_uncertainty();
   benchmark::RunSpecifiedBenchmarks();

@@ -41,22 +41,27 @@ MatrixXd rows_at(std::span<const Geometry> geometries, const Rows& rows, std::si
 
 std::size_t filled_up(std::size_t modes) { return (modes + influence_tile - 1) / influence_tile * influence_tile; }
 
-/// A matrix as the kernel takes it.
+/// A matrix as the kernel takes it, the columns of some geometries after those of others.
 std::vector<double> in_tiles(const MatrixXd& p) {
   const auto modes = static_cast<std::size_t>(p.rows()), columns = static_cast<std::size_t>(p.cols());
   std::vector<double> tiles(filled_up(modes) * columns);
-  for (std::size_t j = 0; j < modes; ++j)
-    for (std::size_t g = 0; g < columns; ++g)
-      tiles[(j / influence_tile * columns + g) * influence_tile + j % influence_tile] = p(index(j), index(g));
+  for (std::size_t first = 0; first < columns; first += geometries_at_once) {
+    const std::size_t count = std::min(geometries_at_once, columns - first);
+    double* const to = tiles.data() + filled_up(modes) * first;
+    for (std::size_t j = 0; j < modes; ++j)
+      for (std::size_t g = 0; g < count; ++g)
+        to[(j / influence_tile * count + g) * influence_tile + j % influence_tile] = p(index(j), index(first + g));
+  }
   return tiles;
 }
 
-/// f of some geometries of each set as f11 and m, side by side.
-void pack(const float* const* from, std::size_t count, double* const* to) {
-  best_influence_kernel().pack_float(from, count, to);
+void take(const float* const* from, std::size_t each, std::size_t count, const double* weights, double* const* to,
+          double* const* squares) {
+  best_influence_kernel().take_float(from, each, count, weights, to, squares);
 }
-void pack(const double* const* from, std::size_t count, double* const* to) {
-  best_influence_kernel().pack_double(from, count, to);
+void take(const double* const* from, std::size_t each, std::size_t count, const double* weights, double* const* to,
+          double* const* squares) {
+  best_influence_kernel().take_double(from, each, count, weights, to, squares);
 }
 
 }  // namespace
@@ -91,20 +96,17 @@ struct Influence::Parts {
 
   std::size_t geometries = 0, coefficients = 0;
   bool f11_only = false;
-  std::vector<Mueller> weights;
+  std::vector<double> weights;  // 16 for each geometry
   Model model;
   std::vector<OfBlock> blocks;
   std::vector<OfElement> elements;  // f11 is the first
-  std::array<int, 16> places{};     // of an element among these; −1: it is not fitted
   std::size_t sum_rows = 0;         // of all blocks, each filled up
 
   void add_block(std::size_t b, std::span<const Geometry> where, const Basis& basis, const Solution& solution);
   void order();
-  double weight(std::size_t g, std::size_t e) const { return weights.empty() ? 1 : weights[g].elements[e]; }
   std::size_t each() const { return f11_only ? 1 : 16; }
   template <class Number>
   void sum(const Number* values, std::size_t here, Sets& sets) const;
-  void sum(std::size_t element, std::size_t first, std::size_t count, Sets& sets) const;
   void deliver(const Sets& sets, std::size_t set, double* coefficients, double* variances) const;
 };
 
@@ -119,7 +121,7 @@ void Influence::Parts::add_block(std::size_t b, std::span<const Geometry> where,
   for (const Element& element : block.elements) {
     x.push_back(rows_at(where, rows, element.index(), basis));
     MatrixXd weighted = x.back().transpose();
-    for (std::size_t g = 0; g < geometries; ++g) weighted.col(index(g)) *= weight(g, element.index());
+    for (std::size_t g = 0; g < geometries; ++g) weighted.col(index(g)) *= weights[16 * g + element.index()];
     normal.noalias() += weighted * x.back();
     p.emplace_back(inverse * weighted);
     product.noalias() += p.back() * x.back();
@@ -153,7 +155,8 @@ Influence::Influence(std::span<const Geometry> geometries, double wavelength, co
   auto parts = std::make_shared<Parts>();
   parts->geometries = geometries.size();
   parts->f11_only = f11_only;
-  parts->weights.assign(weights.begin(), weights.end());
+  parts->weights.assign(16 * geometries.size(), 1);
+  for (std::size_t g = 0; g < weights.size(); ++g) std::ranges::copy(weights[g].elements, &parts->weights[16 * g]);
   parts->model = std::move(result.model);
   for (std::size_t b = 0; b < result.solutions.size(); ++b) {
     parts->add_block(b, geometries, basis, result.solutions[b]);
@@ -178,41 +181,28 @@ void Influence::fit(std::span<const double> values, std::span<double> coefficien
 
 void Influence::Parts::order() {
   std::ranges::stable_sort(elements, {}, &OfElement::element);
-  places.fill(-1);
-  for (std::size_t k = 0; k < elements.size(); ++k) places[elements[k].element] = static_cast<int>(k);
-  if (places[0] != 0) throw std::invalid_argument("a fit without f11");
-}
-
-/// What one element of some geometries gives to its block.
-void Influence::Parts::sum(std::size_t element, std::size_t first, std::size_t count, Sets& sets) const {
-  const OfElement& of = elements[element];
-  const InfluenceKernel& kernel = best_influence_kernel();
-  std::array<double, geometries_at_once> of_rows;
-  for (std::size_t i = 0; i < count; ++i) of_rows[i] = weight(first + i, of.element);
-  kernel.square(of_rows.data(), count, sets.of(element), sets.squares.data() + of.block * influence_sets);
-  kernel.multiply(of.tiles.data(), of.rows, geometries, first, count, sets.of(element),
-                  sets.sums.data() + blocks[of.block].first_row * influence_sets);
+  if (elements.empty() || elements[0].element != 0) throw std::invalid_argument("a fit without f11");
 }
 
 /// `here` sets, at most as many as stand beside each other; lanes that are not used repeat the last of them.
 template <class Number>
 void Influence::Parts::sum(const Number* values, std::size_t here, Sets& sets) const {
   sets.clear();
-  std::array<double*, 16> to{};
-  for (std::size_t e = 0; e < 16; ++e)
-    if (places[e] >= 0) to[e] = sets.of(static_cast<std::size_t>(places[e]));
+  std::array<double*, 16> to{}, squares{};
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    to[elements[k].element] = sets.of(k);
+    squares[elements[k].element] = sets.squares.data() + elements[k].block * influence_sets;
+  }
+  const InfluenceKernel& kernel = best_influence_kernel();
   for (std::size_t g = 0; g < geometries; g += geometries_at_once) {
     const std::size_t count = std::min(geometries_at_once, geometries - g);
     std::array<const Number*, influence_sets> from;
     for (std::size_t s = 0; s < influence_sets; ++s)
       from[s] = values + (std::min(s, here - 1) * geometries + g) * each();
-    if (f11_only)
-      for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t s = 0; s < influence_sets; ++s)
-          to[0][i * influence_sets + s] = static_cast<double>(from[s][i]);
-    else
-      pack(from.data(), count, to.data());
-    for (std::size_t k = 0; k < elements.size(); ++k) sum(k, g, count, sets);
+    take(from.data(), each(), count, weights.data() + 16 * g, to.data(), squares.data());
+    for (std::size_t k = 0; k < elements.size(); ++k)
+      kernel.multiply(elements[k].tiles.data() + elements[k].rows * g, elements[k].rows, count, sets.of(k),
+                      sets.sums.data() + blocks[elements[k].block].first_row * influence_sets);
   }
 }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "fitting/kernel/influence_kernels.hpp"
 #include "mmbrdf/fitting/leverage.hpp"
 #include "mmbrdf/samples/samples.hpp"
 
@@ -74,6 +78,82 @@ TEST(Influence, OfSingleValuesThreadsAndNeighboursIsThatOfOneSet) {
 }
 
 // 8 geometries are as many rows as f11 has coefficients; the other 15 elements have more rows in each block.
+/// What a kernel makes of some geometries of all its sets.
+struct Taken {
+  std::vector<double> values, squares;
+  std::array<double*, 16> to{}, square{};
+
+  Taken(std::size_t count, std::initializer_list<std::size_t> left_out)
+      : values(16 * count * influence_sets, 9), squares(16 * influence_sets, 0.5) {
+    for (std::size_t e = 0; e < 16; ++e) {
+      to[e] = std::ranges::find(left_out, e) == left_out.end() ? values.data() + e * count * influence_sets : nullptr;
+      square[e] = squares.data() + e * influence_sets;
+    }
+  }
+};
+
+template <class Number>
+auto taker(const InfluenceKernel& kernel) {
+  if constexpr (sizeof(Number) == 4)
+    return kernel.take_float;
+  else
+    return kernel.take_double;
+}
+
+/// Against one number after the other; f11 and rounding are those of every kernel but for the last digit of a product.
+template <class Number>
+void expect_takes(const InfluenceKernel& kernel, std::size_t each) {
+  constexpr std::size_t count = 11;  // more than stand in a register, and not a multiple
+  const std::vector<double> some = some_values(influence_sets, count);
+  const std::vector<Number> f(some.begin(), some.end());
+  std::array<const Number*, influence_sets> from;
+  for (std::size_t s = 0; s < influence_sets; ++s) from[s] = f.data() + s * each * count;
+  std::vector<double> weights(16 * count);
+  for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = k % 5 == 3 ? 0. : 1. / static_cast<double>(1 + k % 7);
+  Taken taken(count, {3, 12});
+  taker<Number>(kernel)(from.data(), each, count, weights.data(), taken.to.data(), taken.square.data());
+  for (std::size_t e = 0; e < each; ++e)
+    for (std::size_t s = 0; s < influence_sets; ++s) {
+      double square = 0.5;
+      for (std::size_t g = 0; g < count && taken.to[e]; ++g) {
+        const Number* const set = from[s] + each * g;
+        const double weight = weights[16 * g + e], f11 = static_cast<double>(set[0]);
+        const double value = weight == 0 ? 0 : e == 0 ? f11 : static_cast<double>(set[e]) / f11;
+        EXPECT_NEAR(taken.to[e][g * influence_sets + s], value, 1e-15) << kernel.name << ' ' << e << ' ' << s;
+        square += weight * value * value;
+      }
+      EXPECT_NEAR(taken.squares[e * influence_sets + s], square, 1e-14) << kernel.name << ' ' << e << ' ' << s;
+    }
+}
+
+TEST(Influence, OfEveryInstructionSetTakesMatricesAndF11AsOneNumberAfterTheOther) {
+  for (const InfluenceKernel* kernel : influence_kernels()) {
+    if (!kernel->runs_here()) continue;
+    for (const std::size_t each : std::array<std::size_t, 2>{1, 16}) {
+      expect_takes<float>(*kernel, each);
+      expect_takes<double>(*kernel, each);
+    }
+  }
+}
+
+TEST(Influence, OfEveryInstructionSetMultipliesTilesByRowsOfSets) {
+  constexpr std::size_t rows = 2 * influence_tile, count = 5;
+  const std::vector<double> p = some_values(1, 3), values = some_values(influence_sets, 1);
+  for (const InfluenceKernel* kernel : influence_kernels()) {
+    if (!kernel->runs_here()) continue;
+    std::vector<double> sums(rows * influence_sets, 0.25);
+    kernel->multiply(p.data(), rows, count, values.data(), sums.data());
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t s = 0; s < influence_sets; ++s) {
+        double sum = 0.25;
+        for (std::size_t g = 0; g < count; ++g)
+          sum += p[(r / influence_tile * count + g) * influence_tile + r % influence_tile] *
+                 values[g * influence_sets + s];
+        EXPECT_NEAR(sums[r * influence_sets + s], sum, 1e-15) << kernel->name << ' ' << r << ' ' << s;
+      }
+  }
+}
+
 TEST(Influence, DoesNotKnowAVarianceWithoutDegreesOfFreedom) {
   const std::vector<Geometry> where = some_geometries(8);
   const Influence influence(where, 0.532, small);

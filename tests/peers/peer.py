@@ -60,13 +60,14 @@ def interpolation(note):
     return 1.2 * float(rms) / 100, 2 * float(largest) / 100, float(limit)
 
 
-def judge(peer, what, deviations, rms, largest, of="geometries"):
-    """Prints how far the peer's answers are from the model's, as parts of f11, and fails beyond what the format resolves."""
+def judge(peer, what, deviations, rms, largest, of="geometries", part="f11"):
+    """Prints how far the peer's answers are from ours, as parts of f11 or what `part` names, and fails beyond what the format
+    resolves."""
     deviations = np.abs(np.asarray(deviations))
     found = np.sqrt(np.mean(deviations**2)), deviations.max()
     good = np.isfinite(found).all() and found[0] <= rms and found[1] <= largest
     print(f"mmbrdf {mmbrdf.__version__}, {peer}: {what}, {len(deviations)} {of}")
-    print(f"deviation / f11: rms {found[0]:.2e} (limit {rms:.2e}), largest {found[1]:.2e} (limit {largest:.2e})")
+    print(f"deviation / {part}: rms {found[0]:.2e} (limit {rms:.2e}), largest {found[1]:.2e} (limit {largest:.2e})")
     if not good:
         print("beyond what the format resolves")
         sys.exit(1)

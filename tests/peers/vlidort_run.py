@@ -83,7 +83,7 @@ def main():
 
     def judge(what, found, expected, limit):
         deviations = np.ravel((found - expected) / expected[..., :1])
-        peer.judge("VLIDORT", what, deviations, limit, limit, "Stokes components")
+        peer.judge("VLIDORT", what, deviations, limit, limit, "Stokes components", "I")
 
     for exact, how, highest, limit in ((1, "exact", ALL, ROTATED), (0, "by moments", ENDS_AFTER, DIGITS)):
         own, diffuser = (ask(words, models["Lambertian"], thick, albedo, exact) for albedo in (0.3, -1))

@@ -15,17 +15,17 @@ inline constexpr size_t influence_tile = 4;
 struct InfluenceKernel {
   const char* name;
   bool (*runs_here)();
-  /// squares (influence_sets) += Σ weights[g] values². A weight of 0 makes 0 of values.
-  void (*square)(const double* weights, size_t count, double* values, double* squares);
-  /// f of `count` geometries of each set, `from[s]`, 16 numbers each, as f11 and f_ij / f11: of element e at
-  /// to[e][g × influence_sets + s], unless that is null.
-  void (*pack_float)(const float* const* from, size_t count, double* const* to);
-  void (*pack_double)(const double* const* from, size_t count, double* const* to);
+  /// f of `count` geometries of each set, `from[s]`, `each` (16 or 1) numbers for each, as f11 and f_ij / f11: of element e
+  /// at to[e][g × influence_sets + s], unless that is null, and times itself and weights[g × 16 + e] added to
+  /// squares[e][s]. What has a weight of 0 becomes 0.
+  void (*take_float)(const float* const* from, size_t each, size_t count, const double* weights, double* const* to,
+                     double* const* squares);
+  void (*take_double)(const double* const* from, size_t each, size_t count, const double* weights, double* const* to,
+                      double* const* squares);
   /// out (rows × influence_sets) += p · values (count × influence_sets). `p` has its rows in tiles, the last filled up with
-  /// zeros: number r of column g of tile t is at p[(t × columns + g) × influence_tile + r]; columns first … first + count − 1
-  /// are used. `rows` is a multiple of influence_tile.
-  void (*multiply)(const double* p, size_t rows, size_t columns, size_t first, size_t count, const double* values,
-                   double* out);
+  /// zeros: number r of column g of tile t is at p[(t × count + g) × influence_tile + r]. `rows` is a multiple of
+  /// influence_tile.
+  void (*multiply)(const double* p, size_t rows, size_t count, const double* values, double* out);
 };
 
 }  // namespace mmbrdf
