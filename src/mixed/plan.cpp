@@ -39,7 +39,7 @@ std::vector<Block> blocks_of(const VarianceComponents& components) {
 class PlannedBlock {
  public:
   PlannedBlock(const VarianceComponents& components, std::size_t block, std::span<const Geometry> design)
-      : components_(components), columns_(blocks_of(components)[block], components.mapping) {
+      : components_(components), columns_(blocks_of(components)[block], components.mapping, components.unread) {
     const auto& [hyperparameters, noise] = components.blocks[block];
     if (hyperparameters.empty())
       throw std::invalid_argument("elements " + columns_.isotropic().name +
@@ -73,7 +73,7 @@ class PlannedBlock {
     else if (relative)
       f11 = first_f11(components_.f11, components_.mapping, geometries);
     const VectorXd w = reading_weights(components_.law, geometries, f11) / std::sqrt(noise_);
-    return w.replicate(columns_.elements(), 1).asDiagonal() * columns_.at(geometries);
+    return w.replicate(elements(), 1).asDiagonal() * columns_.read_at(geometries);
   }
 
   /// Counts these rows h, one target, in units of their variance now.
@@ -96,13 +96,14 @@ class PlannedBlock {
   /// By how much each candidate lowers the targets.
   void add_gains(VectorXd& gains) const {
     const VectorXd of_rows = lowered_.cwiseQuotient((1 + q_.array()).matrix());
-    for (Index e = 0; e < columns_.elements(); ++e) gains += of_rows.segment(e * gains.size(), gains.size());
+    for (Index e = 0; e < elements(); ++e) gains += of_rows.segment(e * gains.size(), gains.size());
   }
   void take(Index candidate, Index count) {
-    for (Index e = 0; e < columns_.elements(); ++e) take_row(e * count + candidate);
+    for (Index e = 0; e < elements(); ++e) take_row(e * count + candidate);
   }
 
  private:
+  Index elements() const { return static_cast<Index>(columns_.read().size()); }  // in a reading
   VectorXd times_covariance(const VectorXd& x) const {
     VectorXd result = covariance_.selfadjointView<Eigen::Lower>() * x;
     for (const auto& [v, d] : taken_) result -= v * (v.dot(x) / d);
@@ -189,7 +190,7 @@ VarianceComponents components_of(const Posterior& posterior, double wavelength) 
   const PosteriorData& data = posterior.data();
   const PosteriorAt& at = *std::ranges::min_element(
       data.wavelengths, {}, [&](const PosteriorAt& one) { return std::abs(one.wavelength - wavelength); });
-  VarianceComponents result{data.orders, data.mapping, at.law, at.f11, {}};
+  VarianceComponents result{data.orders, data.mapping, at.law, at.f11, {}, data.unread};
   for (const Block& block : blocks(Family::isotropic, data.orders)) {
     const auto known = std::ranges::find(posterior.blocks(), block.name, &Block::name);
     const auto b = static_cast<std::size_t>(known - posterior.blocks().begin());

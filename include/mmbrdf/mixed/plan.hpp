@@ -24,9 +24,10 @@ struct VarianceComponents {
   ReadingLaw law;
   std::vector<double> f11;      ///< as in PosteriorAt; empty: 1/π everywhere
   std::vector<OfBlock> blocks;  ///< of the isotropic family; without hyperparameters: not measured
+  Elements unread{};            ///< of these blocks, elements that readings do not tell of, those to come neither
 };
 
-/// Those of a fit at the fitted wavelength that is nearest (micrometres).
+/// Those of a fit at the fitted wavelength that is nearest (micrometres), for readings of the elements that it had.
 VarianceComponents components_of(const Posterior& posterior, double wavelength);
 
 /// For a sample that nobody measured: the medians of five fits of sintered PTFE, and this noise (relative for f11, at
