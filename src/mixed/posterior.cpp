@@ -13,6 +13,7 @@
 #include "mixed/readings.hpp"
 #include "numerics/eigen_index.hpp"
 #include "numerics/threads.hpp"
+#include "text/numbers.hpp"
 
 namespace mmbrdf {
 namespace {
@@ -22,7 +23,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument("posterior: " + what);
+  if (!holds) throw std::invalid_argument(what);
+}
+
+void require_count(std::size_t found, std::size_t expected, const std::string& what) {
+  require(found == expected, std::to_string(found) + " " + what + ", expected " + std::to_string(expected));
 }
 
 bool all_finite(const auto& numbers) {
@@ -33,13 +38,15 @@ void require_valid(const BlockPosterior& p, const Block& block, const MixedColum
                    bool rounded) {
   const std::string of = "of block " + block.name;
   const std::size_t modes = block.modes.size(), free = static_cast<std::size_t>(columns.size()) - modes;
-  require(p.hyperparameters.size() == hyperparameter_names(block).size(), "number of hyperparameters " + of);
-  require(p.mean.size() == modes && p.free_mean.size() == free, "number of means " + of);
-  require(p.shared.size() == errors * modes, "number of effects of shared errors " + of);
-  require(p.deviations.size() == (rounded ? modes : 0) && p.factor.size() == (rounded ? modes * (modes + 1) / 2 : 0),
-          "number of rounded correlations " + of);
-  require(std::ranges::all_of(p.deviations, [](float d) { return d >= 0; }), "deviations " + of);
-  require(p.noise_variance > 0 && std::isfinite(p.noise_variance), "noise variance " + of);
+  require_count(p.hyperparameters.size(), hyperparameter_names(block).size(), "hyperparameters " + of);
+  require_count(p.mean.size(), modes, "means " + of);
+  require_count(p.free_mean.size(), free, "means of free modes " + of);
+  require_count(p.shared.size(), errors * modes, "effects of shared errors " + of);
+  require_count(p.deviations.size(), rounded ? modes : 0, "deviations " + of);
+  require_count(p.factor.size(), rounded ? modes * (modes + 1) / 2 : 0, "rounded correlations " + of);
+  require(std::ranges::all_of(p.deviations, [](float d) { return d >= 0; }), "deviations " + of + " must be 0 or more");
+  require(p.noise_variance > 0 && std::isfinite(p.noise_variance),
+          "noise variance " + of + ": " + mmbrdf::rounded(p.noise_variance, 6) + ", must be positive");
   require(all_finite(p.hyperparameters) && all_finite(p.mean) && all_finite(p.free_mean) && all_finite(p.shared) &&
               all_finite(p.deviations),
           "numbers " + of + " must be finite");
@@ -85,14 +92,14 @@ MatrixXd from_rounded(const BlockPosterior& p) {
 
 MatrixXd covariance_of_all(const PosteriorData& data, const PosteriorAt& at, const BlockPosterior& block,
                            const MixedColumns& columns) {
-  require(block.factor.empty(), "in its rounded form it holds the isotropic modes alone");
+  require(block.factor.empty(), "a posterior in its rounded form holds the isotropic modes alone");
   const VectorXd variances = prior_of(columns).variances(
       Eigen::Map<const VectorXd>(block.hyperparameters.data(), index(block.hyperparameters.size())));
   const Gram gram = gram_of(columns, data.readings[at.readings], at.law, at.f11);
   const Parts parts = parts_of(gram.g, columns.calibration_count());
   const auto roots = variances.cwiseSqrt().asDiagonal();
   const Inverse inverse = inverse_of(gram.g, parts, variances, block.noise_variance);
-  require(std::isfinite(inverse.log_determinant), "covariances are not positive definite");
+  require(std::isfinite(inverse.log_determinant), "covariances of the posterior are not positive definite");
   return roots * inverse.matrix * roots;
 }
 
@@ -124,21 +131,25 @@ Numbers::Numbers(PosteriorData from, const std::vector<Block>& blocks)
     : data(std::move(from)), known(data.wavelengths.size()) {
   require(!data.not_measured[0], "f11 must be measured");
   require(!data.wavelengths.empty(), "no wavelength");
-  require(data.errors.size() >= declared_errors, "number of shared errors");
+  require(data.errors.size() >= declared_errors, std::to_string(data.errors.size()) + " shared errors, expected " +
+                                                     std::to_string(declared_errors) + " or more");
   for (const auto& list : data.readings) require_measurable(list);
-  for (const auto& [name, size] : data.errors) require(size >= 0 && std::isfinite(size), "size of the error " + name);
+  for (const auto& [name, size] : data.errors)
+    require(size >= 0 && std::isfinite(size), "size of the error " + name + " must be 0 or more");
   require_read(data, blocks);
   for (const Block& block : blocks) columns.emplace_back(block, data.mapping, data.unread);
   double before = 0;
   for (const PosteriorAt& at : data.wavelengths) {
     require(at.wavelength > before && std::isfinite(at.wavelength), "wavelengths must be positive and rise");
     before = at.wavelength;
-    require(at.blocks.size() == blocks.size(), "number of blocks");
+    require_count(at.blocks.size(), blocks.size(), "blocks");
     const bool rounded = !at.blocks[0].factor.empty();
     if (!rounded) require(at.f11.size() == first_coefficients() && all_finite(at.f11), "f11 must be 40 finite numbers");
     require(std::abs(at.law.incident_exponent) <= 10 && std::abs(at.law.reflected_exponent) <= 10,
             "exponents of the law must be in -10...10");
-    require(rounded || at.readings < data.readings.size(), "list of directions");
+    require(rounded || at.readings < data.readings.size(), "list of directions " + std::to_string(at.readings) +
+                                                               " is none of the " +
+                                                               std::to_string(data.readings.size()));
     for (std::size_t b = 0; b < blocks.size(); ++b)
       require_valid(at.blocks[b], blocks[b], columns[b], data.errors.size(), rounded);
   }
@@ -178,7 +189,7 @@ struct Posterior::State {
     std::call_once(once, [this] {
       PosteriorData all = data();
       require(all.orders == orders && all.mapping == mapping && all.not_measured == not_measured,
-              "data of something else");
+              "the data of a posterior are those of another");
       made.emplace(std::move(all), blocks);
     });
     return *made;

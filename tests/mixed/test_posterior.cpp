@@ -81,12 +81,12 @@ TEST(Posterior, KnowsOfEachBlockWhatIsReadAndWhatIsNot) {
   EXPECT_EQ(refusal(sound), "");
   PosteriorData doctored = sound;
   doctored.unread = Elements(0x0116);
-  EXPECT_EQ(refusal(doctored), "posterior: unread are all elements of block 12,13,21,31");
+  EXPECT_EQ(refusal(doctored), "unread are all elements of block 12,13,21,31");
   doctored.unread = Elements(0x8100);
-  EXPECT_EQ(refusal(doctored), "posterior: unread, and of no block that is there: 44");
+  EXPECT_EQ(refusal(doctored), "unread, and of no block that is there: 44");
   doctored = sound;
   doctored.not_measured.set(4);
-  EXPECT_EQ(refusal(doctored), "posterior: not measured, and not among those unread: 21");
+  EXPECT_EQ(refusal(doctored), "not measured, and not among those unread: 21");
   doctored.unread.set(4);
   EXPECT_EQ(refusal(doctored), "");
 }
