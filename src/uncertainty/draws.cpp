@@ -17,6 +17,7 @@
 #include "text/numbers.hpp"
 #include "uncertainty/block_at.hpp"
 #include "uncertainty/joint_covariance.hpp"
+#include "uncertainty/variances.hpp"
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
 //   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
@@ -136,8 +137,8 @@ Deviations deviations(std::span<const double> values) {
 }  // namespace
 
 struct Draws::Coefficients {
-  Model behind;  // of a posterior: the model
-  PreparedModel model;
+  Model model;
+  PreparedModel prepared;  // over the modes that are drawn
   int powers = 0;
   ReflectanceTable reflectance;
   std::vector<Index> sizes;      // powers × modes of each block
@@ -149,21 +150,21 @@ struct Draws::Coefficients {
     MatrixXd coefficients;
     VectorXd reflectances;
   };
-  At at(double wavelength) const;
-
- private:
-  At of_posterior(double wavelength) const;
+  At at(double wavelength) const {
+    return model.posterior ? of_posterior(blocks_at(model, wavelength)) : of_fit(wavelength);
+  }
+  At of_posterior(const std::vector<BlockAt>& list) const;
+  At of_fit(double wavelength) const;
 };
 
-Draws::Coefficients::At Draws::Coefficients::of_posterior(double wavelength) const {
-  const std::vector<BlockAt> list = blocks_at(behind, wavelength);
+Draws::Coefficients::At Draws::Coefficients::of_posterior(const std::vector<BlockAt>& list) const {
   const Index count = blocks.front().cols();
   Index modes = 0, begin = 0;
   for (const BlockAt& block : list) modes += block.modes();
   At result{MatrixXd(modes, count), VectorXd::Constant(count, list.front().reflectance)};
   for (std::size_t b = 0; b < list.size(); ++b) {
     const BlockAt& block = list[b];
-    const MatrixXd drawn = square_root(block.covariance, behind.blocks[b].block.name) * blocks[b];
+    const MatrixXd drawn = square_root(block.covariance, model.blocks[b].block.name) * blocks[b];
     result.coefficients.middleRows(begin, block.modes()) = drawn.topRows(block.modes()).colwise() + block.coefficients;
     if (block.knows_reflectance()) result.reflectances += drawn.bottomRows(1).transpose();
     begin += block.modes();
@@ -171,8 +172,7 @@ Draws::Coefficients::At Draws::Coefficients::of_posterior(double wavelength) con
   return result;
 }
 
-Draws::Coefficients::At Draws::Coefficients::at(double wavelength) const {
-  if (behind.posterior) return of_posterior(wavelength);
+Draws::Coefficients::At Draws::Coefficients::of_fit(double wavelength) const {
   Index modes = 0, begin = 0;
   for (const Index size : sizes) modes += size / (powers + 1);
   const Index count = blocks.front().cols();
@@ -205,7 +205,7 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
   require_valid(model);
   const bool has_posterior = model.posterior.has_value();
   const Model over = has_posterior ? over_modes_behind(model) : model;
-  Coefficients drawn{has_posterior ? model : Model{}, prepare(over, 1), over.powers, over.reflectance, {}, {}};
+  Coefficients drawn{model, prepare(over, 1), over.powers, over.reflectance, {}, {}};
   for (const FittedBlock& fitted : over.blocks) {
     drawn.sizes.push_back(index(fitted.coefficients.size()));
     const bool certified = has_posterior && has_uncertain_reflectance(fitted, model.reflectance);
@@ -221,7 +221,7 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
 
 std::vector<PreparedModel> Draws::at(double wavelength) const {
   const Coefficients& drawn = *coefficients_;
-  const PreparedModel model = drawn.model.at(wavelength);
+  const PreparedModel model = drawn.prepared.at(wavelength);
   const auto [coefficients, reflectances] = drawn.at(wavelength);
   std::vector<PreparedModel> result;
   result.reserve(static_cast<std::size_t>(count_));
@@ -229,6 +229,60 @@ std::vector<PreparedModel> Draws::at(double wavelength) const {
     result.push_back(
         model.with({coefficients.col(draw).data(), static_cast<std::size_t>(coefficients.rows())}, reflectances(draw)));
   return result;
+}
+
+struct DrawnMatrices::Prepared {
+  Variances rows;
+  std::vector<Variances::Drawn> parts{};  // of `together` draws
+  std::size_t count = 0;
+  Elements unknown{};
+};
+
+DrawnMatrices Draws::matrices_at(double wavelength) const {
+  const Coefficients& drawn = *coefficients_;
+  const std::vector<BlockAt> blocks = blocks_at(drawn.model, wavelength);
+  const auto [coefficients, reflectances] =
+      drawn.model.posterior ? drawn.of_posterior(blocks) : drawn.of_fit(wavelength);
+  const Orders highest = drawn.model.posterior ? drawn.model.posterior->data().orders : orders(drawn.model);
+  DrawnMatrices::Prepared result{
+      Variances(blocks, std::max(highest.f11, highest.other), drawn.model.mapping, turns(drawn.model))};
+  result.count = static_cast<std::size_t>(count_);
+  result.unknown = unknown_elements(drawn.model);
+  constexpr auto most = static_cast<Index>(DrawnMatrices::together);
+  for (Index first = 0; first < count_; first += most) {
+    const Index here = std::min(most, count_ - first);
+    Variances::Drawn& part = result.parts.emplace_back();
+    Index begin = 0;
+    for (const BlockAt& block : blocks) {
+      MatrixXd columns = MatrixXd::Zero(block.covariance.rows(), here);
+      columns.topRows(block.modes()) = coefficients.block(begin, first, block.modes(), here);
+      part.blocks.emplace_back(columns);
+      begin += block.modes();
+    }
+    part.reflectances.assign(reflectances.data() + first, reflectances.data() + first + here);
+  }
+  return DrawnMatrices(std::make_shared<const DrawnMatrices::Prepared>(std::move(result)));
+}
+
+std::size_t DrawnMatrices::count() const { return prepared_->count; }
+
+void DrawnMatrices::evaluate(std::size_t first, std::span<const Geometry> geometries, Frame frame,
+                             std::span<Mueller> out) const {
+  const Variances::Drawn& part = prepared_->parts.at(first / together);
+  const std::size_t count = part.reflectances.size();
+  if (first % together != 0 || out.size() != geometries.size() * count)
+    throw std::invalid_argument("draws from " + std::to_string(first) + " at " + std::to_string(geometries.size()) +
+                                " geometries, room for " + std::to_string(out.size()));
+  for (const Geometry& geometry : geometries) require_valid(geometry);
+  prepared_->rows.matrices(part, geometries, frame, out);
+  if (prepared_->unknown.none()) return;
+  for (std::size_t g = 0; g < geometries.size(); ++g) {
+    const FrameAngles angles = angles_to_xy(geometries[g], frame);
+    const Elements unknown = turned_into(prepared_->unknown, -angles.scattered, -angles.incident);
+    for (Mueller& m : out.subspan(g * count, count))
+      for (std::size_t e = 0; e < 16; ++e)
+        if (unknown[e]) m.elements[e] = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 Distribution distribution(std::span<const double> values, double coverage, Interval interval) {

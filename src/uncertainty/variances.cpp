@@ -81,11 +81,13 @@ void turn(MuellerCovariance& covariance, const Turn& left, const Turn& right) {
 
 }  // namespace
 
-Packed::Packed(const MatrixXd& symmetric)
-    : rows_(rounded_up(symmetric.rows(), columns_together)), values_(size(rows_ * rows_)) {
-  for (long j = 0; j < symmetric.cols(); ++j)
-    for (long k = 0; k < symmetric.rows(); ++k)
-      values_[size((j / columns_together * rows_ + k) * columns_together + j % columns_together)] = symmetric(k, j);
+Packed::Packed(const Eigen::Ref<const MatrixXd>& matrix)
+    : rows_(rounded_up(matrix.rows(), columns_together)),
+      columns_(rounded_up(matrix.cols(), columns_together)),
+      values_(size(rows_ * columns_)) {
+  for (long j = 0; j < matrix.cols(); ++j)
+    for (long k = 0; k < matrix.rows(); ++k)
+      values_[size((j / columns_together * rows_ + k) * columns_together + j % columns_together)] = matrix(k, j);
 }
 
 /// Groups of which there are several elements, and all others.
@@ -273,6 +275,52 @@ void Variances::covariances(Of what, std::span<const Geometry> geometries, Frame
       const auto at = size(g);
       if (some.mixes) turn(result, {some.left_c[at], some.left_s[at]}, {some.right_c[at], some.right_s[at]});
     }
+  }
+}
+
+/// The normalised matrices, turned: f11 over R, and the other elements.
+void Variances::set_drawn(Some& some, const Drawn& drawn) const {
+  const auto draws = static_cast<long>(drawn.reflectances.size());
+  some.drawn.reserve(size(16 * some.stride * draws));
+  Elements absent = Elements().set();
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const OfBlock& block = blocks_[b];
+    set_rows(some, block, block.all);
+    const PackedColumns coefficients = drawn.blocks[b].view();
+    some.products.reserve(size(coefficients.columns * some.row_stride));
+    some.kernel.products(some.products.data(), some.rows.data(), coefficients, some.row_count, some.row_stride);
+    const double* of_element = some.products.data();
+    for (const std::size_t element : block.all.elements) {
+      for (long d = 0; d < draws; ++d)
+        std::copy_n(of_element + d * some.row_stride, some.count, some.drawn_of(d, element));
+      of_element += some.count;
+      absent.reset(element);
+    }
+  }
+  for (std::size_t e = 0; e < 16; ++e)
+    for (long d = 0; d < draws && absent[e]; ++d) std::fill_n(some.drawn_of(d, e), some.count, 0.0);
+  if (!some.mixes) return;
+  std::array<double*, 16> elements;
+  for (std::size_t e = 0; e < 16; ++e) elements[e] = some.drawn_of(0, e);
+  some.turn(elements, draws, 16 * some.stride);
+}
+
+void Variances::matrices(const Drawn& drawn, std::span<const Geometry> geometries, Frame frame,
+                         std::span<Mueller> out) const {
+  Some some;
+  const std::size_t draws = drawn.reflectances.size();
+  for (std::size_t first = 0; first < geometries.size(); first += size(at_once)) {
+    set_functions(some, geometries.subspan(first));
+    some.set_turn(frame, turns_);
+    set_drawn(some, drawn);
+    for (std::size_t d = 0; d < draws; ++d)
+      for (long g = 0; g < some.count; ++g) {
+        const double* m = some.drawn_of(static_cast<long>(d), 0) + g;
+        const double f11 = drawn.reflectances[d] * *m;
+        std::array<double, 16>& elements = out[(first + size(g)) * draws + d].elements;
+        for (double& element : elements) element = f11 * *std::exchange(m, m + some.stride);
+        elements[0] = f11;
+      }
   }
 }
 

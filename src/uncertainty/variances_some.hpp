@@ -53,7 +53,7 @@ struct Variances::Some {
   long row_stride = 0, row_count = 0;
   bool mixes = false;  // a turn of the axes
   std::array<Geometry, size(at_once)> geometries;
-  Numbers k_incident, k_reflected, rows, products, covariances;
+  Numbers k_incident, k_reflected, rows, products, covariances, drawn;
   alignas(64) std::array<double, 16 * at_once> m, variances, of_rows;
   alignas(64) std::array<double, at_once> value, left_c, left_s, right_c, right_s;
 
@@ -107,6 +107,9 @@ struct Variances::Some {
   }
 
   double* m_of(std::size_t element) { return m.data() + static_cast<long>(element) * stride; }
+  double* drawn_of(long draw, std::size_t element) {
+    return drawn.data() + (16 * draw + static_cast<long>(element)) * stride;
+  }
   double* variance_of(std::size_t element) { return variances.data() + static_cast<long>(element) * stride; }
 
   /// Elements of which there are such columns, turned.

@@ -25,6 +25,27 @@ namespace mmbrdf {
 /// −covariance_tolerance (prediction.hpp) × the largest. Variances of 0 (solutions of minimum norm) are fine.
 void require_semidefinite(const Model& model);
 
+/// What all draws say at a wavelength, worked out as a product of matrices: far faster than one model after the other. May be
+/// used in many threads at once.
+class DrawnMatrices {
+ public:
+  std::size_t count() const;
+
+  /// Draws that are worked out together.
+  static constexpr std::size_t together = 256;
+
+  /// Of draws first, a multiple of `together`, to first + n − 1 (`together` or as many as there are): the matrix of draw
+  /// first + d at geometry g goes to out[g × n + d], which is that of Draws::at() to batch_error (prediction.hpp) of the
+  /// sum of the sizes that it is made of. What a geometry gives does not depend on its neighbours.
+  void evaluate(std::size_t first, std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
+
+ private:
+  friend class Draws;
+  struct Prepared;
+  explicit DrawnMatrices(std::shared_ptr<const Prepared> prepared) : prepared_(std::move(prepared)) {}
+  std::shared_ptr<const Prepared> prepared_;
+};
+
 /// Draws a + V^½ z of the coefficients of each block, with z normal: distributed as N(a, V), also where V is singular.
 /// The values of a reflectance table that has a covariance are drawn with the coefficients of block 11.
 class Draws {
@@ -39,6 +60,9 @@ class Draws {
 
   /// The drawn models at a wavelength (micrometres), some 8 kB each at orders 7, 4. Throws as prepare() does.
   std::vector<PreparedModel> at(double wavelength) const;
+
+  /// Their matrices alone. Throws as prepare_uncertainty() does.
+  DrawnMatrices matrices_at(double wavelength) const;
 
  private:
   struct Coefficients;
