@@ -156,6 +156,12 @@ double degree_of_polarization(const Mueller& m, const Stokes& incident) {
 }
 
 PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp) {
+  const auto half = [&](double a, double b) {
+    return (m_sp(0, 0) + a * m_sp(0, 1) + b * m_sp(1, 0) + a * b * m_sp(1, 1)) / 2;
+  };
+  const PolarizedBrdf usual{half(1, 1), half(1, -1), half(-1, 1), half(-1, -1)};
+  if (std::isfinite(usual.ss) && std::isfinite(usual.sp) && std::isfinite(usual.ps) && std::isfinite(usual.pp))
+    return usual;
   Mueller needed;
   for (const Element& element : {Element{0, 0}, {0, 1}, {1, 0}, {1, 1}})
     needed.elements[element.index()] = m_sp.elements[element.index()];

@@ -57,7 +57,7 @@ double bounded(double x) {
 }
 
 double depolarization_ratio(M m) {
-  depolarization(m);  // refuses M11 that is not positive
+  if (!(m(0, 0) > 0)) depolarization(m);  // refuses
   const PolarizedBrdf f = co_and_cross_polarized(m);
   return bounded((f.sp / 2 + f.ps / 2) / half_co_polarized(f));
 }
