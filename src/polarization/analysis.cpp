@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -234,6 +235,11 @@ double entropy(const Mueller& m) {
   Mueller x = scaled_with_intensity(m);
   x(0, 0) = std::max(x(0, 0), 0x1p-999);  // which the kernel takes; the probabilities hardly depend on it
   return answer_of<Analysis::entropy>(x).value()[0];
+}
+
+Ratios ratios(const Mueller& m) {
+  if (const auto all = answer_of<Analysis::ratios>(m)) return std::bit_cast<Ratios>(*all);
+  return {depolarization(m), diattenuation(m), polarizance(m), purity(m), realizability_margin(m), entropy(m)};
 }
 
 CloudeDecomposition cloude_decomposition(const Mueller& m) {

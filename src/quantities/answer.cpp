@@ -115,13 +115,15 @@ struct Distributed {
   std::vector<double> values;
   bool has_meaning = true;
 
-  void add(std::size_t first, std::span<const Mueller> matrices, const Stokes& light) {
+  /// `ratios` of each, none if there is a matrix without.
+  void add(std::size_t first, std::span<const Mueller> matrices, std::span<const Ratios> ratios, const Stokes& light) {
+    has_meaning = has_meaning && !(answered->quantity->ratio && ratios.empty());
     if (!has_meaning) return;
     const Quantity& quantity = *answered->quantity;
     const std::span out = std::span(values).subspan(first, matrices.size());
     try {
-      if (quantity.values)
-        quantity.values(matrices, out, {});
+      if (quantity.ratio)
+        std::ranges::transform(ratios, out.begin(), quantity.ratio);
       else
         std::ranges::transform(matrices, out.begin(), [&](const Mueller& m) { return quantity.value(m, light); });
     } catch (const std::invalid_argument&) {
@@ -152,7 +154,9 @@ struct DrawnAt {
 void draw(const DrawnMatrices& draws, std::span<const double> errors, std::span<DrawnAt> places) {
   std::vector<Geometry> geometries;
   for (const DrawnAt& place : places) geometries.push_back(place.geometry);
-  std::vector<Mueller> matrices(places.size() * std::min(draws.together, draws.count()));
+  const std::size_t most = std::min(draws.together, draws.count());
+  std::vector<Mueller> matrices(places.size() * most);
+  std::vector<Ratios> of_matrices(most);
   for (std::size_t first = 0; first < draws.count(); first += draws.together) {
     const std::size_t count = std::min(draws.together, draws.count() - first);
     draws.evaluate(first, geometries, Frame::sp, std::span(matrices).first(places.size() * count));
@@ -164,7 +168,9 @@ void draw(const DrawnMatrices& draws, std::span<const double> errors, std::span<
         for (const Mueller& effect : effects) m = m + *error++ * effect;
         m = without_unknown(m);
       }
-      for (Distributed& quantity : places[g].quantities) quantity.add(first, here, places[g].light);
+      const std::size_t refused = ratios(here, std::span(of_matrices).first(count), {.refused = Refused::nan});
+      for (Distributed& quantity : places[g].quantities)
+        quantity.add(first, here, std::span(of_matrices).first(refused > 0 ? 0 : count), places[g].light);
     }
   }
 }
