@@ -12,10 +12,11 @@ using R = Pack<double>;
 constexpr long width = R::width;
 
 /// Registers of geometries that are worked on together: with four columns twelve sums, as many as hide that each waits
-/// for the one before. Of a single register, three times four columns.
+/// for the one before. With fewer, or where there are more registers, of several times four columns.
 constexpr int most_packs = 3;
+constexpr int registers = width == 8 ? 32 : 16;
 template <int packs>
-constexpr int panels_with = packs == 1 ? 3 : 1;
+constexpr int panels_with = (registers - most_packs - 1) / (columns_together * packs);
 
 /// One number of each of their geometries.
 template <int packs>
