@@ -164,10 +164,9 @@ void draw(const DrawnMatrices& draws, std::span<const double> errors, std::span<
       const std::span here = std::span(matrices).subspan(g * count, count);
       const std::vector<Mueller>& effects = *places[g].effects;
       const double* error = errors.data() + first * effects.size();
-      for (Mueller& m : here) {
+      for (Mueller& m : here)
         for (const Mueller& effect : effects) m = m + *error++ * effect;
-        m = without_unknown(m);
-      }
+      if (unknown_elements(here.front()).any()) std::ranges::transform(here, here.begin(), without_unknown);
       const std::size_t refused = ratios(here, std::span(of_matrices).first(count), {.refused = Refused::nan});
       for (Distributed& quantity : places[g].quantities)
         quantity.add(first, here, std::span(of_matrices).first(refused > 0 ? 0 : count), places[g].light);
