@@ -252,7 +252,8 @@ void Variances::covariances(Of what, std::span<const Geometry> geometries, Frame
       const long columns = block.covariance.rows();
       some.products.reserve(size(columns * some.row_stride));
       const double *const h = some.rows.data(), *const products = some.products.data();
-      some.kernel.products(some.products.data(), h, block.covariance.view(), some.row_count, some.row_stride);
+      some.kernel.products(some.products.data(), some.row_stride, h, block.covariance.view(), some.row_count,
+                           some.row_stride);
       const auto count = static_cast<long>(block.rows.size());
       for (long b = 0; b < count; ++b)
         for (long a = 0; a <= b; ++a, next += some.stride)
@@ -278,31 +279,25 @@ void Variances::covariances(Of what, std::span<const Geometry> geometries, Frame
   }
 }
 
-/// The normalised matrices, turned: f11 over R, and the other elements.
+/// The normalised matrices, turned: f11 over R, and the other elements. What is beyond the last of a block in a whole
+/// register is overwritten by the next.
 void Variances::set_drawn(Some& some, const Drawn& drawn) const {
   const auto draws = static_cast<long>(drawn.reflectances.size());
-  some.drawn.reserve(size(16 * some.stride * draws));
-  Elements absent = Elements().set();
+  double* next = some.begin_drawn(rounded_up(draws, columns_together));
+  some.drawn_of.fill(nullptr);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const OfBlock& block = blocks_[b];
-    set_rows(some, block, block.all);
-    const PackedColumns coefficients = drawn.blocks[b].view();
-    some.products.reserve(size(coefficients.columns * some.row_stride));
-    some.kernel.products(some.products.data(), some.rows.data(), coefficients, some.row_count, some.row_stride);
-    const double* of_element = some.products.data();
-    for (const std::size_t element : block.all.elements) {
-      for (long d = 0; d < draws; ++d)
-        std::copy_n(of_element + d * some.row_stride, some.count, some.drawn_of(d, element));
-      of_element += some.count;
-      absent.reset(element);
-    }
+    const Together& all = blocks_[b].all;
+    set_rows(some, blocks_[b], all);
+    some.kernel.products(next, some.drawn_stride, some.rows.data(), drawn.blocks[b].view(), some.row_count,
+                         some.row_stride);
+    for (const std::size_t element : all.elements) some.drawn_of[element] = std::exchange(next, next + some.count);
   }
-  for (std::size_t e = 0; e < 16; ++e)
-    for (long d = 0; d < draws && absent[e]; ++d) std::fill_n(some.drawn_of(d, e), some.count, 0.0);
-  if (!some.mixes) return;
-  std::array<double*, 16> elements;
-  for (std::size_t e = 0; e < 16; ++e) elements[e] = some.drawn_of(0, e);
-  some.turn(elements, draws, 16 * some.stride);
+  for (double*& absent : some.drawn_of) {
+    if (absent) continue;
+    absent = std::exchange(next, next + some.count);
+    for (long d = 0; d < draws; ++d) std::fill_n(absent + d * some.drawn_stride, some.count, 0.0);
+  }
+  if (some.mixes) some.turn(some.drawn_of, draws, some.drawn_stride);
 }
 
 void Variances::matrices(const Drawn& drawn, std::span<const Geometry> geometries, Frame frame,
@@ -315,11 +310,11 @@ void Variances::matrices(const Drawn& drawn, std::span<const Geometry> geometrie
     set_drawn(some, drawn);
     for (std::size_t d = 0; d < draws; ++d)
       for (long g = 0; g < some.count; ++g) {
-        const double* m = some.drawn_of(static_cast<long>(d), 0) + g;
-        const double f11 = drawn.reflectances[d] * *m;
-        std::array<double, 16>& elements = out[(first + size(g)) * draws + d].elements;
-        for (double& element : elements) element = f11 * *std::exchange(m, m + some.stride);
-        elements[0] = f11;
+        const long at = static_cast<long>(d) * some.drawn_stride + g;
+        Mueller& m = out[(first + size(g)) * draws + d];
+        const double f11 = drawn.reflectances[d] * some.drawn_of[0][at];
+        for (std::size_t e = 0; e < 16; ++e) m.elements[e] = f11 * some.drawn_of[e][at];
+        m.elements[0] = f11;
       }
   }
 }

@@ -177,24 +177,26 @@ void variances(double* out, const double* h, const PackedColumns& v, long count,
 }
 
 template <int panels, int packs>
-MMBRDF_INLINE void products_of_panels(double* out, const double* h, const PackedColumns& v, long panel, long stride) {
+MMBRDF_INLINE void products_of_panels(double* out, long out_stride, const double* h, const PackedColumns& v, long panel,
+                                      long stride) {
   Columns<packs, panels> sum;
   add_columns(sum, h, v, panel, 0, v.rows, stride);
   for (int j = 0; j < columns_together * panels; ++j)
-    for (int p = 0; p < packs; ++p) store(sum.of[j][p], out + (panel * columns_together + j) * stride + p * width);
+    for (int p = 0; p < packs; ++p) store(sum.of[j][p], out + (panel * columns_together + j) * out_stride + p * width);
 }
 
 template <int packs>
-void products_of(double* out, const double* h, const PackedColumns& v, long stride) {
+void products_of(double* out, long out_stride, const double* h, const PackedColumns& v, long stride) {
   constexpr int together = panels_with<packs>;
   const long panels = v.columns / columns_together;
   long panel = 0;
-  for (; panel + together <= panels; panel += together) products_of_panels<together, packs>(out, h, v, panel, stride);
-  for (; panel < panels; ++panel) products_of_panels<1, packs>(out, h, v, panel, stride);
+  for (; panel + together <= panels; panel += together)
+    products_of_panels<together, packs>(out, out_stride, h, v, panel, stride);
+  for (; panel < panels; ++panel) products_of_panels<1, packs>(out, out_stride, h, v, panel, stride);
 }
 
-void products(double* out, const double* h, const PackedColumns& v, long count, long stride) {
-  in_tiles(count, [&]<int packs>(long first) { products_of<packs>(out + first, h + first, v, stride); });
+void products(double* out, long out_stride, const double* h, const PackedColumns& v, long count, long stride) {
+  in_tiles(count, [&]<int packs>(long first) { products_of<packs>(out + first, out_stride, h + first, v, stride); });
 }
 
 template <int packs>

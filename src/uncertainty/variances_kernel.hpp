@@ -45,8 +45,8 @@ struct VariancesKernel {
                const double* k_reflected, long of_k, long count);
   /// hᵀ V h, of V that is symmetric.
   void (*variances)(double* out, const double* h, const PackedColumns& v, long count, long stride);
-  /// Vᵀ h
-  void (*products)(double* out, const double* h, const PackedColumns& v, long count, long stride);
+  /// Vᵀ h, of another stride.
+  void (*products)(double* out, long out_stride, const double* h, const PackedColumns& v, long count, long stride);
   /// cos 2a and sin 2a. |a| ≤ max_azimuth / 2.
   void (*double_angles)(double* cosine, double* sine, const double* angle, long count);
   /// √(m² v11 + f11² v), of sixteen elements m and variances v of the normalised ones, and √v11; 0 of what is negative.

@@ -311,7 +311,7 @@ TEST(VariancesKernel, OfEveryInstructionSetAgreesWithSumsInExtendedPrecision) {
         const Packed packed(v);
         std::vector<double> found(static_cast<std::size_t>(count)), products(h.size()), dots(found.size());
         kernel->variances(found.data(), h.data(), packed.view(), count, count);
-        kernel->products(products.data(), h.data(), packed.view(), count, count);
+        kernel->products(products.data(), count, h.data(), packed.view(), count, count);
         kernel->dots(dots.data(), h.data(), products.data(), columns, count, count);
         for (long g = 0; g < count; ++g) {
           Sum all;
