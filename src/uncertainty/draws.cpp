@@ -12,6 +12,7 @@
 #include "mmbrdf/model/prepared.hpp"
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
+#include "numerics/gram.hpp"
 #include "numerics/random.hpp"
 #include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
@@ -42,11 +43,12 @@ VectorXd means(const FittedBlock& fitted, const ReflectanceTable& table) {
   return result;
 }
 
-/// U diag(√s) Uᵀ: unlike U diag(√s), the same for each choice of the eigenvectors.
-MatrixXd square_root(const MatrixXd& covariance, const std::string& block) {
+/// U diag(√s) Uᵀ z: unlike U diag(√s) z, the same for each choice of the eigenvectors.
+MatrixXd root_times(const MatrixXd& covariance, const MatrixXd& z, const std::string& block) {
   const auto [vectors, s] = dense::eigensystem(covariance);
   require_semidefinite(s, "block " + block, covariance_tolerance);
-  return vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal() * vectors.transpose();
+  const MatrixXd root = product(vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal(), vectors.transpose());
+  return symmetric_times(root, z);
 }
 
 MatrixXd with_independent_values(const FittedBlock& fitted, const ReflectanceTable& table, const MatrixXd& z) {
@@ -72,13 +74,13 @@ MatrixXd with_independent_values(const FittedBlock& fitted, const ReflectanceTab
 /// Independent normal numbers, a column for each draw, become deviations of the parameters of a block.
 MatrixXd correlated(const FittedBlock& fitted, const ReflectanceTable& table, const MatrixXd& z) {
   const MatrixXd own = own_covariance(fitted);
-  if (!has_uncertain_reflectance(fitted, table)) return square_root(own, fitted.block.name) * z;
+  if (!has_uncertain_reflectance(fitted, table)) return root_times(own, z, fitted.block.name);
   if (has_independent_values(table)) return with_independent_values(fitted, table, z);
   const Eigen::Map<const MatrixXd> with = covariance_with_values(fitted, table),
                                    values(table.covariance.data(), with.cols(), with.cols());
   MatrixXd joint(z.rows(), z.rows());
   joint << own, with, with.transpose(), values;
-  return square_root(joint, fitted.block.name) * z;
+  return root_times(joint, z, fitted.block.name);
 }
 
 /// The model over the modes behind a posterior, with coefficients of 0: its covariance is another at each wavelength.
@@ -135,7 +137,7 @@ Draws::Coefficients::At Draws::Coefficients::of_posterior(const std::vector<Bloc
   At result{MatrixXd(modes, count), VectorXd::Constant(count, list.front().reflectance)};
   for (std::size_t b = 0; b < list.size(); ++b) {
     const BlockAt& block = list[b];
-    const MatrixXd drawn = square_root(block.covariance, model.blocks[b].block.name) * blocks[b];
+    const MatrixXd drawn = root_times(block.covariance, blocks[b], model.blocks[b].block.name);
     result.coefficients.middleRows(begin, block.modes()) = drawn.topRows(block.modes()).colwise() + block.coefficients;
     if (block.knows_reflectance()) result.reflectances += drawn.bottomRows(1).transpose();
     begin += block.modes();

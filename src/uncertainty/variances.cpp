@@ -90,6 +90,16 @@ Packed::Packed(const Eigen::Ref<const MatrixXd>& matrix)
       values_[size((j / columns_together * rows_ + k) * columns_together + j % columns_together)] = matrix(k, j);
 }
 
+MatrixXd symmetric_times(const MatrixXd& v, const MatrixXd& z) {
+  const VariancesKernel& kernel = best_variances_kernel();
+  const Packed packed(v);
+  const Index count = rounded_up(z.cols(), kernel.width);
+  MatrixXd h = MatrixXd::Zero(count, packed.rows()), out(count, packed.rows());
+  h.topLeftCorner(z.cols(), z.rows()) = z.transpose();
+  kernel.products(out.data(), count, h.data(), packed.view(), count, count);
+  return out.topLeftCorner(z.cols(), z.rows()).transpose();
+}
+
 /// Groups of which there are several elements, and all others.
 std::vector<Variances::Together> Variances::in_turns(const std::vector<std::size_t>& elements) {
   std::vector<Together> result;

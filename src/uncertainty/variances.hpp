@@ -30,6 +30,9 @@ class Packed {
   std::vector<double> values_;
 };
 
+/// V z of a symmetric V. A column of z has the same bits whatever the others are.
+Eigen::MatrixXd symmetric_times(const Eigen::MatrixXd& v, const Eigen::MatrixXd& z);
+
 /// What all blocks at one wavelength say. May be used in many threads at once; unknown elements are 0.
 class Variances {
  public:
