@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "mmbrdf/uncertainty/distribution.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +9,8 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "mmbrdf/uncertainty/draws.hpp"
 #include "text/numbers.hpp"
 
 namespace mmbrdf {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/uncertainty/distribution.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
@@ -78,26 +79,5 @@ std::vector<double> values(std::span<const PreparedModel> draws, Quantity quanti
   for (const PreparedModel& draw : draws) result.push_back(quantity(draw));
   return result;
 }
-
-/// Which of the intervals that hold a given part of the values.
-enum class Interval {
-  symmetric,  ///< as many values below as above (JCGM 101, 7.7.2)
-  shortest,   ///< (JCGM 101, 7.7.4)
-};
-
-struct Distribution {
-  double mean = 0;
-  double standard_deviation = 0;  ///< of one value, with count − 1: the standard uncertainty
-  double low = 0, high = 0;       ///< ends of the coverage interval, both among the values
-};
-
-/// Mean, standard deviation and coverage interval of drawn values. Throws std::invalid_argument for fewer than two
-/// values, one that is not finite, or unless 0 < coverage < 1.
-Distribution distribution(std::span<const double> values, double coverage = 0.95,
-                          Interval interval = Interval::symmetric);
-
-/// Correlation of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws
-/// std::invalid_argument if the counts differ, for fewer than two values, or one that is not finite.
-double correlation(std::span<const double> values, std::span<const double> others);
 
 }  // namespace mmbrdf
