@@ -45,6 +45,7 @@ constexpr Named analyses[] = {
     {"diattenuation", Analysis::diattenuation, 0},
     {"purity", Analysis::purity, 0},
     {"entropy", Analysis::entropy, 0},
+    {"ratios", Analysis::ratios, 0},
     {"coherency_eigenvalues", Analysis::coherency_eigenvalues, 0},
     {"nearest_realizable", Analysis::nearest_realizable, 0.3},
     {"cloude_decomposition", Analysis::cloude_decomposition, 0},

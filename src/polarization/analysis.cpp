@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -156,6 +157,12 @@ double degree_of_polarization(const Mueller& m, const Stokes& incident) {
 }
 
 PolarizedBrdf co_and_cross_polarized(const Mueller& m_sp) {
+  const auto half = [&](double a, double b) {
+    return (m_sp(0, 0) + a * m_sp(0, 1) + b * m_sp(1, 0) + a * b * m_sp(1, 1)) / 2;
+  };
+  const PolarizedBrdf usual{half(1, 1), half(1, -1), half(-1, 1), half(-1, -1)};
+  if (std::isfinite(usual.ss) && std::isfinite(usual.sp) && std::isfinite(usual.ps) && std::isfinite(usual.pp))
+    return usual;
   Mueller needed;
   for (const Element& element : {Element{0, 0}, {0, 1}, {1, 0}, {1, 1}})
     needed.elements[element.index()] = m_sp.elements[element.index()];
@@ -228,6 +235,11 @@ double entropy(const Mueller& m) {
   Mueller x = scaled_with_intensity(m);
   x(0, 0) = std::max(x(0, 0), 0x1p-999);  // which the kernel takes; the probabilities hardly depend on it
   return answer_of<Analysis::entropy>(x).value()[0];
+}
+
+Ratios ratios(const Mueller& m) {
+  if (const auto all = answer_of<Analysis::ratios>(m)) return std::bit_cast<Ratios>(*all);
+  return {depolarization(m), diattenuation(m), polarizance(m), purity(m), realizability_margin(m), entropy(m)};
 }
 
 CloudeDecomposition cloude_decomposition(const Mueller& m) {

@@ -133,6 +133,10 @@ std::size_t realizability_margin(std::span<const Mueller> matrices, std::span<do
   return run<Analysis::realizability_margin, double>(matrices, out, realizability_margin, options);
 }
 
+std::size_t ratios(std::span<const Mueller> matrices, std::span<Ratios> out, const MatricesOptions& options) {
+  return run<Analysis::ratios, Ratios>(matrices, out, ratios, options);
+}
+
 std::size_t coherency_eigenvalues(std::span<const Mueller> matrices, std::span<std::array<double, 4>> out,
                                   const MatricesOptions& options) {
   return run<Analysis::coherency_eigenvalues, std::array<double, 4>>(matrices, out, coherency_eigenvalues, options);

@@ -26,7 +26,7 @@ struct PreparedAnswers::Prepared {
   std::shared_ptr<const Answers::Asked> asked;
   PreparedModel model;
   std::optional<PreparedUncertainty> uncertainty;
-  std::vector<PreparedModel> draws;
+  std::optional<DrawnMatrices> draws;
 };
 
 namespace {
@@ -115,13 +115,15 @@ struct Distributed {
   std::vector<double> values;
   bool has_meaning = true;
 
-  void add(std::size_t first, std::span<const Mueller> matrices, const Stokes& light) {
+  /// `ratios` of each, none if there is a matrix without.
+  void add(std::size_t first, std::span<const Mueller> matrices, std::span<const Ratios> ratios, const Stokes& light) {
+    has_meaning = has_meaning && !(answered->quantity->ratio && ratios.empty());
     if (!has_meaning) return;
     const Quantity& quantity = *answered->quantity;
     const std::span out = std::span(values).subspan(first, matrices.size());
     try {
-      if (quantity.values)
-        quantity.values(matrices, out, {});
+      if (quantity.ratio)
+        std::ranges::transform(ratios, out.begin(), quantity.ratio);
       else
         std::ranges::transform(matrices, out.begin(), [&](const Mueller& m) { return quantity.value(m, light); });
     } catch (const std::invalid_argument&) {
@@ -148,28 +150,27 @@ struct DrawnAt {
   std::vector<Distributed> quantities;
 };
 
-constexpr std::size_t draws_at_once = 32;
-
-/// Some draws at some geometries are evaluated together: a draw at all of these, while its coefficients are at hand.
-void draw(std::span<const PreparedModel> draws, std::span<const double> errors, std::span<DrawnAt> places) {
+/// The values of all quantities, of some draws after others.
+void draw(const DrawnMatrices& draws, std::span<const double> errors, std::span<DrawnAt> places) {
   std::vector<Geometry> geometries;
   for (const DrawnAt& place : places) geometries.push_back(place.geometry);
-  std::vector<Mueller> of_draw(places.size()), matrices(places.size() * draws_at_once);
-  for (std::size_t first = 0; first < draws.size(); first += draws_at_once) {
-    const std::size_t count = std::min(draws_at_once, draws.size() - first);
-    for (std::size_t d = 0; d < count; ++d) {
-      draws[first + d].evaluate(geometries, Frame::sp, of_draw);
-      for (std::size_t g = 0; g < places.size(); ++g) {
-        const std::vector<Mueller>& effects = *places[g].effects;
-        const double* error = errors.data() + (first + d) * effects.size();
-        Mueller m = of_draw[g];
+  const std::size_t most = std::min(draws.together, draws.count());
+  std::vector<Mueller> matrices(places.size() * most);
+  std::vector<Ratios> of_matrices(most);
+  for (std::size_t first = 0; first < draws.count(); first += draws.together) {
+    const std::size_t count = std::min(draws.together, draws.count() - first);
+    draws.evaluate(first, geometries, Frame::sp, std::span(matrices).first(places.size() * count));
+    for (std::size_t g = 0; g < places.size(); ++g) {
+      const std::span here = std::span(matrices).subspan(g * count, count);
+      const std::vector<Mueller>& effects = *places[g].effects;
+      const double* error = errors.data() + first * effects.size();
+      for (Mueller& m : here)
         for (const Mueller& effect : effects) m = m + *error++ * effect;
-        matrices[g * draws_at_once + d] = without_unknown(m);
-      }
-    }
-    for (std::size_t g = 0; g < places.size(); ++g)
+      if (unknown_elements(here.front()).any()) std::ranges::transform(here, here.begin(), without_unknown);
+      const std::size_t refused = ratios(here, std::span(of_matrices).first(count), {.refused = Refused::nan});
       for (Distributed& quantity : places[g].quantities)
-        quantity.add(first, std::span(matrices).subspan(g * draws_at_once, count), places[g].light);
+        quantity.add(first, here, std::span(of_matrices).first(refused > 0 ? 0 : count), places[g].light);
+    }
   }
 }
 
@@ -204,7 +205,7 @@ class PreparedAnswers::Block {
                                                  ? change_frame(error->total, geometry, Frame::sp, options.frame)
                                                  : total_of_one(geometry, options.frame));  // sp mixes more
     }
-    if (!prepared_.draws.empty()) find_distributions(std::span(out).subspan(first));
+    if (prepared_.draws) find_distributions(std::span(out).subspan(first));
   }
 
  private:
@@ -258,9 +259,9 @@ class PreparedAnswers::Block {
       places.push_back({geometries_[g], light_sp(options, geometries_[g]), &errors_[g]->effects, {}});
       for (Answered& answered : answers[g].quantities)
         if (answered.value && !answered.quantity->first_order)
-          places.back().quantities.push_back({&answered, std::vector<double>(prepared_.draws.size())});
+          places.back().quantities.push_back({&answered, std::vector<double>(prepared_.draws->count())});
     }
-    draw(prepared_.draws, prepared_.asked->errors, places);
+    draw(*prepared_.draws, prepared_.asked->errors, places);
     for (const DrawnAt& place : places)
       for (const Distributed& quantity : place.quantities) quantity.finish();
   }
@@ -296,7 +297,7 @@ const Model& Answers::model() const { return asked_->model; }
 PreparedAnswers Answers::at(double wavelength) const {
   PreparedAnswers::Prepared p{asked_, prepare(asked_->model, wavelength), {}, {}};
   if (asked_->unknown_uncertainty.empty()) p.uncertainty = prepare_uncertainty(asked_->model, wavelength);
-  if (asked_->draws) p.draws = asked_->draws->at(wavelength);
+  if (asked_->draws) p.draws = asked_->draws->matrices_at(wavelength);
   return PreparedAnswers(std::make_shared<const PreparedAnswers::Prepared>(std::move(p)));
 }
 
@@ -322,9 +323,9 @@ Answer PreparedAnswers::at(const Geometry& geometry) const { return std::move(at
 
 std::vector<Answer> PreparedAnswers::at(std::span<const Geometry> geometries) const {
   for (const Geometry& geometry : geometries) require_valid(geometry);
-  constexpr std::size_t most = 64, values = 1 << 16;  // of a quantity in all draws, for each of some
-  const std::size_t block =
-      std::clamp<std::size_t>(values / std::max<std::size_t>(prepared_->draws.size(), 1), 1, most);
+  constexpr std::size_t most = 24, values = 1 << 16;  // of a quantity in all draws, for each of some
+  const std::size_t draws = prepared_->draws ? prepared_->draws->count() : 1;
+  const std::size_t block = std::clamp<std::size_t>(values / draws, 1, most);
   std::vector<Answer> result;
   result.reserve(geometries.size());
   for (std::size_t first = 0; first < geometries.size(); first += block)

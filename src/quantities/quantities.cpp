@@ -27,9 +27,10 @@ using Values = std::size_t (*)(std::span<const Mueller>, std::span<double>, cons
 /// A row for what does not take light.
 template <double (*value)(M), Mueller (*gradient)(M)>
 constexpr Quantity of_matrix(std::string_view name, std::string_view meaning, Elements needs = all_of_them,
-                             Values values = nullptr) {
-  return {name,  "", meaning, false, false, needs, [](M m, S) { return value(m); }, [](M m, S) { return gradient(m); },
-          values};
+                             Values values = nullptr, double Ratios::*ratio = nullptr) {
+  return {
+      name,   "",   meaning, false, false, needs, [](M m, S) { return value(m); }, [](M m, S) { return gradient(m); },
+      values, ratio};
 }
 
 template <double PolarizedBrdf::*part, Mueller PolarizedBrdfGradients::*slopes>
@@ -57,7 +58,7 @@ double bounded(double x) {
 }
 
 double depolarization_ratio(M m) {
-  depolarization(m);  // refuses M11 that is not positive
+  if (!(m(0, 0) > 0)) depolarization(m);  // refuses
   const PolarizedBrdf f = co_and_cross_polarized(m);
   return bounded((f.sp / 2 + f.ps / 2) / half_co_polarized(f));
 }
@@ -133,7 +134,7 @@ using G = PolarizedBrdfGradients;
 constexpr Quantity table[] = {
     of_matrix<depolarization, depolarization_gradient>(
         "depolarization", "0 for a perfect depolarizer, 1 where no light is depolarized (Gil and Bernabeu)",
-        all_of_them, depolarization),
+        all_of_them, depolarization, &Ratios::depolarization),
     polarized<&P::ss, &G::ss>("f_ss", "BRDF from s- to s-polarized light"),
     polarized<&P::sp, &G::sp>("f_sp", "BRDF from s- to p-polarized light"),
     polarized<&P::ps, &G::ps>("f_ps", "BRDF from p- to s-polarized light"),
@@ -141,17 +142,17 @@ constexpr Quantity table[] = {
     of_matrix<depolarization_ratio, depolarization_ratio_gradient>(
         "depolarization_ratio", "linear depolarization ratio, (f_sp + f_ps) / (f_ss + f_pp), frame sp", s_and_p),
     of_matrix<diattenuation, diattenuation_gradient>("diattenuation", "length of (M12, M13, M14) / M11", first_row,
-                                                     diattenuation),
+                                                     diattenuation, &Ratios::diattenuation),
     of_matrix<polarizance, polarizance_gradient>("polarizance", "length of (M21, M31, M41) / M11", first_column,
-                                                 polarizance),
+                                                 polarizance, &Ratios::polarizance),
     of_matrix<realizability_margin, realizability_margin_gradient>(
         "eigenvalue_min", "smallest eigenvalue of the coherency matrix / M11: negative for what cannot exist",
-        all_of_them, realizability_margin),
+        all_of_them, realizability_margin, &Ratios::realizability_margin),
     of_matrix<purity, purity_gradient>("purity", "1/4 for a perfect depolarizer, 1 for a Jones matrix", all_of_them,
-                                       purity),
+                                       purity, &Ratios::purity),
     of_matrix<entropy, entropy_gradient>(
         "entropy", "of the coherency eigenvalues: 1 for a perfect depolarizer, 0 for a Jones matrix", all_of_them,
-        entropy),
+        entropy, &Ratios::entropy),
     component<0>("scattered_S1", "scattered light: intensity"),
     component<1>("scattered_S2", "scattered light: s- minus p-polarized"),
     component<2>("scattered_S3", "scattered light: at +45 minus at -45 degrees, from s towards p"),

@@ -12,11 +12,13 @@
 #include "mmbrdf/model/prepared.hpp"
 #include "numerics/dense.hpp"
 #include "numerics/eigen_index.hpp"
+#include "numerics/gram.hpp"
 #include "numerics/random.hpp"
 #include "numerics/semidefinite.hpp"
 #include "text/numbers.hpp"
 #include "uncertainty/block_at.hpp"
 #include "uncertainty/joint_covariance.hpp"
+#include "uncertainty/variances.hpp"
 
 //   a, V    coefficients of a block (with the reflectance table, for 11) and their covariance = U diag(s) Uᵀ
 //   z       independent normal numbers; a + U diag(√s) Uᵀ z has the covariance V
@@ -41,11 +43,12 @@ VectorXd means(const FittedBlock& fitted, const ReflectanceTable& table) {
   return result;
 }
 
-/// U diag(√s) Uᵀ: unlike U diag(√s), the same for each choice of the eigenvectors.
-MatrixXd square_root(const MatrixXd& covariance, const std::string& block) {
+/// U diag(√s) Uᵀ z: unlike U diag(√s) z, the same for each choice of the eigenvectors.
+MatrixXd root_times(const MatrixXd& covariance, const MatrixXd& z, const std::string& block) {
   const auto [vectors, s] = dense::eigensystem(covariance);
   require_semidefinite(s, "block " + block, covariance_tolerance);
-  return vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal() * vectors.transpose();
+  const MatrixXd root = product(vectors * s.cwiseMax(0).cwiseSqrt().asDiagonal(), vectors.transpose());
+  return symmetric_times(root, z);
 }
 
 MatrixXd with_independent_values(const FittedBlock& fitted, const ReflectanceTable& table, const MatrixXd& z) {
@@ -71,13 +74,13 @@ MatrixXd with_independent_values(const FittedBlock& fitted, const ReflectanceTab
 /// Independent normal numbers, a column for each draw, become deviations of the parameters of a block.
 MatrixXd correlated(const FittedBlock& fitted, const ReflectanceTable& table, const MatrixXd& z) {
   const MatrixXd own = own_covariance(fitted);
-  if (!has_uncertain_reflectance(fitted, table)) return square_root(own, fitted.block.name) * z;
+  if (!has_uncertain_reflectance(fitted, table)) return root_times(own, z, fitted.block.name);
   if (has_independent_values(table)) return with_independent_values(fitted, table, z);
   const Eigen::Map<const MatrixXd> with = covariance_with_values(fitted, table),
                                    values(table.covariance.data(), with.cols(), with.cols());
   MatrixXd joint(z.rows(), z.rows());
   joint << own, with, with.transpose(), values;
-  return square_root(joint, fitted.block.name) * z;
+  return root_times(joint, z, fitted.block.name);
 }
 
 /// The model over the modes behind a posterior, with coefficients of 0: its covariance is another at each wavelength.
@@ -104,40 +107,11 @@ void fill_normal(std::vector<MatrixXd>& blocks, unsigned long seed) {
       }
 }
 
-double mean_of(std::span<const double> values) {
-  double sum = 0;
-  for (const double value : values) sum += value / static_cast<double>(values.size());
-  return sum;
-}
-
-void require_values(std::span<const double> values) {
-  if (values.size() < 2) throw std::invalid_argument(std::to_string(values.size()) + " values, at least 2 are needed");
-  for (const double value : values)
-    if (!std::isfinite(value)) throw std::invalid_argument("the value " + shortest(value) + " is not finite");
-}
-
-/// Differences from the mean in units of half the spread, and that. 0 if all values are equal, whatever their mean is
-/// rounded to.
-struct Deviations {
-  std::vector<double> relative;
-  double half_spread = 0;
-};
-
-Deviations deviations(std::span<const double> values) {
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  Deviations result{std::vector<double>(values.size()), *high / 2 - *low / 2};
-  if (result.half_spread == 0) return result;
-  const double mean = mean_of(values);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    result.relative[i] = (values[i] / 2 - mean / 2) / (result.half_spread / 2);
-  return result;
-}
-
 }  // namespace
 
 struct Draws::Coefficients {
-  Model behind;  // of a posterior: the model
-  PreparedModel model;
+  Model model;
+  PreparedModel prepared;  // over the modes that are drawn
   int powers = 0;
   ReflectanceTable reflectance;
   std::vector<Index> sizes;      // powers × modes of each block
@@ -149,21 +123,21 @@ struct Draws::Coefficients {
     MatrixXd coefficients;
     VectorXd reflectances;
   };
-  At at(double wavelength) const;
-
- private:
-  At of_posterior(double wavelength) const;
+  At at(double wavelength) const {
+    return model.posterior ? of_posterior(blocks_at(model, wavelength)) : of_fit(wavelength);
+  }
+  At of_posterior(const std::vector<BlockAt>& list) const;
+  At of_fit(double wavelength) const;
 };
 
-Draws::Coefficients::At Draws::Coefficients::of_posterior(double wavelength) const {
-  const std::vector<BlockAt> list = blocks_at(behind, wavelength);
+Draws::Coefficients::At Draws::Coefficients::of_posterior(const std::vector<BlockAt>& list) const {
   const Index count = blocks.front().cols();
   Index modes = 0, begin = 0;
   for (const BlockAt& block : list) modes += block.modes();
   At result{MatrixXd(modes, count), VectorXd::Constant(count, list.front().reflectance)};
   for (std::size_t b = 0; b < list.size(); ++b) {
     const BlockAt& block = list[b];
-    const MatrixXd drawn = square_root(block.covariance, behind.blocks[b].block.name) * blocks[b];
+    const MatrixXd drawn = root_times(block.covariance, blocks[b], model.blocks[b].block.name);
     result.coefficients.middleRows(begin, block.modes()) = drawn.topRows(block.modes()).colwise() + block.coefficients;
     if (block.knows_reflectance()) result.reflectances += drawn.bottomRows(1).transpose();
     begin += block.modes();
@@ -171,8 +145,7 @@ Draws::Coefficients::At Draws::Coefficients::of_posterior(double wavelength) con
   return result;
 }
 
-Draws::Coefficients::At Draws::Coefficients::at(double wavelength) const {
-  if (behind.posterior) return of_posterior(wavelength);
+Draws::Coefficients::At Draws::Coefficients::of_fit(double wavelength) const {
   Index modes = 0, begin = 0;
   for (const Index size : sizes) modes += size / (powers + 1);
   const Index count = blocks.front().cols();
@@ -205,7 +178,7 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
   require_valid(model);
   const bool has_posterior = model.posterior.has_value();
   const Model over = has_posterior ? over_modes_behind(model) : model;
-  Coefficients drawn{has_posterior ? model : Model{}, prepare(over, 1), over.powers, over.reflectance, {}, {}};
+  Coefficients drawn{model, prepare(over, 1), over.powers, over.reflectance, {}, {}};
   for (const FittedBlock& fitted : over.blocks) {
     drawn.sizes.push_back(index(fitted.coefficients.size()));
     const bool certified = has_posterior && has_uncertain_reflectance(fitted, model.reflectance);
@@ -221,7 +194,7 @@ Draws::Draws(const Model& model, int count, unsigned long seed) : count_(count) 
 
 std::vector<PreparedModel> Draws::at(double wavelength) const {
   const Coefficients& drawn = *coefficients_;
-  const PreparedModel model = drawn.model.at(wavelength);
+  const PreparedModel model = drawn.prepared.at(wavelength);
   const auto [coefficients, reflectances] = drawn.at(wavelength);
   std::vector<PreparedModel> result;
   result.reserve(static_cast<std::size_t>(count_));
@@ -231,45 +204,58 @@ std::vector<PreparedModel> Draws::at(double wavelength) const {
   return result;
 }
 
-Distribution distribution(std::span<const double> values, double coverage, Interval interval) {
-  require_values(values);
-  if (!(coverage > 0 && coverage < 1))
-    throw std::invalid_argument("coverage " + shortest(coverage) + " is not between 0 and 1");
-  const Deviations d = deviations(values);
-  double squares = 0;
-  for (const double value : d.relative) squares += value * value;
-  std::vector<double> sorted(values.begin(), values.end());
-  const std::size_t count = sorted.size();
-  // JCGM 101, 7.7.1: q = ⌊p M + ½⌋ steps from the low end to the high end.
-  const auto steps = std::min(static_cast<std::size_t>(coverage * static_cast<double>(count) + 0.5), count - 1);
-  std::size_t low = (count - steps + 1) / 2 - 1;  // r = ⌊(M − q + 1) / 2⌋, counted from 1
-  if (interval == Interval::symmetric) {          // two of them in their places take a fifth of the time of all
-    const auto at = [&](std::size_t place) { return sorted.begin() + static_cast<std::ptrdiff_t>(place); };
-    std::nth_element(sorted.begin(), at(low), sorted.end());
-    if (steps > 0) std::nth_element(at(low + 1), at(low + steps), sorted.end());
-  } else {
-    std::sort(sorted.begin(), sorted.end());
-    low = 0;
-    for (std::size_t r = 1; r + steps < count; ++r)
-      if (sorted[r + steps] - sorted[r] < sorted[low + steps] - sorted[low]) low = r;
+struct DrawnMatrices::Prepared {
+  Variances rows;
+  std::vector<Variances::Drawn> parts{};  // of `together` draws
+  std::size_t count = 0;
+  Elements unknown{};
+};
+
+DrawnMatrices Draws::matrices_at(double wavelength) const {
+  const Coefficients& drawn = *coefficients_;
+  const std::vector<BlockAt> blocks = blocks_at(drawn.model, wavelength);
+  const auto [coefficients, reflectances] =
+      drawn.model.posterior ? drawn.of_posterior(blocks) : drawn.of_fit(wavelength);
+  const Orders highest = drawn.model.posterior ? drawn.model.posterior->data().orders : orders(drawn.model);
+  DrawnMatrices::Prepared result{
+      Variances(blocks, std::max(highest.f11, highest.other), drawn.model.mapping, turns(drawn.model))};
+  result.count = static_cast<std::size_t>(count_);
+  result.unknown = unknown_elements(drawn.model);
+  constexpr auto most = static_cast<Index>(DrawnMatrices::together);
+  for (Index first = 0; first < count_; first += most) {
+    const Index here = std::min(most, count_ - first);
+    Variances::Drawn& part = result.parts.emplace_back();
+    Index begin = 0;
+    for (const BlockAt& block : blocks) {
+      MatrixXd columns = MatrixXd::Zero(block.covariance.rows(), here);
+      columns.topRows(block.modes()) = coefficients.block(begin, first, block.modes(), here);
+      part.blocks.emplace_back(columns);
+      begin += block.modes();
+    }
+    part.reflectances.assign(reflectances.data() + first, reflectances.data() + first + here);
   }
-  const double deviation = d.half_spread * std::sqrt(squares / static_cast<double>(count - 1));
-  return {mean_of(values), std::min(deviation, std::numeric_limits<double>::max()), sorted[low], sorted[low + steps]};
+  return DrawnMatrices(std::make_shared<const DrawnMatrices::Prepared>(std::move(result)));
 }
 
-double correlation(std::span<const double> values, std::span<const double> others) {
-  if (values.size() != others.size())
-    throw std::invalid_argument(std::to_string(values.size()) + " and " + std::to_string(others.size()) + " values");
-  require_values(values);
-  require_values(others);
-  const Deviations a = deviations(values), b = deviations(others);
-  double aa = 0, bb = 0, ab = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    aa += a.relative[i] * a.relative[i];
-    bb += b.relative[i] * b.relative[i];
-    ab += a.relative[i] * b.relative[i];
+std::size_t DrawnMatrices::count() const { return prepared_->count; }
+
+void DrawnMatrices::evaluate(std::size_t first, std::span<const Geometry> geometries, Frame frame,
+                             std::span<Mueller> out) const {
+  const Variances::Drawn& part = prepared_->parts.at(first / together);
+  const std::size_t count = part.reflectances.size();
+  if (first % together != 0 || out.size() != geometries.size() * count)
+    throw std::invalid_argument("draws from " + std::to_string(first) + " at " + std::to_string(geometries.size()) +
+                                " geometries, room for " + std::to_string(out.size()));
+  for (const Geometry& geometry : geometries) require_valid(geometry);
+  prepared_->rows.matrices(part, geometries, frame, out);
+  if (prepared_->unknown.none()) return;
+  for (std::size_t g = 0; g < geometries.size(); ++g) {
+    const FrameAngles angles = angles_to_xy(geometries[g], frame);
+    const Elements unknown = turned_into(prepared_->unknown, -angles.scattered, -angles.incident);
+    for (Mueller& m : out.subspan(g * count, count))
+      for (std::size_t e = 0; e < 16; ++e)
+        if (unknown[e]) m.elements[e] = std::numeric_limits<double>::quiet_NaN();
   }
-  return aa > 0 && bb > 0 ? std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0) : 0;
 }
 
 }  // namespace mmbrdf

@@ -290,6 +290,8 @@ std::vector<BudgetTerm> PreparedUncertainty::parts(const MuellerGradient& gradie
 
 bool PreparedUncertainty::estimable(const Geometry& geometry) const {
   require_valid(geometry);
+  const auto leaves_none = [](const BlockAt& block) { return block.free.cols() == 0; };
+  if (std::ranges::all_of(blocks_->list, leaves_none)) return true;
   const auto [k_i, k_r] = blocks_->tables(geometry);
   for (const BlockAt& block : blocks_->list)
     for (const Element& element : block.elements) {

@@ -81,11 +81,23 @@ void turn(MuellerCovariance& covariance, const Turn& left, const Turn& right) {
 
 }  // namespace
 
-Packed::Packed(const MatrixXd& symmetric)
-    : rows_(rounded_up(symmetric.rows(), columns_together)), values_(size(rows_ * rows_)) {
-  for (long j = 0; j < symmetric.cols(); ++j)
-    for (long k = 0; k < symmetric.rows(); ++k)
-      values_[size((j / columns_together * rows_ + k) * columns_together + j % columns_together)] = symmetric(k, j);
+Packed::Packed(const Eigen::Ref<const MatrixXd>& matrix)
+    : rows_(rounded_up(matrix.rows(), columns_together)),
+      columns_(rounded_up(matrix.cols(), columns_together)),
+      values_(size(rows_ * columns_)) {
+  for (long j = 0; j < matrix.cols(); ++j)
+    for (long k = 0; k < matrix.rows(); ++k)
+      values_[size((j / columns_together * rows_ + k) * columns_together + j % columns_together)] = matrix(k, j);
+}
+
+MatrixXd symmetric_times(const MatrixXd& v, const MatrixXd& z) {
+  const VariancesKernel& kernel = best_variances_kernel();
+  const Packed packed(v);
+  const Index count = rounded_up(z.cols(), kernel.width);
+  MatrixXd h = MatrixXd::Zero(count, packed.rows()), out(count, packed.rows());
+  h.topLeftCorner(z.cols(), z.rows()) = z.transpose();
+  kernel.products(out.data(), count, h.data(), packed.view(), count, count);
+  return out.topLeftCorner(z.cols(), z.rows()).transpose();
 }
 
 /// Groups of which there are several elements, and all others.
@@ -250,7 +262,8 @@ void Variances::covariances(Of what, std::span<const Geometry> geometries, Frame
       const long columns = block.covariance.rows();
       some.products.reserve(size(columns * some.row_stride));
       const double *const h = some.rows.data(), *const products = some.products.data();
-      some.kernel.products(some.products.data(), h, block.covariance.view(), some.row_count, some.row_stride);
+      some.kernel.products(some.products.data(), some.row_stride, h, block.covariance.view(), some.row_count,
+                           some.row_stride);
       const auto count = static_cast<long>(block.rows.size());
       for (long b = 0; b < count; ++b)
         for (long a = 0; a <= b; ++a, next += some.stride)
@@ -273,6 +286,46 @@ void Variances::covariances(Of what, std::span<const Geometry> geometries, Frame
       const auto at = size(g);
       if (some.mixes) turn(result, {some.left_c[at], some.left_s[at]}, {some.right_c[at], some.right_s[at]});
     }
+  }
+}
+
+/// The normalised matrices, turned: f11 over R, and the other elements. What is beyond the last of a block in a whole
+/// register is overwritten by the next.
+void Variances::set_drawn(Some& some, const Drawn& drawn) const {
+  const auto draws = static_cast<long>(drawn.reflectances.size());
+  double* next = some.begin_drawn(rounded_up(draws, columns_together));
+  some.drawn_of.fill(nullptr);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const Together& all = blocks_[b].all;
+    set_rows(some, blocks_[b], all);
+    some.kernel.products(next, some.drawn_stride, some.rows.data(), drawn.blocks[b].view(), some.row_count,
+                         some.row_stride);
+    for (const std::size_t element : all.elements) some.drawn_of[element] = std::exchange(next, next + some.count);
+  }
+  for (double*& absent : some.drawn_of) {
+    if (absent) continue;
+    absent = std::exchange(next, next + some.count);
+    for (long d = 0; d < draws; ++d) std::fill_n(absent + d * some.drawn_stride, some.count, 0.0);
+  }
+  if (some.mixes) some.turn(some.drawn_of, draws, some.drawn_stride);
+}
+
+void Variances::matrices(const Drawn& drawn, std::span<const Geometry> geometries, Frame frame,
+                         std::span<Mueller> out) const {
+  Some some;
+  const std::size_t draws = drawn.reflectances.size();
+  for (std::size_t first = 0; first < geometries.size(); first += size(at_once)) {
+    set_functions(some, geometries.subspan(first));
+    some.set_turn(frame, turns_);
+    set_drawn(some, drawn);
+    for (std::size_t d = 0; d < draws; ++d)
+      for (long g = 0; g < some.count; ++g) {
+        const long at = static_cast<long>(d) * some.drawn_stride + g;
+        Mueller& m = out[(first + size(g)) * draws + d];
+        const double f11 = drawn.reflectances[d] * some.drawn_of[0][at];
+        for (std::size_t e = 0; e < 16; ++e) m.elements[e] = f11 * some.drawn_of[e][at];
+        m.elements[0] = f11;
+      }
   }
 }
 

@@ -18,17 +18,20 @@ std::span<const VariancesKernel* const> variances_kernels();
 /// The first that runs here.
 const VariancesKernel& best_variances_kernel();
 
-/// A symmetric matrix as the kernel reads it.
+/// A matrix as the kernel reads it.
 class Packed {
  public:
-  explicit Packed(const Eigen::MatrixXd& symmetric);
-  PackedSymmetric view() const { return {values_.data(), rows_}; }
+  explicit Packed(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+  PackedColumns view() const { return {values_.data(), rows_, columns_}; }
   long rows() const { return rows_; }
 
  private:
-  long rows_;
+  long rows_, columns_;
   std::vector<double> values_;
 };
+
+/// V z of a symmetric V. A column of z has the same bits whatever the others are.
+Eigen::MatrixXd symmetric_times(const Eigen::MatrixXd& v, const Eigen::MatrixXd& z);
 
 /// What all blocks at one wavelength say. May be used in many threads at once; unknown elements are 0.
 class Variances {
@@ -41,6 +44,14 @@ class Variances {
   enum class Of { matrix, normalized };  // the latter: f11, and the other elements divided by it
   void covariances(Of what, std::span<const Geometry> geometries, Frame frame, std::span<MuellerCovariance> out) const;
   void directional_hemispherical(std::span<const Direction> incident, std::span<double> out) const;
+
+  /// Of draws: the coefficients of each block, a column for each draw, as many rows as its covariance has; and R.
+  struct Drawn {
+    std::vector<Packed> blocks;
+    std::vector<double> reflectances;
+  };
+  /// The matrix of draw d at geometry g goes to out[g × draws + d].
+  void matrices(const Drawn& drawn, std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
 
  private:
   struct Row {
@@ -80,6 +91,7 @@ class Variances {
   void set_functions(Some& some, std::span<const Geometry> geometries) const;
   void set_rows(Some& some, const OfBlock& block, const Together& together) const;
   void add_variances(Some& some, const OfBlock& block) const;
+  void set_drawn(Some& some, const Drawn& drawn) const;
 
   int order_;
   DiscMapping mapping_;

@@ -12,10 +12,11 @@ using R = Pack<double>;
 constexpr long width = R::width;
 
 /// Registers of geometries that are worked on together: with four columns twelve sums, as many as hide that each waits
-/// for the one before. Of a single register, three times four columns.
+/// for the one before. With fewer, or where there are more registers, of several times four columns.
 constexpr int most_packs = 3;
+constexpr int registers = width == 8 ? 32 : 16;
 template <int packs>
-constexpr int panels_with = packs == 1 ? 3 : 1;
+constexpr int panels_with = (registers - most_packs - 1) / (columns_together * packs);
 
 /// One number of each of their geometries.
 template <int packs>
@@ -125,7 +126,7 @@ struct Columns {
 
 /// Adds entries begin … end of columns, times h.
 template <int packs, int panels>
-MMBRDF_INLINE void add_columns(Columns<packs, panels>& sum, const double* h, const PackedSymmetric& v, long panel,
+MMBRDF_INLINE void add_columns(Columns<packs, panels>& sum, const double* h, const PackedColumns& v, long panel,
                                long begin, long end, long stride) {
   const double* const values = v.values + panel * columns_together * v.rows;
   for (long k = begin; k < end; ++k) {
@@ -142,7 +143,7 @@ MMBRDF_INLINE void add_columns(Columns<packs, panels>& sum, const double* h, con
 
 /// Adds Σ h_j (V h)_j over columns of some panels. What is above the blocks on the diagonal counts twice.
 template <int panels, int packs>
-MMBRDF_INLINE void add_variances(Packs<packs>& result, const double* h, const PackedSymmetric& v, long panel,
+MMBRDF_INLINE void add_variances(Packs<packs>& result, const double* h, const PackedColumns& v, long panel,
                                  long stride) {
   Columns<packs, panels> above;
   add_columns(above, h, v, panel, 0, panel * columns_together, stride);
@@ -161,7 +162,7 @@ MMBRDF_INLINE void add_variances(Packs<packs>& result, const double* h, const Pa
 }
 
 template <int packs>
-void variances_of(double* out, const double* h, const PackedSymmetric& v, long stride) {
+void variances_of(double* out, const double* h, const PackedColumns& v, long stride) {
   constexpr int together = panels_with<packs>;
   Packs<packs> result = zeros<packs>();
   const long panels = v.rows / columns_together;
@@ -171,29 +172,31 @@ void variances_of(double* out, const double* h, const PackedSymmetric& v, long s
   for (int p = 0; p < packs; ++p) store(result[p], out + p * width);
 }
 
-void variances(double* out, const double* h, const PackedSymmetric& v, long count, long stride) {
+void variances(double* out, const double* h, const PackedColumns& v, long count, long stride) {
   in_tiles(count, [&]<int packs>(long first) { variances_of<packs>(out + first, h + first, v, stride); });
 }
 
 template <int panels, int packs>
-MMBRDF_INLINE void products_of_panels(double* out, const double* h, const PackedSymmetric& v, long panel, long stride) {
+MMBRDF_INLINE void products_of_panels(double* out, long out_stride, const double* h, const PackedColumns& v, long panel,
+                                      long stride) {
   Columns<packs, panels> sum;
   add_columns(sum, h, v, panel, 0, v.rows, stride);
   for (int j = 0; j < columns_together * panels; ++j)
-    for (int p = 0; p < packs; ++p) store(sum.of[j][p], out + (panel * columns_together + j) * stride + p * width);
+    for (int p = 0; p < packs; ++p) store(sum.of[j][p], out + (panel * columns_together + j) * out_stride + p * width);
 }
 
 template <int packs>
-void products_of(double* out, const double* h, const PackedSymmetric& v, long stride) {
+void products_of(double* out, long out_stride, const double* h, const PackedColumns& v, long stride) {
   constexpr int together = panels_with<packs>;
-  const long panels = v.rows / columns_together;
+  const long panels = v.columns / columns_together;
   long panel = 0;
-  for (; panel + together <= panels; panel += together) products_of_panels<together, packs>(out, h, v, panel, stride);
-  for (; panel < panels; ++panel) products_of_panels<1, packs>(out, h, v, panel, stride);
+  for (; panel + together <= panels; panel += together)
+    products_of_panels<together, packs>(out, out_stride, h, v, panel, stride);
+  for (; panel < panels; ++panel) products_of_panels<1, packs>(out, out_stride, h, v, panel, stride);
 }
 
-void products(double* out, const double* h, const PackedSymmetric& v, long count, long stride) {
-  in_tiles(count, [&]<int packs>(long first) { products_of<packs>(out + first, h + first, v, stride); });
+void products(double* out, long out_stride, const double* h, const PackedColumns& v, long count, long stride) {
+  in_tiles(count, [&]<int packs>(long first) { products_of<packs>(out + first, out_stride, h + first, v, stride); });
 }
 
 template <int packs>

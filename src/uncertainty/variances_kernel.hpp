@@ -23,12 +23,12 @@ struct TermColumns {
   int most;
 };
 
-/// Columns of a symmetric matrix are taken four at a time; a last, shorter group is filled with zeros. Entry (k, 4p + j)
-/// is at [(p × rows + k) × 4 + j].
+/// Columns of a matrix are taken four at a time; a last, shorter group is filled with zeros, and so are rows. Entry
+/// (k, 4p + j) is at [(p × rows + k) × 4 + j].
 inline constexpr long columns_together = 4;
-struct PackedSymmetric {
+struct PackedColumns {
   const double* values;
-  long rows;  ///< a multiple of columns_together
+  long rows, columns;  ///< multiples of columns_together
 };
 
 struct VariancesKernel {
@@ -43,10 +43,10 @@ struct VariancesKernel {
   /// The row of an element, from tables of K of stride `of_k`, and Σ coefficient × column.
   void (*rows)(double* row, long stride, double* value, const TermColumns& columns, const double* k_incident,
                const double* k_reflected, long of_k, long count);
-  /// hᵀ V h
-  void (*variances)(double* out, const double* h, const PackedSymmetric& v, long count, long stride);
-  /// V h
-  void (*products)(double* out, const double* h, const PackedSymmetric& v, long count, long stride);
+  /// hᵀ V h, of V that is symmetric.
+  void (*variances)(double* out, const double* h, const PackedColumns& v, long count, long stride);
+  /// Vᵀ h, of another stride.
+  void (*products)(double* out, long out_stride, const double* h, const PackedColumns& v, long count, long stride);
   /// cos 2a and sin 2a. |a| ≤ max_azimuth / 2.
   void (*double_angles)(double* cosine, double* sine, const double* angle, long count);
   /// √(m² v11 + f11² v), of sixteen elements m and variances v of the normalised ones, and √v11; 0 of what is negative.

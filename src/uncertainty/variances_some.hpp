@@ -28,6 +28,7 @@ class Numbers {
  private:
   struct alignas(64) Line {
     std::array<double, 8> values;
+    Line() {}  // not zeros, which nobody reads
   };
   std::vector<Line> lines_;
 };
@@ -51,9 +52,11 @@ struct Variances::Some {
   const VariancesKernel& kernel = best_variances_kernel();
   long count = 0, stride = 0;  // the latter a whole number of registers
   long row_stride = 0, row_count = 0;
-  bool mixes = false;  // a turn of the axes
+  bool mixes = false;                  // a turn of the axes
+  std::array<double*, 16> drawn_of{};  // elements; those of draw d are at [d × drawn_stride + g]
+  long drawn_stride = 0;
   std::array<Geometry, size(at_once)> geometries;
-  Numbers k_incident, k_reflected, rows, products, covariances;
+  Numbers k_incident, k_reflected, rows, products, covariances, drawn;
   alignas(64) std::array<double, 16 * at_once> m, variances, of_rows;
   alignas(64) std::array<double, at_once> value, left_c, left_s, right_c, right_s;
 
@@ -104,6 +107,13 @@ struct Variances::Some {
     row_stride = 8 * (lines + 1 - lines % 2);
     rows.reserve(size(columns * row_stride));
     return rows.data();
+  }
+
+  /// Room for the elements of draws.
+  double* begin_drawn(long draws) {
+    drawn_stride = rounded_up(16 * count, kernel.width) + kernel.width;
+    drawn.reserve(size(draws * drawn_stride));
+    return drawn.data();
   }
 
   double* m_of(std::size_t element) { return m.data() + static_cast<long>(element) * stride; }

@@ -65,6 +65,7 @@ constexpr Analysis every_analysis[] = {
     Analysis::coherency_eigenvalues,
     Analysis::cloude_decomposition,
     Analysis::nearest_realizable,
+    Analysis::ratios,
 };
 
 std::vector<const AnalysisKernel*> kernels_that_run_here() {
@@ -417,6 +418,29 @@ TEST(AnalysisBatch, GivesTheSymmetricFactorsTheBitsThatTheyHaveAlone) {
     ASSERT_EQ(f.diattenuator1, alone.diattenuator1);
   }
   EXPECT_EQ(refused, 0U);
+}
+
+TEST(AnalysisBatch, GivesRatiosTheBitsThatEachHasAlone) {
+  RandomMueller source(22);
+  std::vector<Mueller> matrices = with_noise(realizable_matrices(3000, 23), 24);
+  for (std::size_t q = 0; q < matrices.size(); q += 3) matrices[q] = source.anything();
+  std::vector<Ratios> all(matrices.size());
+  EXPECT_LT(ratios(matrices, all, {.refused = Refused::nan}), matrices.size() / 2);
+  for (std::size_t q = 0; q < matrices.size(); ++q) {
+    const Mueller& m = matrices[q];
+    if (std::isnan(all[q].purity)) {
+      EXPECT_THROW(ratios(m), std::invalid_argument);
+      continue;
+    }
+    for (const Ratios& r : {all[q], ratios(m)}) {
+      ASSERT_TRUE(same_bits(r.depolarization, depolarization(m)));
+      ASSERT_TRUE(same_bits(r.diattenuation, diattenuation(m)));
+      ASSERT_TRUE(same_bits(r.polarizance, polarizance(m)));
+      ASSERT_TRUE(same_bits(r.purity, purity(m)));
+      ASSERT_TRUE(same_bits(r.realizability_margin, realizability_margin(m)));
+      ASSERT_TRUE(same_bits(r.entropy, entropy(m)));
+    }
+  }
 }
 
 TEST(AnalysisBatch, NamesTheFirstMatrixThatIsRefusedAndHowManyAre) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -21,6 +22,7 @@
 #include "mmbrdf/radiometry/certificate.hpp"
 #include "mmbrdf/radiometry/reflectance_uncertainty.hpp"
 #include "mmbrdf/samples/simulation.hpp"
+#include "mmbrdf/uncertainty/draws.hpp"
 #include "mmbrdf/uncertainty/expanded.hpp"
 #include "uncertainty/variances.hpp"
 
@@ -241,6 +243,47 @@ TEST(Variances, OfWhatIsZeroBySymmetryAreZero) {
   }
 }
 
+// More draws than are worked out together, and more geometries.
+TEST(DrawnMatrices, AreThoseOfTheDrawnModels) {
+  for (const Case& c : cases()) {
+    const Draws draws(c.model, static_cast<int>(DrawnMatrices::together) + 5, 1);
+    const std::vector<PreparedModel> models = draws.at(c.wavelength);
+    const DrawnMatrices matrices = draws.matrices_at(c.wavelength);
+    ASSERT_EQ(matrices.count(), models.size());
+    std::vector<Geometry> geometries = random_geometries(26, 4);
+    geometries.push_back({{0, 3}, {0.7, 1e7}});
+    for (const Frame frame : every_frame)
+      for (const std::size_t first : {std::size_t{0}, DrawnMatrices::together}) {
+        const std::size_t count = std::min(DrawnMatrices::together, models.size() - first);
+        std::vector<Mueller> found(geometries.size() * count), alone(count);
+        matrices.evaluate(first, geometries, frame, found);
+        for (std::size_t g = 0; g < geometries.size(); ++g) {
+          matrices.evaluate(first, {&geometries[g], 1}, frame, alone);
+          for (std::size_t d = 0; d < count; d += 5) {
+            const Mueller expected = models[first + d].evaluate(geometries[g], frame);
+            for (std::size_t e = 0; e < 16; ++e)
+              EXPECT_TRUE(near(found[g * count + d].elements[e], expected.elements[e], batch_error))
+                  << c.name << ' ' << to_string(frame) << ' ' << g << ' ' << e << ": "
+                  << found[g * count + d].elements[e] << ", not " << expected.elements[e];
+            EXPECT_EQ(std::memcmp(&found[g * count + d], &alone[d], sizeof(Mueller)), 0) << c.name;
+          }
+        }
+      }
+  }
+}
+
+TEST(DrawnMatrices, RefuseRoomThatDoesNotFitAndWhatIsNoGeometry) {
+  const DrawnMatrices matrices = Draws(least_squares("ptfe-532"), 3).matrices_at(0.532);
+  std::vector<Mueller> out(4);
+  const Geometry geometry{}, below{{0, 0}, {2, 0}};
+  EXPECT_EQ(message_of([&] {
+              matrices.evaluate(0, {&geometry, 1}, Frame::xy, out);
+            }),
+            "draws from 0 at 1 geometries, room for 4");
+  EXPECT_THROW(matrices.evaluate(1, {&geometry, 1}, Frame::xy, std::span(out).first(3)), std::invalid_argument);
+  EXPECT_THROW(matrices.evaluate(0, {&below, 1}, Frame::xy, std::span(out).first(3)), std::invalid_argument);
+}
+
 std::vector<double> random_numbers(std::size_t count, unsigned long seed) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -268,7 +311,7 @@ TEST(VariancesKernel, OfEveryInstructionSetAgreesWithSumsInExtendedPrecision) {
         const Packed packed(v);
         std::vector<double> found(static_cast<std::size_t>(count)), products(h.size()), dots(found.size());
         kernel->variances(found.data(), h.data(), packed.view(), count, count);
-        kernel->products(products.data(), h.data(), packed.view(), count, count);
+        kernel->products(products.data(), count, h.data(), packed.view(), count, count);
         kernel->dots(dots.data(), h.data(), products.data(), columns, count, count);
         for (long g = 0; g < count; ++g) {
           Sum all;

@@ -84,6 +84,12 @@ double purity(const Mueller& m);
 /// is not realizable, that of the nearest that is. M11 must be positive. Cloude & Pottier 1995.
 double entropy(const Mueller& m);
 
+/// All of the above that compare a matrix with its M11, in the bits of each, from the same eigenvalues. M11 must be positive.
+struct Ratios {
+  double depolarization, diattenuation, polarizance, purity, realizability_margin, entropy;
+};
+Ratios ratios(const Mueller& m);
+
 /// M = Σ weights[q] components[q].
 struct CloudeDecomposition {
   std::array<double, 4> weights;  ///< eigenvalues of T, falling, in units of M. All M11, one after the other, in sum

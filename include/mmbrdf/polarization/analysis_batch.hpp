@@ -35,6 +35,7 @@ std::size_t purity(std::span<const Mueller> matrices, std::span<double> out, con
 std::size_t entropy(std::span<const Mueller> matrices, std::span<double> out, const MatricesOptions& options = {});
 std::size_t realizability_margin(std::span<const Mueller> matrices, std::span<double> out,
                                  const MatricesOptions& options = {});
+std::size_t ratios(std::span<const Mueller> matrices, std::span<Ratios> out, const MatricesOptions& options = {});
 std::size_t coherency_eigenvalues(std::span<const Mueller> matrices, std::span<std::array<double, 4>> out,
                                   const MatricesOptions& options = {});
 std::size_t nearest_realizable(std::span<const Mueller> matrices, std::span<Projection> out,

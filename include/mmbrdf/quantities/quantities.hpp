@@ -12,6 +12,7 @@
 namespace mmbrdf {
 
 struct MatricesOptions;  // analysis_batch.hpp
+struct Ratios;           // analysis.hpp
 
 /// A quantity of a matrix M in the frame sp, in sr⁻¹ as a model has it, and of incident light where it takes some: its
 /// Stokes vector in the same frame, in any unit. Both functions throw std::invalid_argument where the quantity has no
@@ -28,6 +29,7 @@ struct Quantity {
   Mueller (*gradient)(const Mueller& m_sp, const Stokes& light_sp);  ///< derivatives with respect to M_ij
   /// The values of many matrices, as analysis_batch.hpp gives them; null where there is no such function.
   std::size_t (*values)(std::span<const Mueller> m_sp, std::span<double> out, const MatricesOptions& options) = nullptr;
+  double Ratios::*ratio = nullptr;  ///< the same among those that are worked out together
 };
 
 /// In the order of the columns: first those of a matrix alone, then, if asked for, those that take light.

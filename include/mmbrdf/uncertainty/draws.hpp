@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/uncertainty/distribution.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
 
 namespace mmbrdf {
@@ -24,6 +25,27 @@ namespace mmbrdf {
 /// Throws std::invalid_argument, naming the block, if a covariance that is known has an eigenvalue below
 /// −covariance_tolerance (prediction.hpp) × the largest. Variances of 0 (solutions of minimum norm) are fine.
 void require_semidefinite(const Model& model);
+
+/// What all draws say at a wavelength, worked out as a product of matrices: far faster than one model after the other. May be
+/// used in many threads at once.
+class DrawnMatrices {
+ public:
+  std::size_t count() const;
+
+  /// Draws that are worked out together.
+  static constexpr std::size_t together = 256;
+
+  /// Of draws first, a multiple of `together`, to first + n − 1 (`together` or as many as there are): the matrix of draw
+  /// first + d at geometry g goes to out[g × n + d], which is that of Draws::at() to batch_error (prediction.hpp) of the
+  /// sum of the sizes that it is made of. What a geometry gives does not depend on its neighbours.
+  void evaluate(std::size_t first, std::span<const Geometry> geometries, Frame frame, std::span<Mueller> out) const;
+
+ private:
+  friend class Draws;
+  struct Prepared;
+  explicit DrawnMatrices(std::shared_ptr<const Prepared> prepared) : prepared_(std::move(prepared)) {}
+  std::shared_ptr<const Prepared> prepared_;
+};
 
 /// Draws a + V^½ z of the coefficients of each block, with z normal: distributed as N(a, V), also where V is singular.
 /// The values of a reflectance table that has a covariance are drawn with the coefficients of block 11.
@@ -40,6 +62,9 @@ class Draws {
   /// The drawn models at a wavelength (micrometres), some 8 kB each at orders 7, 4. Throws as prepare() does.
   std::vector<PreparedModel> at(double wavelength) const;
 
+  /// Their matrices alone. Throws as prepare_uncertainty() does.
+  DrawnMatrices matrices_at(double wavelength) const;
+
  private:
   struct Coefficients;
   int count_;
@@ -54,26 +79,5 @@ std::vector<double> values(std::span<const PreparedModel> draws, Quantity quanti
   for (const PreparedModel& draw : draws) result.push_back(quantity(draw));
   return result;
 }
-
-/// Which of the intervals that hold a given part of the values.
-enum class Interval {
-  symmetric,  ///< as many values below as above (JCGM 101, 7.7.2)
-  shortest,   ///< (JCGM 101, 7.7.4)
-};
-
-struct Distribution {
-  double mean = 0;
-  double standard_deviation = 0;  ///< of one value, with count − 1: the standard uncertainty
-  double low = 0, high = 0;       ///< ends of the coverage interval, both among the values
-};
-
-/// Mean, standard deviation and coverage interval of drawn values. Throws std::invalid_argument for fewer than two
-/// values, one that is not finite, or unless 0 < coverage < 1.
-Distribution distribution(std::span<const double> values, double coverage = 0.95,
-                          Interval interval = Interval::symmetric);
-
-/// Correlation of two quantities over the same draws, in [−1, 1]; 0 where one does not vary. Throws
-/// std::invalid_argument if the counts differ, for fewer than two values, or one that is not finite.
-double correlation(std::span<const double> values, std::span<const double> others);
 
 }  // namespace mmbrdf

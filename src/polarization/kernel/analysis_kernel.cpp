@@ -37,6 +37,14 @@ MMBRDF_INLINE Mask realizable(const R (&m)[16]) {
   return is_positive_definite(four_times_coherency(m), R(4 * realizability_tolerance) * m[0]);
 }
 
+MMBRDF_INLINE R diattenuation(const R (&m)[16]) { return length(m[1], m[2], m[3]) / m[0]; }
+MMBRDF_INLINE R polarizance(const R (&m)[16]) { return length(m[4], m[8], m[12]) / m[0]; }
+
+MMBRDF_INLINE R purity(const R (&m)[16]) {
+  const R purity = fma(R(0.25), squares_but_first(m) / m[0] / m[0], R(0.25)), largest(0x1.fffffffffffffp+1023);
+  return select(purity.v < largest.v, purity, largest);
+}
+
 /// Of 4 T, rising.
 MMBRDF_INLINE void eigenvalues(const R (&m)[16], R (&values)[4]) {
   HermitianPack t = four_times_coherency(m);
@@ -60,10 +68,13 @@ MMBRDF_INLINE void eigenvectors(const R (&m)[16], R (&values)[4], VectorsPack& v
   });
 }
 
+MMBRDF_INLINE R realizability_margin(const R (&m)[16], const R (&of_coherency)[4]) {
+  return R(0.25) * of_coherency[0] / m[0];
+}
+
 /// −Σ p log₄ p of the nearest realizable matrix.
-MMBRDF_INLINE R entropy(const R (&m)[16]) {
-  R values[4], p[4], sum(0.0);
-  eigenvalues(m, values);
+MMBRDF_INLINE R entropy(const R (&m)[16], const R (&values)[4]) {
+  R p[4], sum(0.0);
   const R trace = R(4.0) * m[0];
   project_on_simplex(values, trace, p);
   for (const R& value : p) {
@@ -201,6 +212,20 @@ Mask coherency_eigenvalues(const double* from, double* out) {
   return scaled.ordinary;
 }
 
+Mask ratios(const double* from, double* out) {
+  const ScaledPack scaled(from);
+  R values[4];
+  eigenvalues(scaled.m, values);
+  const R all[] = {depolarization(scaled.m),
+                   diattenuation(scaled.m),
+                   polarizance(scaled.m),
+                   purity(scaled.m),
+                   realizability_margin(scaled.m, values),
+                   entropy(scaled.m, values)};
+  store_numbers(all, 6, out, 6);
+  return scaled.has_intensity();
+}
+
 /// The common path; what is over at the end is done in a Pack of its own.
 template <class Work>
 bool run(Work work, size_t numbers, const double* from, size_t count, double* out, unsigned char* left) {
@@ -235,22 +260,23 @@ bool run(Analysis analysis, const double* from, size_t count, double* out, unsig
     case Analysis::depolarization:
       return number([](const R(&m)[16]) { return depolarization(m); });
     case Analysis::diattenuation:
-      return number([](const R(&m)[16]) { return length(m[1], m[2], m[3]) / m[0]; });
+      return number([](const R(&m)[16]) { return diattenuation(m); });
     case Analysis::polarizance:
-      return number([](const R(&m)[16]) { return length(m[4], m[8], m[12]) / m[0]; });
+      return number([](const R(&m)[16]) { return polarizance(m); });
     case Analysis::purity:
-      return number([](const R(&m)[16]) {
-        const R purity = fma(R(0.25), squares_but_first(m) / m[0] / m[0], R(0.25)), largest(0x1.fffffffffffffp+1023);
-        return select(purity.v < largest.v, purity, largest);
-      });
+      return number([](const R(&m)[16]) { return purity(m); });
     case Analysis::realizability_margin:
       return number([](const R(&m)[16]) {
         R values[4];
         eigenvalues(m, values);
-        return R(0.25) * values[0] / m[0];
+        return realizability_margin(m, values);
       });
     case Analysis::entropy:
-      return number([](const R(&m)[16]) { return entropy(m); });
+      return number([](const R(&m)[16]) {
+        R values[4];
+        eigenvalues(m, values);
+        return entropy(m, values);
+      });
     case Analysis::coherency_eigenvalues:
       return run(coherency_eigenvalues, numbers, from, count, out, left);
     case Analysis::nearest_realizable:
@@ -262,6 +288,8 @@ bool run(Analysis analysis, const double* from, size_t count, double* out, unsig
     case Analysis::symmetric_decomposition:
       return run([](const double* m, double* to) { return symmetric_decomposition(m, to); }, numbers, from, count, out,
                  left);
+    case Analysis::ratios:
+      return run(ratios, numbers, from, count, out, left);
   }
   return false;
 }

@@ -22,10 +22,11 @@ enum class Analysis {
   cloude_decomposition,     ///< weights, falling; components
   lu_chipman,               ///< depolarizer; retarder; diattenuator
   symmetric_decomposition,  ///< diattenuator 2, retarder 2; depolarizer; retarder 1, diattenuator 1
+  ratios,                   ///< depolarization … entropy, in the order above
 };
 
 /// How many numbers come out of each.
-inline constexpr size_t numbers_of[] = {1, 1, 1, 1, 1, 1, 1, 4, 17, 68, 48, 80};
+inline constexpr size_t numbers_of[] = {1, 1, 1, 1, 1, 1, 1, 4, 17, 68, 48, 80, 6};
 inline constexpr size_t most_numbers = 80;
 
 /// The same functions for one instruction set. What they compute for a matrix does not depend on its neighbours.
