@@ -139,9 +139,11 @@ struct Layout {
   }
 
   void apply(std::span<Mueller> matrices, bool with_signs) const {
-    if (with_signs && convention != StokesConvention::germer2017)
+    if (with_signs && convention != StokesConvention::germer2017) {
+      const Mueller factors = signs;  // which no matrix is, so that they stay in registers
       for (Mueller& m : matrices)
-        for (std::size_t e = 0; e < 16; ++e) m.elements[e] *= signs.elements[e];
+        for (std::size_t e = 0; e < 16; ++e) m.elements[e] *= factors.elements[e];
+    }
     if (column_major)
       for (Mueller& m : matrices) {
         const Mueller row_major = m;

@@ -18,8 +18,10 @@
 #include "given/reference_sum.hpp"
 #include "mmbrdf/model/batch.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/model/sampling.hpp"
 #include "model/kernel/kernels.hpp"
 #include "model/kernel/plan.hpp"
+#include "model/sampling_map.hpp"
 
 using namespace mmbrdf;
 
@@ -299,6 +301,46 @@ RC_GTEST_PROP(Kernel, ForOneIncidentDirectionIsInTheFrameAskedFor, ()) {
     }
   }
   RC_ASSERT(!::testing::Test::HasFailure());
+}
+
+/// Some incident directions, and points that are not next to steps of the tables.
+SamplingBlock any_block(bool angles) {
+  SamplingBlock block{};
+  block.angles = angles;
+  for (std::size_t q = 0; q < SamplingBlock::size; ++q) {
+    const Direction incident = any_direction();
+    const Vector3 vector = unit_vector(incident);
+    const std::array<double, 3> from = angles ? std::array{incident.theta, incident.phi, 0.0} : vector;
+    for (std::size_t c = 0; c < 3; ++c) block.incident[c][q] = from[c];
+    for (auto& u : block.u) u[q] = (*rc::gen::inRange(0, 64) + between(0.1, 0.9)) / 64;
+  }
+  return block;
+}
+
+// 2e-15 and 4e-14 are seen.
+RC_GTEST_PROP(Kernel, OfEveryInstructionSetDrawsTheSameDirections, ()) {
+  static const SamplingMap isotropic(prepare(random_model(Family::isotropic, {4, 3}, 0, 3), 0.5));
+  static const SamplingMap anisotropic(prepare(random_model(Family::anisotropic, {4, 3}, 0, 3), 0.5));
+  const SamplingTables tables = (*rc::gen::arbitrary<bool>() ? isotropic : anisotropic).tables();
+  const SamplingBlock asked = any_block(*rc::gen::arbitrary<bool>());
+  SamplingBlock expected = asked;
+  kernels().back()->draw(tables, expected, SamplingBlock::size);
+  std::vector<SamplingBlock> fused;
+  for (const Kernel* kernel : kernels_that_run_here()) {
+    SamplingBlock found = asked;
+    kernel->draw(tables, found, SamplingBlock::size);
+    for (std::size_t q = 0; q < SamplingBlock::size; ++q) {
+      for (std::size_t c = 0; c < 3; ++c) RC_ASSERT(std::abs(found.reflected[c][q] - expected.reflected[c][q]) < 1e-13);
+      RC_ASSERT(std::abs(found.pdf[q] / expected.pdf[q] - 1) < 1e-12);
+    }
+    if (std::strcmp(kernel->name, "baseline") != 0) fused.push_back(found);
+    kernel->pdf(tables, found);
+    RC_ASSERT(std::abs(found.pdf[0] / expected.pdf[0] - 1) < sampling_error);
+  }
+  for (const SamplingBlock& block : fused) {
+    RC_ASSERT(std::memcmp(block.reflected, fused.front().reflected, sizeof block.reflected) == 0);
+    RC_ASSERT(std::memcmp(block.pdf, fused.front().pdf, sizeof block.pdf) == 0);
+  }
 }
 
 TEST(Kernel, ListEndsWithOneThatRunsEverywhere) {

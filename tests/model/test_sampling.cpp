@@ -323,7 +323,6 @@ TEST(Sampling, VariesLessThanCosineSamplingWhereF11IsNegative) {
 }
 
 TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
-  const DirectionSampler sampler(any_model(Family::isotropic));
   const std::vector<UnitPoint> points = random_points(20000, 9);
   std::vector<Direction> incident;
   std::vector<Vector3> vectors;
@@ -331,18 +330,21 @@ TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
     incident.push_back(incidence(static_cast<int>(q % 20)));
     vectors.push_back(unit_vector(incident.back()));
   }
-  for (const int threads : {1, 3}) {
-    std::vector<SampledDirection> drawn(points.size());
-    std::vector<SampledVector> as_vectors(points.size());
-    sampler.sample(incident, points, drawn, threads);
-    sampler.sample(vectors, points, as_vectors, threads);
-    for (std::size_t q = 0; q < points.size(); q += 7) {
-      const SampledDirection one = sampler.sample(incident[q], points[q]);
-      const SampledVector vector = sampler.sample(vectors[q], points[q]);
-      ASSERT_EQ(one.reflected, drawn[q].reflected);
-      ASSERT_EQ(one.pdf, drawn[q].pdf);
-      ASSERT_EQ(vector.reflected, as_vectors[q].reflected);
-      ASSERT_EQ(vector.pdf, as_vectors[q].pdf);
+  for (const Family family : {Family::isotropic, Family::anisotropic}) {
+    const DirectionSampler sampler(any_model(family));
+    for (const int threads : {1, 3}) {
+      std::vector<SampledDirection> drawn(points.size());
+      std::vector<SampledVector> as_vectors(points.size());
+      sampler.sample(incident, points, drawn, threads);
+      sampler.sample(vectors, points, as_vectors, threads);
+      for (std::size_t q = 0; q < points.size(); q += 7) {
+        const SampledDirection one = sampler.sample(incident[q], points[q]);
+        const SampledVector vector = sampler.sample(vectors[q], points[q]);
+        ASSERT_EQ(one.reflected, drawn[q].reflected);
+        ASSERT_EQ(one.pdf, drawn[q].pdf);
+        ASSERT_EQ(vector.reflected, as_vectors[q].reflected);
+        ASSERT_EQ(vector.pdf, as_vectors[q].pdf);
+      }
     }
   }
 }
@@ -404,6 +406,22 @@ TEST(Sampling, HoldsAtTheEdgesOfTheSquareAndOfTheHemisphere) {
       const double weight = sampler.weight(incident, drawn)(0, 0);
       EXPECT_TRUE(weight > 0.5 && weight < 2) << weight;
       EXPECT_TRUE(sampler.sample(unit_vector(incident), u).pdf > 0);
+    }
+}
+
+TEST(Sampling, TakesAzimuthsOfAnySize) {
+  const DirectionSampler sampler(any_model(Family::anisotropic));
+  const SampledDirection drawn = sampler.sample(Direction{1, 2}, {0.3, 0.6});
+  for (const int turns : {-1, 1, 1000}) {
+    const double phi = 2 + 2 * pi * turns;
+    EXPECT_NEAR(sampler.sample(Direction{1, phi}, {0.3, 0.6}).reflected.phi - phi, drawn.reflected.phi - 2, 1e-11);
+  }
+  const double pdf = sampler.sample(Direction{1, 0}, {0.3, 0.6}).pdf;
+  for (const double phi : {-1e-9, 1e-9}) EXPECT_NEAR(sampler.sample(Direction{1, phi}, {0.3, 0.6}).pdf / pdf, 1, 1e-7);
+  for (int n = 1; n <= 100; ++n)
+    for (const double size : {1e12, 1e17, -1e17, 1e300}) {
+      const double ratio = sampler.sample(Direction{1, 0.01 * n * size}, {0.3, 0.6}).pdf / pdf;
+      ASSERT_TRUE(ratio > 0.1 && ratio < 10) << n << ' ' << size << ' ' << ratio;
     }
 }
 

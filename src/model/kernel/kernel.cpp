@@ -8,6 +8,7 @@
 #include "model/kernel/kernel_incidence.hpp"
 #include "model/kernel/kernel_isotropic.hpp"
 #include "model/kernel/kernel_pairs.hpp"
+#include "model/kernel/kernel_sampling.hpp"
 #include "model/kernel/layouts.hpp"
 #include "numerics/pack.hpp"
 
@@ -365,7 +366,14 @@ size_t first_invalid(const T* const vectors[3], size_t count) {
 }  // namespace
 
 extern const Kernel kernel;
-const Kernel kernel{MMBRDF_NAME(MMBRDF_ISA), runs_here,           evaluate<double>, evaluate<float>,
-                    first_invalid<double>,   first_invalid<float>};
+const Kernel kernel{MMBRDF_NAME(MMBRDF_ISA),
+                    runs_here,
+                    evaluate<double>,
+                    evaluate<float>,
+                    first_invalid<double>,
+                    first_invalid<float>,
+                    draw,
+                    pdf,
+                    table};
 
 }  // namespace mmbrdf::MMBRDF_ISA

@@ -83,6 +83,32 @@ struct KernelMatrices {
 /// Azimuths beyond it lose digits: the products of their quarter turns with the first part of π/2 are not exact.
 inline constexpr double max_azimuth = 1e6;
 
+/// Tables of the map from the unit square to reflected directions (theory 5.3), one for each incident direction: of all
+/// azimuths of the first rho = √(1 − cos theta_i), then of the second … The first row of a table is sin² theta_r at each step
+/// of u1; the others, one for each of these, are the azimuths at each step of u2, as shares of their range.
+struct SamplingTables {
+  /// Powers of two, so that u < 1 stays within the last step.
+  static constexpr int steps = 32, incident_steps = 32, incident_azimuths = 32;
+  /// Rows follow each other. Where one begins, as many numbers as fill Packs are in the table, which fills Packs, too.
+  static constexpr int row = steps + 1, padded_row = (row + 7) / 8 * 8;
+  static constexpr int size = ((steps + 1) * row + padded_row + 7) / 8 * 8;
+
+  const double* numbers;
+  bool folded;            ///< f11 depends on phi_r − phi_i alone, and not on its sign: one azimuth, half of the range
+  bool of_one_incidence;  ///< the one table that Kernel::table() made of an incident direction
+};
+
+/// Some of what is drawn, one column after the other.
+struct SamplingBlock {
+  static constexpr size_t size = 64, multiple = 8;  ///< of more than one all to the next multiple must be valid
+
+  bool angles;
+  double incident[3][size];  ///< theta_i, phi_i; or x, y, z
+  double u[2][size];
+  double reflected[3][size];  ///< theta_r, phi_r − phi_i in [−π, π]; or x, y, z
+  double pdf[size];
+};
+
 /// The same functions for one instruction set. What they compute for a point does not depend on its neighbours.
 struct Kernel {
   const char* name;
@@ -94,6 +120,12 @@ struct Kernel {
   /// Of vectors x, y, z: the first that has not length 1 to 1e-6 or not z ≥ 0; count if all have.
   size_t (*first_invalid)(const double* const vectors[3], size_t count);
   size_t (*first_invalid_single)(const float* const vectors[3], size_t count);
+  /// Directions of a block, with their pdf per solid angle.
+  void (*draw)(const SamplingTables&, SamplingBlock&, size_t count);
+  /// The pdf of the first reflected direction of a block, per solid angle.
+  void (*pdf)(const SamplingTables&, SamplingBlock&);
+  /// The table of the first incident direction of a block, from which draw() has the same bits in less time.
+  void (*table)(const SamplingTables&, const SamplingBlock&, double* out);
 };
 
 }  // namespace mmbrdf

@@ -109,7 +109,7 @@ MMBRDF_INLINE Complex<Pack<T>> doubled_phase(Complex<Pack<T>> w) {
   return {select(is_normal, R(1), doubled.re), doubled.im};
 }
 
-constexpr double factorial(int n) { return n == 0 ? 1 : n * factorial(n - 1); }
+consteval double factorial(int n) { return n == 0 ? 1 : n * factorial(n - 1); }
 
 /// Taylor's series for |x| ≤ π/4, where the first term left out is below 1e-17.
 template <class R>
