@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -240,6 +241,13 @@ TEST(Distribution, OfWhatDoesNotVaryHasNoSpreadAndNoCorrelation) {
   EXPECT_EQ(distribution(tenths).standard_deviation, 0);
   EXPECT_EQ(correlation(tenths, sevenths), 0);
   EXPECT_TRUE(std::isfinite(distribution(large).standard_deviation));
+}
+
+TEST(Distribution, OfTheSmallestNumbersThereAreIsANumber) {
+  constexpr double smallest = std::numeric_limits<double>::denorm_min();
+  const Distribution d = distribution(std::array{0.0, 2 * smallest});
+  EXPECT_NEAR(d.mean, smallest, smallest);
+  EXPECT_NEAR(d.standard_deviation, smallest, smallest);
 }
 
 TEST(Distribution, RefusesWhatHasNone) {
