@@ -121,13 +121,13 @@ TEST(Draws, HaveTheFirstOrderCorrelations) {
 TEST(Draws, OfTheSameSeedAreTheSameAndALongerListBeginsWithAShorter) {
   const Model model = least_squares("ptfe-532");
   const auto f11 = [](const PreparedModel& draw) { return draw.f11(oblique); };
-  const auto few = values(Draws(model, 5, 7).at(0.532), f11), many = values(Draws(model, 9, 7).at(0.532), f11);
-  const auto others = values(Draws(model, 5, 8).at(0.532), f11);
-  for (std::size_t i = 0; i < 5; ++i) {
+  const auto few = values(Draws(model, 250, 7).at(0.532), f11), many = values(Draws(model, 500, 7).at(0.532), f11);
+  const auto others = values(Draws(model, 250, 8).at(0.532), f11);
+  for (std::size_t i = 0; i < few.size(); ++i) {
     EXPECT_EQ(few[i], many[i]);
     EXPECT_NE(few[i], others[i]);
   }
-  EXPECT_EQ(few, values(Draws(model, 5, 7).at(0.532), f11));
+  EXPECT_EQ(few, values(Draws(model, 250, 7).at(0.532), f11));
 }
 
 Model with_covariance(Family family, double variance) {
