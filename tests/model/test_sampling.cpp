@@ -322,8 +322,9 @@ TEST(Sampling, VariesLessThanCosineSamplingWhereF11IsNegative) {
   }
 }
 
+// Numbers of points that leave a rest of a block, and of the lanes.
 TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
-  const std::vector<UnitPoint> points = random_points(20000, 9);
+  const std::vector<UnitPoint> points = random_points(20007, 9);
   std::vector<Direction> incident;
   std::vector<Vector3> vectors;
   for (std::size_t q = 0; q < points.size(); ++q) {
@@ -350,7 +351,7 @@ TEST(Sampling, InBatchesHasTheBitsOfOneAtATime) {
 }
 
 TEST(Sampling, ForOneIncidentDirectionHasTheBitsOfOneAtATimeHoweverMany) {
-  const std::vector<UnitPoint> points = random_points(2000, 10);
+  const std::vector<UnitPoint> points = random_points(2003, 10);
   for (const Family family : {Family::isotropic, Family::anisotropic}) {
     const DirectionSampler sampler(any_model(family));
     for (int i = 0; i < 20; ++i) {
