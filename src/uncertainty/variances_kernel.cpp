@@ -12,11 +12,14 @@ using R = Pack<double>;
 constexpr long width = R::width;
 
 /// Registers of geometries that are worked on together: with four columns twelve sums, as many as hide that each waits
-/// for the one before. With fewer, or where there are more registers, of several times four columns.
+/// for the one before. Of a single register, three times four columns.
 constexpr int most_packs = 3;
+template <int packs>
+constexpr int panels_of_symmetric = packs == 1 ? 3 : 1;
+/// Of products of all columns as many as there are registers for: of a symmetric matrix that is more of its diagonal, twice.
 constexpr int registers = width == 8 ? 32 : 16;
 template <int packs>
-constexpr int panels_with = (registers - most_packs - 1) / (columns_together * packs);
+constexpr int panels_of_products = (registers - most_packs - 1) / (columns_together * packs);
 
 /// One number of each of their geometries.
 template <int packs>
@@ -163,7 +166,7 @@ MMBRDF_INLINE void add_variances(Packs<packs>& result, const double* h, const Pa
 
 template <int packs>
 void variances_of(double* out, const double* h, const PackedColumns& v, long stride) {
-  constexpr int together = panels_with<packs>;
+  constexpr int together = panels_of_symmetric<packs>;
   Packs<packs> result = zeros<packs>();
   const long panels = v.rows / columns_together;
   long panel = 0;
@@ -187,7 +190,7 @@ MMBRDF_INLINE void products_of_panels(double* out, long out_stride, const double
 
 template <int packs>
 void products_of(double* out, long out_stride, const double* h, const PackedColumns& v, long stride) {
-  constexpr int together = panels_with<packs>;
+  constexpr int together = panels_of_products<packs>;
   const long panels = v.columns / columns_together;
   long panel = 0;
   for (; panel + together <= panels; panel += together)

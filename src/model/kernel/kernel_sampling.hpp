@@ -28,7 +28,7 @@ MMBRDF_INLINE Mapped map(const Blend& blend, bool folded, Pack<double> u1, Pack<
              at_share = integer(fma(j.whole + R(1.0), R(double(SamplingTables::row)), k.whole));
   const R v = blend.at(at_v), dv = blend.at(at_v + 1) - v;
   const R share = blend.share(at_share, j.within), dshare = blend.share(at_share + 1, j.within) - share;
-  const R reached = fma(k.within, dshare, share);
+  const R reached = least(fma(k.within, dshare, share), R(1.0));  // which rounding may pass
   const R azimuth = folded ? copy_sign(R(pi) * reached, u2 - R(0.5)) : R(pi) * fms(R(2.0), reached, R(1.0));
   return {fma(j.within, dv, v), azimuth, R(reciprocal_area) / (dv * dshare)};
 }

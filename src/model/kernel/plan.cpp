@@ -57,7 +57,7 @@ std::vector<int> targets_of(const std::vector<PairUse>& uses) {
 }
 
 /// Lists of at most four sums over S and four over D.
-std::vector<std::vector<int>> in_parts(const std::vector<int>& targets) {
+std::vector<std::vector<int>> lists_of_eight(const std::vector<int>& targets) {
   const auto middle = std::partition_point(targets.begin(), targets.end(), [](int t) { return t % 4 >= t / 4; });
   std::vector<std::vector<int>> parts;
   for (auto s = targets.begin(), d = middle; s != middle || d != targets.end();) {
@@ -73,7 +73,7 @@ void arrange_pairs(const Model& model, Plan& result, std::vector<Shares>& shares
   const auto uses = pair_uses(model);
   std::map<std::vector<int>, std::vector<std::pair<int, int>>> classes;  // pairs that feed the same sums
   for (const auto& [pair, list] : uses)
-    for (const std::vector<int>& part : in_parts(targets_of(list))) classes[part].push_back(pair);
+    for (const std::vector<int>& part : lists_of_eight(targets_of(list))) classes[part].push_back(pair);
   for (const auto& [targets, pairs] : classes) {
     PairRun run{static_cast<int>(result.pairs.size()), 0, result.count, 0, 0, {}};
     for (std::size_t e = 0; e < targets.size(); ++e) {
