@@ -59,7 +59,7 @@ struct Deviations {
   }
 
   void set_relative(std::span<const double> values) {
-    for (std::size_t i = 0; i < values.size(); ++i) relative[i] = (values[i] / 2 - mean / 2) / (half_spread / 2);
+    for (std::size_t i = 0; i < values.size(); ++i) relative[i] = (values[i] / 2 - mean / 2) / half_spread * 2;
   }
 };
 

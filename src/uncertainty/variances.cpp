@@ -93,11 +93,15 @@ Packed::Packed(const Eigen::Ref<const MatrixXd>& matrix)
 MatrixXd symmetric_times(const MatrixXd& v, const MatrixXd& z) {
   const VariancesKernel& kernel = best_variances_kernel();
   const Packed packed(v);
-  const Index count = rounded_up(z.cols(), kernel.width);
-  MatrixXd h = MatrixXd::Zero(count, packed.rows()), out(count, packed.rows());
-  h.topLeftCorner(z.cols(), z.rows()) = z.transpose();
-  kernel.products(out.data(), count, h.data(), packed.view(), count, count);
-  return out.topLeftCorner(z.cols(), z.rows()).transpose();
+  const Index together = std::min(10 * at_once, rounded_up(z.cols(), kernel.width));
+  MatrixXd h = MatrixXd::Zero(together, packed.rows()), out(together, packed.rows()), result(z.rows(), z.cols());
+  for (Index first = 0; first < z.cols(); first += together) {
+    const Index count = std::min(together, z.cols() - first);
+    h.topRows(count).leftCols(z.rows()) = z.middleCols(first, count).transpose();
+    kernel.products(out.data(), together, h.data(), packed.view(), rounded_up(count, kernel.width), together);
+    result.middleCols(first, count) = out.topRows(count).leftCols(z.rows()).transpose();
+  }
+  return result;
 }
 
 /// Groups of which there are several elements, and all others.

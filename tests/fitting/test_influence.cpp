@@ -77,7 +77,6 @@ TEST(Influence, OfSingleValuesThreadsAndNeighboursIsThatOfOneSet) {
   EXPECT_TRUE(std::equal(c.begin(), c.end(), a.begin() + static_cast<std::ptrdiff_t>(77 * n)));
 }
 
-// 8 geometries are as many rows as f11 has coefficients; the other 15 elements have more rows in each block.
 /// What a kernel makes of some geometries of all its sets.
 struct Taken {
   std::vector<double> values, squares;
@@ -154,6 +153,7 @@ TEST(Influence, OfEveryInstructionSetMultipliesTilesByRowsOfSets) {
   }
 }
 
+// 8 geometries are as many rows as f11 has coefficients; the other 15 elements have more rows in each block.
 TEST(Influence, DoesNotKnowAVarianceWithoutDegreesOfFreedom) {
   const std::vector<Geometry> where = some_geometries(8);
   const Influence influence(where, 0.532, small);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -120,13 +121,13 @@ TEST(Draws, HaveTheFirstOrderCorrelations) {
 TEST(Draws, OfTheSameSeedAreTheSameAndALongerListBeginsWithAShorter) {
   const Model model = least_squares("ptfe-532");
   const auto f11 = [](const PreparedModel& draw) { return draw.f11(oblique); };
-  const auto few = values(Draws(model, 5, 7).at(0.532), f11), many = values(Draws(model, 9, 7).at(0.532), f11);
-  const auto others = values(Draws(model, 5, 8).at(0.532), f11);
-  for (std::size_t i = 0; i < 5; ++i) {
+  const auto few = values(Draws(model, 250, 7).at(0.532), f11), many = values(Draws(model, 500, 7).at(0.532), f11);
+  const auto others = values(Draws(model, 250, 8).at(0.532), f11);
+  for (std::size_t i = 0; i < few.size(); ++i) {
     EXPECT_EQ(few[i], many[i]);
     EXPECT_NE(few[i], others[i]);
   }
-  EXPECT_EQ(few, values(Draws(model, 5, 7).at(0.532), f11));
+  EXPECT_EQ(few, values(Draws(model, 250, 7).at(0.532), f11));
 }
 
 Model with_covariance(Family family, double variance) {
@@ -240,6 +241,13 @@ TEST(Distribution, OfWhatDoesNotVaryHasNoSpreadAndNoCorrelation) {
   EXPECT_EQ(distribution(tenths).standard_deviation, 0);
   EXPECT_EQ(correlation(tenths, sevenths), 0);
   EXPECT_TRUE(std::isfinite(distribution(large).standard_deviation));
+}
+
+TEST(Distribution, OfTheSmallestNumbersThereAreIsANumber) {
+  constexpr double smallest = std::numeric_limits<double>::denorm_min();
+  const Distribution d = distribution(std::array{0.0, 2 * smallest});
+  EXPECT_NEAR(d.mean, smallest, smallest);
+  EXPECT_NEAR(d.standard_deviation, smallest, smallest);
 }
 
 TEST(Distribution, RefusesWhatHasNone) {

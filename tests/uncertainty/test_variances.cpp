@@ -298,6 +298,18 @@ struct Sum {
   void add(long double term) { value += term, size += std::abs(term); }
 };
 
+// 7 products of numbers up to 2 are rounded. Columns are worked out 240 at a time.
+TEST(VariancesKernel, MultipliesAsManyColumnsByASymmetricMatrixAsThereAre) {
+  const std::vector<double> entries = random_numbers(49, 1);
+  const Eigen::Map<const Eigen::MatrixXd> some(entries.data(), 7, 7);
+  const Eigen::MatrixXd v = some + some.transpose();
+  for (const long count : {1L, 9L, 240L, 241L, 500L}) {
+    const std::vector<double> numbers = random_numbers(static_cast<std::size_t>(7 * count), 2);
+    const Eigen::Map<const Eigen::MatrixXd> z(numbers.data(), 7, count);
+    EXPECT_LT((symmetric_times(v, z) - v * z).cwiseAbs().maxCoeff(), 1e-14) << count;
+  }
+}
+
 TEST(VariancesKernel, OfEveryInstructionSetAgreesWithSumsInExtendedPrecision) {
   constexpr long most = 40;  // columns; a whole number of registers of geometries, tiles and what is left of them
   for (const VariancesKernel* kernel : variances_kernels()) {
