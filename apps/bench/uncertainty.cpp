@@ -4,6 +4,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/fitting/fit.hpp"
 #include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/quantities/answer.hpp"
 #include "mmbrdf/radiometry/reflectance.hpp"
 #include "mmbrdf/samples/simulation.hpp"
 #include "mmbrdf/uncertainty/prediction.hpp"
@@ -56,6 +57,16 @@ void one(benchmark::State& state, Uncertainty kind) {
   });
 }
 
+/// All derived quantities with intervals, of the material and its posterior: as a call does, the draws included.
+void answers_with_draws(benchmark::State& state) {
+  const std::vector<Geometry> geometries = random_geometries(1760, 1);
+  const Model ptfe = material("ptfe");
+  Report report(state);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(Answers(ptfe, {.draws = 1000, .parts = false}).at(wavelength).at(geometries));
+  report.finish(1000. * static_cast<double>(geometries.size()), "draw");
+}
+
 void reflectances(benchmark::State& state) {
   const PreparedUncertainty& u = prepared(Uncertainty::noise);
   std::vector<Direction> directions;
@@ -85,6 +96,7 @@ void register_uncertainty() {
     }
     add("one" + of, [=](benchmark::State& s) { one(s, kind); });
   }
+  add("answers/1000_draws", answers_with_draws);
   add("directional_hemispherical", reflectances);
 }
 
