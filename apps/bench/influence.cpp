@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include "bench.hpp"
@@ -45,7 +46,7 @@ void whole(benchmark::State& state, bool f11_only) {
 
 /// Rows of each fitted element times values of as many geometries as Influence takes at once, again and again.
 void products(benchmark::State& state, bool f11_only) {
-  constexpr std::size_t at_once = 32;
+  constexpr std::size_t at_once = influence_geometries;
   const std::vector<Geometry> where = germer2017_grid();
   const Influence influence(where, 0.532, basis, {}, f11_only);
   std::vector<std::size_t> rows;  // filled up, of each element
@@ -53,8 +54,7 @@ void products(benchmark::State& state, bool f11_only) {
     rows.insert(rows.end(), block.block.elements.size(),
                 (block.block.modes.size() + influence_tile - 1) / influence_tile * influence_tile);
   const std::size_t most = *std::ranges::max_element(rows);
-  std::size_t all = 0;
-  for (const std::size_t some : rows) all += some;
+  const std::size_t all = std::reduce(rows.begin(), rows.end());
   const std::vector<double> p(all * where.size(), 1e-3), values(at_once * influence_sets, 1.);
   std::vector<double> sums(most * influence_sets);
   Report report(state);

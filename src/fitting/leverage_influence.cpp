@@ -26,9 +26,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::size_t geometries_at_once = 32;  // sixteen elements of them stay in the second-level cache
 // From one element to the next: not a multiple of 4096 bytes, which would be the same lines of the first-level cache.
-constexpr std::size_t of_element = geometries_at_once * influence_sets + 40;
+constexpr std::size_t of_element = influence_geometries * influence_sets + 40;
 
 /// Rows of an element, one for each geometry, over the modes of its block.
 MatrixXd rows_at(std::span<const Geometry> geometries, const Rows& rows, std::size_t element, const Basis& basis) {
@@ -45,8 +44,8 @@ std::size_t filled_up(std::size_t modes) { return (modes + influence_tile - 1) /
 std::vector<double> in_tiles(const MatrixXd& p) {
   const auto modes = static_cast<std::size_t>(p.rows()), columns = static_cast<std::size_t>(p.cols());
   std::vector<double> tiles(filled_up(modes) * columns);
-  for (std::size_t first = 0; first < columns; first += geometries_at_once) {
-    const std::size_t count = std::min(geometries_at_once, columns - first);
+  for (std::size_t first = 0; first < columns; first += influence_geometries) {
+    const std::size_t count = std::min(influence_geometries, columns - first);
     double* const to = tiles.data() + filled_up(modes) * first;
     for (std::size_t j = 0; j < modes; ++j)
       for (std::size_t g = 0; g < count; ++g)
@@ -194,8 +193,8 @@ void Influence::Parts::sum(const Number* values, std::size_t here, Sets& sets) c
     squares[elements[k].element] = sets.squares.data() + elements[k].block * influence_sets;
   }
   const InfluenceKernel& kernel = best_influence_kernel();
-  for (std::size_t g = 0; g < geometries; g += geometries_at_once) {
-    const std::size_t count = std::min(geometries_at_once, geometries - g);
+  for (std::size_t g = 0; g < geometries; g += influence_geometries) {
+    const std::size_t count = std::min(influence_geometries, geometries - g);
     std::array<const Number*, influence_sets> from;
     for (std::size_t s = 0; s < influence_sets; ++s)
       from[s] = values + (std::min(s, here - 1) * geometries + g) * each();

@@ -11,6 +11,8 @@ namespace mmbrdf {
 inline constexpr size_t influence_sets = 48;
 /// Rows of the constant matrix stand in tiles of this height.
 inline constexpr size_t influence_tile = 4;
+/// So many geometries are taken and multiplied at once: sixteen elements of them stay in the second-level cache.
+inline constexpr size_t influence_geometries = 32;
 
 struct InfluenceKernel {
   const char* name;
