@@ -16,6 +16,7 @@
 #include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
 #include "mmbrdf/fitting/fit.hpp"
+#include "mmbrdf/mixed/plan.hpp"
 #include "mmbrdf/model/batch.hpp"
 #include "mmbrdf/model/prepared.hpp"
 #include "mmbrdf/quantities/answer.hpp"
@@ -322,6 +323,20 @@ TEST(NotMeasured, PartsOfABlockGiveTheOthersAtTheDefaultOrdersOrNotAtAll) {
   const Model model = fit_sample(samples, few).model;
   ASSERT_TRUE(model.posterior);
   EXPECT_EQ(model.not_measured & Elements(0x0116), Elements(0x0114));
+}
+
+TEST(NotMeasured, PartsOfABlockAreAllThatAPlanLikeTheirFitExpectsToRead) {
+  const std::vector<Sample> samples = without(Elements(0xfffc), of_ptfe());
+  const Model model = fit_sample(samples, {Family::isotropic, {5, 3}}).model;
+  VarianceComponents components = components_of(*model.posterior, 0.532);
+  std::vector<Geometry> design;
+  for (const Sample& sample : samples) design.push_back(sample.geometry);
+  const PlanTarget block{PlanTarget::Kind::block, 1, {}};
+  const double of_part = expected_uncertainties(components, design, {&block, 1})[0];
+  components.unread.reset();
+  const double of_whole = expected_uncertainties(components, design, {&block, 1})[0];
+  EXPECT_GT(of_part / of_whole, 1.1);
+  EXPECT_LT(of_part / of_whole, 3);  // four readings are one: 2, where all columns are determined
 }
 
 TEST(NotMeasured, PartsOfABlockAreKeptInTheFileOfAModel) {
