@@ -67,7 +67,8 @@ struct NamedDesign {
 std::vector<NamedDesign> with_turns(const NamedDesign& design);
 
 /// Expected standard uncertainties of the targets from readings at these geometries, one for each time that it is there:
-/// of the posterior part; declared errors come on top. Throws std::invalid_argument for components that do not agree
+/// of the posterior part, by a model of all modes behind it; declared errors come on top, and what a model of lower orders
+/// leaves out. Throws std::invalid_argument for components that do not agree
 /// with the blocks, an invalid geometry, or a polar angle of 90 degrees, where the law is infinite.
 std::vector<double> expected_uncertainties(const VarianceComponents& components, std::span<const Geometry> design,
                                            std::span<const PlanTarget> targets);
