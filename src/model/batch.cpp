@@ -76,7 +76,7 @@ class Question {
  public:
   Question(const PreparedIncidence& prepared, Frame asked)
       : frame(asked), unknown(Evaluation::pattern(prepared).unknown) {
-    convert(Evaluation::model(prepared), {});
+    convert(Evaluation::model(prepared));
   }
 
   /// At the wavelengths of the options, if there are any.
@@ -84,7 +84,7 @@ class Question {
       : frame(options.frame), unknown(Evaluation::pattern(prepared).unknown), wavelengths(options.wavelengths) {
     KernelModel<double> asked = Evaluation::model(prepared);
     if (wavelengths.empty()) {
-      convert(asked, {});
+      convert(asked);
       return;
     }
     if (count != wavelengths.size())
@@ -92,16 +92,11 @@ class Question {
                                   " wavelengths");
     for (const double wavelength : wavelengths) require_wavelength(wavelength);
     const PreparedPattern& pattern = Evaluation::pattern(prepared);
-    std::vector<double> all;
-    for (std::size_t first = 0; first < pattern.by_powers.size(); first += pattern.modes()) {
-      const auto power = pattern.plan.coefficients(std::span(pattern.by_powers).subspan(first, pattern.modes()));
-      all.insert(all.end(), power.begin(), power.end());
-    }
     reflectance = &pattern.reflectance;
-    require_finite_sums(all, pattern.modes() == 0 ? 0 : pattern.by_powers.size() / pattern.modes());
-    asked.powers = static_cast<int>(pattern.by_powers.size() / pattern.modes()) - 1;
-    asked.coefficients = all.data();
-    convert(asked, std::move(all));
+    require_finite_sums(pattern.form_by_powers, static_cast<std::size_t>(pattern.powers) + 1);
+    asked.powers = pattern.powers;
+    asked.coefficients = pattern.form_by_powers.data();
+    convert(asked);
   }
   /// The same at the wavelength of point q alone.
   Question(const Question& all, std::size_t q)
@@ -122,7 +117,7 @@ class Question {
  private:
   /// At each of the wavelengths: `all` has the coefficients of λ⁰, then those of λ¹, …
   void require_finite_sums(std::span<const double> all, std::size_t powers) const {
-    if (wavelengths.empty() || powers == 0) return;
+    if (wavelengths.empty()) return;
     const double longest = *std::max_element(wavelengths.begin(), wavelengths.end());
     const std::size_t count = all.size() / powers;
     double largest = 0;
@@ -136,7 +131,7 @@ class Question {
       throw std::invalid_argument("wavelength " + shortest(in_nanometres(longest)) + " nm: its powers are too large");
   }
 
-  void convert(const KernelModel<double>& from, std::vector<double>&& own) {
+  void convert(const KernelModel<double>& from) {
     model = {from.form,
              from.projected,
              from.turned,
@@ -150,8 +145,7 @@ class Question {
              static_cast<T>(from.scale)};
     for (std::size_t j = 0; j < 5; ++j) model.incident[j] = static_cast<T>(from.incident[j]);
     if constexpr (std::is_same_v<T, double>) {
-      own_ = std::move(own);
-      model.coefficients = own_.empty() ? from.coefficients : own_.data();
+      model.coefficients = from.coefficients;
     } else {
       own_.resize(static_cast<std::size_t>((from.powers + 1) * from.count));
       for (std::size_t i = 0; i < own_.size(); ++i) own_[i] = static_cast<T>(from.coefficients[i]);

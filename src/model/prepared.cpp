@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mmbrdf/model/batch.hpp"
+#include "model/kernel/kernels.hpp"
 #include "model/kernel/plan.hpp"
 #include "model/unit_vectors.hpp"
 #include "text/numbers.hpp"
@@ -38,6 +39,7 @@ PreparedModel prepare(const Model& model, double wavelength) {
   pattern->plan = plan(model);
   for (int k = 0; k < zernike_count(pattern->plan.order); ++k) pattern->table_norms.push_back(table_norm(k));
   pattern->by_powers = by_powers(model);
+  pattern->powers = model.powers;
   pattern->reflectance = model.reflectance;
   pattern->validity = model.validity;
   pattern->unknown = unknown_elements(model);
@@ -47,22 +49,24 @@ PreparedModel prepare(const Model& model, double wavelength) {
       for (const Term& term : terms(mode, model.family)) pattern->terms.push_back(term);
       pattern->terms_end.push_back(pattern->terms.size());
     }
+  for (std::size_t first = 0; first < pattern->by_powers.size(); first += pattern->modes()) {
+    const auto power = pattern->plan.coefficients(std::span(pattern->by_powers).subspan(first, pattern->modes()));
+    pattern->form_by_powers.insert(pattern->form_by_powers.end(), power.begin(), power.end());
+  }
   return PreparedModel(std::move(pattern), wavelength);
 }
 
 PreparedModel::PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength)
     : pattern_(std::move(pattern)), reflectance_(pattern_->reflectance.at(wavelength)), wavelength_(wavelength) {
   const std::size_t modes = pattern_->modes();
-  std::vector<double> coefficients(modes);
+  of_modes_.resize(modes);
   double power = 1;
   for (std::size_t first = 0; first < pattern_->by_powers.size(); first += modes, power *= wavelength)
-    for (std::size_t q = 0; q < modes; ++q) coefficients[q] += power * pattern_->by_powers[first + q];
-  set(std::move(coefficients));
-}
-
-void PreparedModel::set(std::vector<double> coefficients) {
-  of_modes_ = std::move(coefficients);
-  of_form_ = pattern_->plan.coefficients(of_modes_);
+    for (std::size_t q = 0; q < modes; ++q) of_modes_[q] += power * pattern_->by_powers[first + q];
+  const Plan& plan = pattern_->plan;
+  of_form_.resize(static_cast<std::size_t>(plan.count));
+  best_kernel().fold(kernel_model<double>(plan, pattern_->form_by_powers, pattern_->powers, 1), wavelength,
+                     of_form_.data());
 }
 
 PreparedModel PreparedModel::at(double wavelength) const {
@@ -81,7 +85,8 @@ PreparedModel PreparedModel::with(std::span<const double> coefficients, double r
                                 shortest(largest_at_a_wavelength));
   PreparedModel result = *this;
   result.reflectance_ = reflectance;
-  result.set({coefficients.begin(), coefficients.end()});
+  result.of_modes_.assign(coefficients.begin(), coefficients.end());
+  result.of_form_ = pattern_->plan.coefficients(coefficients);
   return result;
 }
 

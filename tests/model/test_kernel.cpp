@@ -89,12 +89,11 @@ void run(const Kernel& kernel, const KernelModel<float>& model, const KernelPoin
   kernel.evaluate_single(model, points, out, count);
 }
 
-/// With the coefficients of all powers of the wavelength, or those of one wavelength.
+/// With the coefficients of one wavelength.
 template <class T>
 struct Arranged {
   Plan plan;
   std::vector<T> coefficients;
-  int powers = 0;
   T scale = 1;
 
   Arranged(const Model& model, double wavelength)
@@ -106,7 +105,7 @@ struct Arranged {
       folded[i % modes] += all[i] * std::pow(wavelength, static_cast<double>(i / modes));
     for (const double a : plan.coefficients(folded)) coefficients.push_back(static_cast<T>(a));
   }
-  KernelModel<T> model() const { return kernel_model<T>(plan, coefficients, powers, scale); }
+  KernelModel<T> model() const { return kernel_model<T>(plan, coefficients, 0, scale); }
 };
 
 /// Row by row.
@@ -253,6 +252,28 @@ RC_GTEST_PROP(Kernel, WithFusedMultiplyAddsHasTheSameBitsForEveryWidth, ()) {
     for (const KernelPoints<double>& points : {angles(geometries), vectors.points()})
       RC_ASSERT(matrices(*kernel, arranged.model(), points, geometries.size()) ==
                 matrices(*fused.front(), arranged.model(), points, geometries.size()));
+}
+
+RC_GTEST_PROP(Kernel, OfEveryInstructionSetFoldsAWavelengthAsItIsInEachPoint, ()) {
+  const Case c = any_case();
+  const std::vector<Geometry> geometries = any_geometries();
+  const Plan plan = mmbrdf::plan(c.model);
+  std::vector<double> all, folded(static_cast<std::size_t>(plan.count));
+  const std::vector<double> of_modes = by_powers(c.model);
+  const std::size_t modes = of_modes.size() / static_cast<std::size_t>(c.model.powers + 1);
+  for (std::size_t first = 0; first < of_modes.size(); first += modes)
+    for (const double a : plan.coefficients(std::span(of_modes).subspan(first, modes))) all.push_back(a);
+  const std::vector<double> wavelengths(geometries.size(), c.wavelength), scales(geometries.size(), 0.7);
+  KernelPoints<double> points = angles(geometries);
+  for (const Kernel* kernel : kernels_that_run_here()) {
+    const KernelModel<double> spectral = kernel_model<double>(plan, all, c.model.powers, 0.7);
+    kernel->fold(spectral, c.wavelength, folded.data());
+    const auto once = matrices(*kernel, kernel_model<double>(plan, folded, 0, 0.7), points, geometries.size());
+    points.wavelength = wavelengths.data();
+    points.scale = scales.data();
+    RC_ASSERT(matrices(*kernel, spectral, points, geometries.size()) == once);
+    points.wavelength = points.scale = nullptr;
+  }
 }
 
 RC_GTEST_PROP(Kernel, OfEveryInstructionSetIsInTheFrameAskedFor, ()) {

@@ -5,7 +5,7 @@
 /// All functions throw std::invalid_argument if sizes differ, or for the first invalid geometry, before anything is
 /// written. They agree with PreparedModel::evaluate to evaluation_error × f11, in single precision to
 /// single_precision_error × f11; results do not depend on the number of threads or on which geometries are evaluated
-/// together.
+/// together. In double precision those at a wavelength of their own have the bits of PreparedModel::at() it.
 #pragma once
 
 #include <array>

@@ -60,7 +60,6 @@ class PreparedModel {
   friend struct Evaluation;
   struct Pattern;  // what is the same for all wavelengths
   PreparedModel(std::shared_ptr<const Pattern> pattern, double wavelength);
-  void set(std::vector<double> coefficients);
   std::shared_ptr<const Pattern> pattern_;
   std::vector<double> of_modes_;  // coefficients at this wavelength
   std::vector<double> of_form_;   // the coefficients as the kernel takes them

@@ -331,6 +331,20 @@ void evaluate(const KernelModel<T>& model, const KernelPoints<T>& points, const 
   }
 }
 
+/// As Spectral, for many coefficients in place of many wavelengths.
+void fold(const KernelModel<double>& model, double wavelength, double* out) {
+  using R = Pack<double>;
+  const Spectral<double, any_powers> one_by_one(model, R(wavelength));
+  int i = 0;
+  for (; i + R::width <= model.count; i += R::width) {
+    const auto of_power = [&](int p) { return load(model.coefficients + p * model.count + i); };
+    R sum = of_power(model.powers);
+    for (int p = model.powers - 1; p >= 0; --p) sum = fma(sum, R(wavelength), of_power(p));
+    store(sum, out + i);
+  }
+  for (; i < model.count; ++i) out[i] = one_by_one(i).v[0];
+}
+
 template <class T>
 size_t first_invalid(const T* const vectors[3], size_t count) {
   using R = Pack<T>;
@@ -370,6 +384,7 @@ const Kernel kernel{MMBRDF_NAME(MMBRDF_ISA),
                     runs_here,
                     evaluate<double>,
                     evaluate<float>,
+                    fold,
                     first_invalid<double>,
                     first_invalid<float>,
                     draw,

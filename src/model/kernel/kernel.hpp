@@ -117,6 +117,8 @@ struct Kernel {
                    size_t count);
   void (*evaluate_single)(const KernelModel<float>&, const KernelPoints<float>&, const KernelMatrices<float>&,
                           size_t count);
+  /// The coefficients of a model of all powers at one wavelength, with the bits that evaluate() finds there.
+  void (*fold)(const KernelModel<double>&, double wavelength, double* out);
   /// Of vectors x, y, z: the first that has not length 1 to 1e-6 or not z ≥ 0; count if all have.
   size_t (*first_invalid)(const double* const vectors[3], size_t count);
   size_t (*first_invalid_single)(const float* const vectors[3], size_t count);

@@ -42,6 +42,8 @@ std::vector<double> by_powers(const Model& model);
 struct PreparedPattern {
   Plan plan;
   std::vector<double> by_powers;          ///< coefficients of the modes, power after power
+  std::vector<double> form_by_powers;     ///< those of the form
+  int powers = 0;                         ///< highest power of the wavelength
   std::vector<Term> terms;                ///< of the modes, mode after mode
   std::vector<std::size_t> terms_end{0};  ///< terms of mode q: terms_end[q] … terms_end[q + 1]
   std::vector<double> table_norms;        ///< of K, which the kernel's table does not have
