@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "mmbrdf/model/prepared.hpp"
+#include "mmbrdf/model/batch.hpp"
 #include "mmbrdf/text/printable.hpp"
 #include "mmbrdf/uncertainty/budget.hpp"
 #include "mmbrdf/uncertainty/draws.hpp"
@@ -53,16 +53,21 @@ py::object evaluate(const Question& question, Frame frame, int threads, const st
   auto result = room_for_matrices(question, given);
   auto* const out = reinterpret_cast<Mueller*>(result.mutable_data());  // sixteen doubles each
   Range range(question.object());
+  const auto at_one_wavelength = [&](const PreparedModel& model, const Some& some) {
+    range.count(model.wavelength(), some.geometries);
+    model.evaluate(some.geometries, frame, {out + some.begin, some.geometries.size()});
+  };
+  const auto at_each = [&](const PreparedModel& model, std::span<const double> wavelengths,
+                           std::span<const Geometry> geometries, std::size_t begin) {
+    range.count(wavelengths, geometries);
+    mmbrdf::evaluate(model, geometries, {out + begin, geometries.size()}, {.frame = frame, .wavelengths = wavelengths});
+  };
   without_gil([&] {
-    question.each(
-        threads, 2048, [&](double wavelength) { return question.prepared(wavelength); },
-        [&](const PreparedModel& model, const Some& some) {
-          range.count(model.wavelength(), some.geometries);
-          if (!some.positions)
-            return model.evaluate(some.geometries, frame, {out + some.begin, some.geometries.size()});
-          for (std::size_t i = 0; i < some.geometries.size(); ++i)
-            out[some.position(i)] = model.evaluate(some.geometries[i], frame);
-        });
+    if (question.has_one_wavelength())
+      question.each(
+          threads, 2048, [&](double wavelength) { return question.prepared(wavelength); }, at_one_wavelength);
+    else
+      question.each_row(threads, 2048, at_each);
   });
   range.warn(question.broadcast().size());
   return result;

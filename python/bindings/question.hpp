@@ -26,12 +26,17 @@ class Range {
 
   void count(double wavelength, const Geometry& geometry) { count(wavelength, std::span(&geometry, 1)); }
 
-  void count(double wavelength, std::span<const Geometry> geometries) {
-    bool beyond = leaves_known_range(outside(validity(), wavelength));
+  void count(double wavelength, std::span<const Geometry> geometries) { count(std::span(&wavelength, 1), geometries); }
+
+  /// One wavelength for all geometries, or for each.
+  void count(std::span<const double> wavelengths, std::span<const Geometry> geometries) {
+    bool beyond = false;
+    for (const double w : wavelengths) beyond |= leaves_known_range(outside(validity(), w));
     for (const Geometry& g : geometries) beyond |= g.incident.theta > theta_i_max_ || g.reflected.theta > theta_r_max_;
     if (!beyond) return;  // as nearly always
     RangeCount here;
-    for (const Geometry& g : geometries) here.add(outside(validity(), wavelength, g));
+    for (std::size_t i = 0; i < geometries.size(); ++i)
+      here.add(outside(validity(), wavelengths[wavelengths.size() == 1 ? 0 : i], geometries[i]));
     const std::lock_guard lock(mutex_);
     range_.add(here);
   }
@@ -84,15 +89,7 @@ class Question {
                [&](std::size_t begin, std::size_t end) { run(begin, end, nullptr, prepared, use); });
       return;
     }
-    std::vector<double> wavelengths(broadcast_.size());
-    broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
-    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
-      try {
-        wavelengths[i] = micrometres(wavelengths[i]);
-      } catch (const std::invalid_argument& error) {
-        throw broadcast_.at_place(error, i);
-      }
-    }
+    const std::vector<double> wavelengths = all_wavelengths();
     std::vector<std::size_t> order(wavelengths.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -106,7 +103,42 @@ class Question {
     });
   }
 
+  bool has_one_wavelength() const { return one_wavelength_; }
+
+  /// use(prepared, wavelengths, geometries, begin) for the positions from `begin` on, of whatever wavelengths; prepared at
+  /// one of them. Needs no GIL.
+  template <class Use>
+  void each_row(int threads, std::size_t least, Use use) const {
+    if (broadcast_.size() == 0) return;
+    const std::vector<double> wavelengths = all_wavelengths();
+    const PreparedModel first = prepared(wavelengths.front());
+    in_parts(wavelengths.size(), threads, least, [&](std::size_t begin, std::size_t end) {
+      std::vector<Geometry> geometries(std::min(most, end - begin));
+      for (; begin < end; begin += geometries.size()) {
+        geometries.resize(std::min(most, end - begin));
+        gather(broadcast_, 1, begin, begin + geometries.size(), geometries.data());
+        use(first, std::span(wavelengths).subspan(begin, geometries.size()), geometries, begin);
+      }
+    });
+  }
+
  private:
+  static constexpr std::size_t most = 512;  // geometries and matrices stay in the first-level cache, or nearly
+
+  /// Micrometres, at each position.
+  std::vector<double> all_wavelengths() const {
+    std::vector<double> wavelengths(broadcast_.size());
+    broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
+    for (std::size_t i = 0; i < wavelengths.size(); ++i) {
+      try {
+        wavelengths[i] = micrometres(wavelengths[i]);
+      } catch (const std::invalid_argument& error) {
+        throw broadcast_.at_place(error, i);
+      }
+    }
+    return wavelengths;
+  }
+
   static std::vector<Operand> operands(const ModelObject& model, const std::optional<Given>& wavelength_nm,
                                        const Given& theta_i, const Given& phi_i, const Given& theta_r,
                                        const Given& phi_r) {
@@ -117,7 +149,6 @@ class Question {
 
   template <class Prepared, class Use>
   void run(std::size_t begin, std::size_t end, const std::size_t* order, const Prepared& prepared, Use use) const {
-    constexpr std::size_t most = 512;  // geometries and matrices stay in the first-level cache, or nearly
     std::vector<Geometry> geometries(std::min(most, end - begin));
     for (; begin < end; begin += geometries.size()) {
       const std::size_t count = std::min(geometries.size(), end - begin);

@@ -41,6 +41,11 @@ def test_wavelengths_may_vary_fastest(ptfe):
     np.testing.assert_array_equal(ptfe.evaluate(*arguments), one_by_one(ptfe, *arguments))
 
 
+def test_each_row_may_have_a_wavelength_of_its_own(ptfe):
+    arguments = (np.linspace(351, 1064, 1301), np.linspace(0, 75, 1301), 0, np.linspace(75, 0, 1301), 180)
+    np.testing.assert_array_equal(ptfe.evaluate(*arguments, threads=2), one_by_one(ptfe, *arguments))
+
+
 def test_strides_and_types_do_not_matter(ptfe):
     theta = np.arange(0, 80, 5)
     expected = ptfe.evaluate(532, 45, 0, theta.astype(float), 180)
@@ -208,6 +213,8 @@ def test_extrapolation_is_said_and_found(ptfe):
         ptfe.evaluate(532, [30, 80, 85], 0, 30, 180)
     with pytest.warns(mmbrdf.ExtrapolationWarning, match="wavelength"):
         ptfe.evaluate([532, 1500], 30, 0, 30, 180)
+    with pytest.warns(mmbrdf.ExtrapolationWarning, match="3 of 4 questions"):
+        ptfe.evaluate([[532, 1500]], [[30], [80]], 0, 30, 180)
     outside = ptfe.outside([532, 1500], [[30], [80]], 0, 85, 180)
     flags = mmbrdf.Outside
     assert outside.dtype == np.uint8
