@@ -4,8 +4,33 @@ if(PROJECT_IS_TOP_LEVEL AND NOT EMSCRIPTEN AND NOT DEFINED CMAKE_CXX_COMPILER_LA
   find_program(CCACHE ccache)
   if(CCACHE)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime   # precompiled headers are new files
       ${CCACHE})
   endif()
 endif()
+
+# precompile(TARGET HEADERS...): target_precompile_headers() of headers from outside the project. What is compiled names the folder
+# that it was made in; sums of the headers tell ccache that it is the same in another.
+function(precompile target)
+  target_precompile_headers(${target} PRIVATE ${ARGN})
+  get_target_property(folder ${target} BINARY_DIR)
+  set(sums "")
+  foreach(header IN LISTS ARGN)
+    string(REGEX MATCH "[^<>./]+" package ${header})    # rapidcheck of <rapidcheck.h> and <rapidcheck/gtest.h>
+    find_path(root ${package} NO_CACHE)
+    if(NOT root)
+      return()   # somewhere that only its own CMake package knows
+    endif()
+    file(GLOB_RECURSE files ${root}/${package}/*)
+    file(GLOB alone ${root}/${package}.h)
+    foreach(file IN LISTS files alone)
+      file(MD5 ${file} sum)
+      string(APPEND sums "${sum}\n")
+    endforeach()
+    unset(root)
+  endforeach()
+  foreach(ending gch pch)   # of g++ and of clang
+    file(WRITE ${folder}/CMakeFiles/${target}.dir/cmake_pch.hxx.${ending}.sum "${sums}")
+  endforeach()
+endfunction()
