@@ -11,7 +11,11 @@ if(PROJECT_IS_TOP_LEVEL AND NOT EMSCRIPTEN AND NOT DEFINED CMAKE_CXX_COMPILER_LA
 endif()
 
 # precompile(TARGET HEADERS...): target_precompile_headers() of headers from outside the project. What is compiled names the folder
-# that it was made in; sums of the headers tell ccache that it is the same in another.
+# that it was made in; sums of the headers tell ccache that it is the same in another. Options that CMake hands to the inner compiler
+# of clang have paths that ccache takes as they are; clang itself finds what was precompiled beside a header.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  set(CMAKE_CXX_COMPILE_OPTIONS_USE_PCH -include <PCH_HEADER>)
+endif()
 function(precompile target)
   target_precompile_headers(${target} PRIVATE ${ARGN})
   get_target_property(folder ${target} BINARY_DIR)
