@@ -177,6 +177,9 @@ TEST(CommonErrors, AreRefusedWhereTheyAreNotOfOneWavelength) {
   model = least_squares("ptfe-532");
   EXPECT_THROW(add_common_errors(model, samples, std::array{SampleChanges(3)}), std::invalid_argument);
   EXPECT_THROW(add_common_errors(model, {}, {}), std::invalid_argument);
+  std::vector<Sample> of_two = samples;
+  of_two.back().wavelength = 0.633;
+  EXPECT_EQ(message_of([&] { add_common_errors(model, of_two, {}); }), "samples of more than one wavelength");
 }
 
 TEST(CommonErrors, OfAnInstrumentAreAddedToAFitWhichThenNamesIt) {

@@ -146,6 +146,25 @@ TEST(Netcdf, GivesAListOfSamplesWithUncertainties) {
   EXPECT_TRUE(says(foreign_refusal(folder / "x"), {"x: does not say the wavelength of its values"}));
 }
 
+// Of f_ij and f11, taken for independent; of every second element f11 alone is uncertain.
+TEST(Netcdf, GivesElementsOverF11TheUncertaintiesOfBoth) {
+  const Folder folder;
+  std::vector<Variable> variables =
+      grid(prepare(random_model(Family::isotropic, {5, 4}, 0, 4), 0.532), Frame::xy, "germer2017");
+  Variable u = variables.back();
+  u.name = "uncertainty";
+  for (std::size_t n = 0; n < u.values.size(); ++n) u.values[n] = n % 16 == 0 ? 0.02 : n % 2 == 0 ? 0.01 : 0;
+  variables.push_back(u);
+  write(folder / "x", grid_axes, variables, 0);
+  for (const Sample& s : read_foreign_file(folder / "x").samples) {
+    EXPECT_EQ(s.uncertainty(0, 0), 0.02);
+    for (std::size_t e = 1; e < 16; ++e) {
+      const double of_element = e % 2 == 0 ? 0.01 / s.f11 : 0, of_f11 = s.normalized.elements[e] * 0.02 / s.f11;
+      EXPECT_NEAR(s.uncertainty.elements[e], std::hypot(of_element, of_f11), 1e-15);
+    }
+  }
+}
+
 TEST(Netcdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   const Folder folder;
   const std::string path = folder / "x";

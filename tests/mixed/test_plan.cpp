@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "given/cases.hpp"
 #include "given/checkout.hpp"
 #include "given/first_pass.hpp"
 #include "given/halton.hpp"
@@ -242,7 +243,9 @@ TEST(Plan, ChoosesWhatTheReferenceChooses) {
 
 TEST(Plan, RefusesWhatCannotBeMeasured) {
   const Geometry grazing{{0, 0}, {std::numbers::pi / 2, 0}};
-  EXPECT_THROW(expected_uncertainties(default_components(), {&grazing, 1}, all_targets()), std::invalid_argument);
+  const std::string why = "geometry 1: nothing is measured at 90 degrees";
+  EXPECT_EQ(message_of([&] { expected_uncertainties(default_components(), {&grazing, 1}, all_targets()); }), why);
+  EXPECT_EQ(message_of([&] { chosen(default_components(), {}, all_targets(), {&grazing, 1}, 1); }), why);
   EXPECT_THROW(chosen(default_components(), {}, all_targets(), {}, 1), std::invalid_argument);
 }
 

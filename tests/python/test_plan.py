@@ -71,7 +71,8 @@ def test_refuses_what_no_plan_is_made_of():
     for arguments, words in (
         ({"designs": {}}, "designs: none given"),
         ({"designs": {"a": scan()}, "targets": ["bhr"]}, "target 'bhr': expected dhr:THETA"),
-        ({"designs": {"a": scan()}, "noise": 0}, "noise 0: must be in 1e-06...10"),
+        ({"designs": {"a": scan()}, "noise": 9e-7}, "noise 9e-07: must be in 1e-06...10"),
+        ({"designs": {"a": scan()}, "noise": 10.1}, "noise 10.1: must be in 1e-06...10"),
         ({"designs": {"a": scan()}, "wavelength_nm": 532}, "a wavelength is that of a fit"),
         ({"designs": {"a": (1, 2)}}, "designs: expected .theta_i_deg, phi_i_deg"),
         ({"designs": {"a": 3}}, "designs: expected .theta_i_deg, phi_i_deg"),

@@ -125,12 +125,15 @@ TEST(Answer, OfManyGeometriesIsThatOfEach) {
   EXPECT_THROW(here.at(std::vector<Geometry>{oblique, {{2, 0}, {0, 0}}}), std::invalid_argument);
 }
 
+// Of more draws than are worked out together.
 TEST(Answer, HasTheDistributionOfTheMatricesThatAreDrawn) {
+  constexpr int count = DrawnMatrices::together + 75;
   const Model model = least_squares("ptfe-532");
-  const std::vector<PreparedModel> draws = Draws(model, 75, 5).at(0.532);
+  const std::vector<PreparedModel> draws = Draws(model, count, 5).at(0.532);
   const PreparedModel prepared = prepare(model, 0.532);
   const std::vector<Geometry> geometries{oblique, {{0.1, 1}, {1.2, -2}}};
-  const std::vector<Answer> answers = Answers(model, {.terms = terms, .draws = 75, .seed = 5}).at(0.532).at(geometries);
+  const std::vector<Answer> answers =
+      Answers(model, {.terms = terms, .draws = count, .seed = 5}).at(0.532).at(geometries);
   for (std::size_t g = 0; g < geometries.size(); ++g) {
     const std::vector<Mueller> matrices = drawn(draws, prepared, terms, geometries[g], Frame::sp, 5);
     for (const Answered& q : answers[g].quantities) {

@@ -107,13 +107,17 @@ TEST(Certificate, ThatMakesNoSenseIsRefused) {
   EXPECT_EQ(what({{0.5, 0.9, 0.01}, {0.5, 0.91, 0.01}}), "two values of the certificate at 500 nm");
 }
 
+/// Of a simulated sample, with the error of the scale that is declared.
+Model with_posterior(double scale) {
+  FitOptions options;
+  options.declared = {scale, radians(0.5), 0};
+  return fit_sample(simulate(material("ptfe-532"), std::array{0.532}, random_geometries(150, 1), 0.006, 2), {}, options)
+      .model;
+}
+
 // What a posterior leaves open of the scale, the declared error of it among them, the certificate knows.
 TEST(Certified, UncertaintyOfAPosteriorIsThatOfTheCertificateWhereItHolds) {
-  FitOptions options;
-  options.declared = {0.003, radians(0.5), 0};
-  const Model before =
-      fit_sample(simulate(material("ptfe-532"), std::array{0.532}, random_geometries(150, 1), 0.006, 2), {}, options)
-          .model;
+  const Model before = with_posterior(0.003);
   const CertifiedReflectance sphere{0.532, 0.95, 0.002, radians(30)};
   const Model model = certified(before, std::vector{sphere}).model;
   const UncertainModel u = uncertain(model, 0.532);
@@ -128,6 +132,16 @@ TEST(Certified, UncertaintyOfAPosteriorIsThatOfTheCertificateWhereItHolds) {
   EXPECT_LT(std::sqrt(scale->covariance(0, 0)), 1e-3 * prepare(model, 0.532).f11({{radians(30), 0}, {radians(45), 0}}));
   const Model read = model_from_json(to_json(model), "read");
   EXPECT_EQ(standard_uncertainty(directional_hemispherical_budget(uncertain(read, 0.532), {radians(70), 0})), of(70));
+}
+
+// The scale of the fit and the reflectance are drawn against each other, or f11 would be as uncertain as the scale: 0.03.
+TEST(Certified, PosteriorIsDrawnFromAsItIsUncertain) {
+  const Model model = certified(with_posterior(0.03), std::vector<CertifiedReflectance>{{0.532, 0.95, 0.002}}).model;
+  const Geometry g{{0.8, 0}, {0.5, 2.6}};
+  const double u = std::sqrt(prepare_uncertainty(model, 0.532).evaluate(g)(0, 0));
+  EXPECT_LT(u, 0.01 * prepare(model, 0.532).f11(g));
+  const auto drawn = values(Draws(model, 1000, 1).at(0.532), [&](const PreparedModel& m) { return m.f11(g); });
+  EXPECT_NEAR(distribution(drawn).standard_deviation / u, 1, 0.09);  // 2.2 % each
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "given/cases.hpp"
+#include "given/not_measured.hpp"
 #include "given/published.hpp"
 #include "given/random_model.hpp"
 #include "mmbrdf/files/coefficients_file.hpp"
@@ -123,6 +124,25 @@ TEST(Comparison, FindsWhatWasAddedToOneSampleAndWhere) {
   EXPECT_LE(c.normalized[6].largest, rounding);
   EXPECT_NEAR(polarization_rms(c), 0.025 / std::sqrt(15), rounding);
   EXPECT_EQ(largest(c).geometry, samples[17].geometry);
+}
+
+TEST(Comparison, MeansTheElementsThatAreKnown) {
+  const Model model = material("ptfe-532");
+  Elements others = all_but_f11;
+  others.reset(5);
+  std::vector<Sample> samples = without(others, simulated(model, 20));
+  for (Sample& sample : samples) sample.normalized(1, 1) += 0.1;
+  EXPECT_NEAR(polarization_rms(compare(model, samples)), 0.1, 1e-15);  // rounding
+}
+
+TEST(Comparison, OfWhatIsEqualIsLargestAtTheFirstSample) {
+  const std::vector<Sample> samples = simulated(material("ptfe-532"), 5);
+  const Comparison equal = compare(samples, samples);
+  for (const Difference& one : {equal.f11, equal.f11_relative, equal.normalized[5], largest(equal)}) {
+    EXPECT_EQ(one.largest, 0);
+    EXPECT_EQ(one.wavelength, 0.532);
+    EXPECT_EQ(one.geometry, samples[0].geometry);
+  }
 }
 
 RC_GTEST_PROP(Comparison, OfTwoModelsTheOtherWayRoundHasTheOtherSign, (unsigned seed)) {

@@ -209,6 +209,19 @@ TEST(Distribution, HasTheIntervalsOfTheGuide) {
   EXPECT_EQ(two.high, 3);
 }
 
+// Squares crowd at the low end, and what is below zero of them at the high end.
+TEST(Distribution, HasTheShortestIntervalMirroredWhereTheValuesAre) {
+  for (const int count : {2, 3, 20, 1000}) {
+    std::vector<double> squares, mirrored;
+    for (int i = 1; i <= count; ++i) squares.push_back(i * i), mirrored.push_back(-i * i);
+    const Distribution low = distribution(squares, 0.5, Interval::shortest),
+                       high = distribution(mirrored, 0.5, Interval::shortest);
+    EXPECT_EQ(low.low, 1) << count;
+    EXPECT_EQ(high.low, -low.high) << count;
+    EXPECT_EQ(high.high, -low.low) << count;
+  }
+}
+
 /// Draws of different shapes: some have more values far from the mean than lie beyond an interval, some have fewer.
 std::vector<std::vector<double>> shapes() {
   std::vector<std::vector<double>> result(4);
