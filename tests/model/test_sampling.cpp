@@ -450,7 +450,7 @@ TEST(Sampling, TakesAzimuthsOfAnySize) {
 TEST(Sampling, RefusesWhatMakesNoSense) {
   const DirectionSampler sampler(prepare(material("ptfe-532"), 0.532));
   const Direction up{0, 0}, below{2, 0};
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
   const auto of = [&](auto action) { return message_of(action); };
   EXPECT_EQ(of([&] { sampler.sample(up, {1, 0.5}); }), "u = (1, 0.5): both must be in [0, 1)");
   EXPECT_EQ(of([&] { sampler.sample(up, {0.5, nan}); }), "u = (0.5, nan): both must be in [0, 1)");
@@ -470,6 +470,7 @@ TEST(Sampling, RefusesWhatMakesNoSense) {
             "reflected vector (0, 0, nan) is not a unit vector with z >= 0");
   EXPECT_TRUE(says(of([&] { sampler.weight(up, {{0.1, 0}, 0}); }), {"pdf = 0", "positive"}));
   EXPECT_TRUE(says(of([&] { sampler.weight(Vector3{0, 0, 1}, {{0, 0, 1}, nan}); }), {"pdf = nan", "positive"}));
+  EXPECT_TRUE(says(of([&] { sampler.weight(up, {{0.1, 0}, infinite}); }), {"pdf = inf", "positive"}));
   EXPECT_TRUE(says(of([&] { sampler.weight(Vector3{0, 0, 1}, {{0, 0.6, -0.8}, 1}); }), {"reflected", "unit vector"}));
   std::vector<UnitPoint> points(3, {0.5, 0.5});
   points[2][0] = -0.5;

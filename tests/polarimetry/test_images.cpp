@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "given/calibrations.hpp"
+#include "given/cases.hpp"
 #include "mmbrdf/polarimetry/reduction.hpp"
 
 namespace mmbrdf {
@@ -91,6 +93,34 @@ TEST(Images, RefuseSizesThatDoNotFit) {
   const PixelInverses inverses = pixel_inverses(std::vector<double>(32), std::vector<double>(32), like);
   std::vector<float> elements(32);
   EXPECT_THROW(muellers(inverses, std::vector<float>(31), elements), std::invalid_argument);
+}
+
+TEST(Images, RefuseMoreStatesThanThereCanBeInEitherArm) {
+  const Polarimeter like = ideal_polarimeter(radians(131.81), std::vector{0.1, 0.5, 1.0, 2.0});
+  for (const auto arm : {&Polarimeter::generator, &Polarimeter::analyzer}) {
+    Polarimeter many = like;
+    (many.*arm).resize(most_states);
+    EXPECT_EQ(pixel_inverses({}, {}, many).pixels(), 0u);
+    (many.*arm).resize(most_states + 1);
+    EXPECT_THROW(pixel_inverses({}, {}, many), std::invalid_argument);
+  }
+}
+
+TEST(Images, AreCalibratedFromAStartWithTheSameReferencesAlone) {
+  const Goniometer goniometer(quiet(), 1);
+  std::vector<Reference> references = goniometer.references(wavelength, 6, 1);
+  const Calibration start = calibrate(references, with_film());
+  const auto refused = [&] { return message_of([&] { calibrate_pixels(start, references, {}, with_film()); }); };
+  EXPECT_EQ(refused(), "nothing was thrown");
+  for (const std::size_t i : {std::size_t{7}, references.size() - 1}) {  // a polarizer, and a wafer
+    const Reference given = references[i];
+    references[i].angle += radians(1);
+    EXPECT_EQ(refused(), "reference " + std::to_string(i + 1) + " is not that of the start");
+    references[i] = given;
+    references[i].kind = ReferenceKind::retarder;
+    EXPECT_EQ(refused(), "reference " + std::to_string(i + 1) + " is not that of the start");
+    references[i] = given;
+  }
 }
 
 }  // namespace

@@ -326,6 +326,12 @@ def test_a_sampling_of_the_whole_sphere_is_estimable(ptfe):
     assert ptfe.estimable(532, [30, 60], 0, 45, [[90], [180]]).all()
 
 
+def test_nothing_is_estimable_beyond_the_fitted_angles(anisotropic):
+    i, r = anisotropic.theta_i_max_deg, anisotropic.theta_r_max_deg
+    where = [i - 1, i + 1, 45, 45], 0, [45, 45, r - 1, r + 1], 90
+    assert anisotropic.estimable(532, *where).tolist() == [True, False, True, False]
+
+
 def test_models_without_covariance_have_no_uncertainty(published):
     model = mmbrdf.load(published / "PTFE.532.coeff.csv")
     assert not model.has_covariance

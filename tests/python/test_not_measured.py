@@ -50,6 +50,18 @@ def test_elements_leave_no_picture_of_what_needs_them_and_no_gap_in_a_report(nin
         mmbrdf.plot.depolarization_map(model, 532, 45)
 
 
+def test_elements_leave_the_uncertainties_that_are_drawn_of_what_does_not_need_them(nine):
+    known = nine.mueller.copy()
+    known[:, 3, :] = known[:, :, 3] = 0  # each block is fitted by itself
+    model, whole = (
+        mmbrdf.fit(mmbrdf.Dataset(532, *nine.geometry, mueller), orders=(2, 1), uncertainty="noise").model
+        for mueller in (nine.mueller, known)
+    )
+    for name in ("11", "reflectance_factor", "22", "f_sp"):
+        u, expected = (mmbrdf.plot.map(one, name, 532, 45, show="u", samples=5)[1].images[0] for one in (model, whole))
+        np.testing.assert_allclose(np.ma.filled(u.get_array(), -1), np.ma.filled(expected.get_array(), -1), rtol=1e-9)
+
+
 def test_elements_are_not_written_and_are_missing_when_read_again(nine, tmp_path):
     nine.save(tmp_path / "nine.csv")
     header = (tmp_path / "nine.csv").read_text().splitlines()[0]

@@ -61,6 +61,17 @@ def test_rows_of_an_array_are_written_as_text_too(program, tmp_path):
         assert [float(x) for x in a.split(",")[:5]] == [float(x) for x in b.split(",")[:5]]
 
 
+@pytest.mark.parametrize("version", [(2, 0), (3, 0)])
+def test_files_of_later_formats_hold_the_same_rows(program, tmp_path, version):
+    rows = geometries(10)
+    np.save(tmp_path / "first.npy", rows)
+    with open(tmp_path / "later.npy", "wb") as file:
+        np.lib.format.write_array(file, rows, version)
+    program("evaluate", "ptfe", "-g", "first.npy", "-o", "expected.npy")
+    program("evaluate", "ptfe", "-g", "later.npy", "-o", "found.npy")
+    np.testing.assert_array_equal(np.load(tmp_path / "found.npy"), np.load(tmp_path / "expected.npy"))
+
+
 def test_normalized_arrays_keep_f11_beside_the_divided_elements(program, tmp_path):
     np.save(tmp_path / "rows.npy", geometries(10))
     program("evaluate", "ptfe", "-g", "rows.npy", "-o", "f.npy", "--frame", "sp")

@@ -115,6 +115,24 @@ def test_missing_readings_are_fitted_by_their_pattern(grid, values, prepared, mo
         found[6]
 
 
+@pytest.mark.parametrize("f11_only", [False, True])
+def test_what_is_left_of_a_pixel_keeps_its_weights(ptfe, f11_only):
+    where, random = mmbrdf.random_geometries(60, seed=3), np.random.default_rng(1)
+    values = ptfe.evaluate(532, *where) + 0.01 * random.normal(size=(60, 4, 4))
+    weights = random.uniform(0.1, 1, (60, 4, 4))
+    values = values[:, 0, 0] if f11_only else values
+    options = {"orders": (3, 2), "f11_only": f11_only}
+    holes = values.copy()
+    holes[::7] = np.nan
+    found = images.PixelFit(532, where, weights=weights, **options).fit(holes)
+    kept = np.arange(60) % 7 != 0
+    expected = images.PixelFit(532, [angle[kept] for angle in where], weights=weights[kept], **options).fit(
+        values[kept]
+    )
+    np.testing.assert_allclose(found.coefficients, expected.coefficients, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(found.variances, expected.variances, rtol=1e-9)  # a difference of squares
+
+
 def test_without_degrees_of_freedom_a_covariance_is_not_known(ptfe):
     where = mmbrdf.random_geometries(8, seed=3)  # as many as f11 has coefficients
     values = ptfe.evaluate(532, *where)

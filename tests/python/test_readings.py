@@ -64,6 +64,16 @@ def test_tables_are_what_files_are(files, goniometer):
         assert found.reduction.startswith("raw by ")
 
 
+def test_states_from_0_are_so_in_both_columns_though_one_is_never_0(files, goniometer):
+    given, whole = table(files / "raw.csv"), goniometer.polarimeter
+    expected = mmbrdf.reduce(given, whole, solid_angle=1e-4)
+    more = np.vstack([whole.analyzer[:1], whole.analyzer])  # the first is never used
+    pairs = [(p, q) for q in range(1, len(more)) for p in range(len(whole.generator))]
+    instrument = mmbrdf.Polarimeter(whole.generator, more, pairs)
+    found = mmbrdf.reduce({**given, "generator_state": given["generator_state"] - 1}, instrument, solid_angle=1e-4)
+    np.testing.assert_allclose(found.mueller, expected.mueller, rtol=0, atol=1e-12)
+
+
 def test_frames_of_data_and_datasets_are_tables(files, goniometer):
     pandas = pytest.importorskip("pandas")
     expected = mmbrdf.calibrate(files / "references.csv", film=goniometer.film)
