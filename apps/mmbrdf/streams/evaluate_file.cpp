@@ -191,7 +191,7 @@ class RowsEvaluator {
   }
 
  private:
-  /// What is of one wavelength takes a third of the time.
+  /// What is of one wavelength is folded once.
   void evaluate(const Rows& rows) {
     BatchOptions options{.frame = frame_};
     if (end_of_wavelength(rows, 0) < rows.size())
