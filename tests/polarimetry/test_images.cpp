@@ -123,5 +123,31 @@ TEST(Images, AreCalibratedFromAStartWithTheSameReferencesAlone) {
   }
 }
 
+// With shot noise alone the start is already the best without an extinction of a pixel that it was made of: nothing but the
+// extinction is left to be moved. The readings are of single precision, 6e-8: the extinction is good to some of these.
+TEST(Images, FindTheExtinctionOfEachPixelThoughTheStartHasNone) {
+  CalibrationOptions options;
+  options.wavelength = wavelength;
+  options.noise = {.dark = 0, .shot = 1e-3, .relative = 0};
+  options.retarders.emplace().dials = dial_angles(5, radians(6), 61);
+  RotatingRetarders instrument;
+  instrument.generator.retardance = instrument.analyzer.retardance = radians(86);
+  const std::vector<double> extinctions{1e-3, 0, 1e-4, 1e-2};
+  std::vector<float> pixels;
+  for (const double extinction : extinctions) {
+    instrument.extinction = extinction;
+    for (const double reading : readings(polarimeter(instrument, options.retarders->dials), identity()))
+      pixels.push_back(static_cast<float>(reading));
+  }
+  const std::vector<Reference> first{{ReferenceKind::empty, 0, {pixels.begin(), pixels.begin() + 61}}};
+  CalibrationOptions without = options;
+  without.retarders->fit_extinction = false;
+  const PixelCalibrations found = calibrate_pixels(calibrate(first, without), first, pixels, options);
+  for (std::size_t i = 0; i < extinctions.size(); ++i) {
+    EXPECT_EQ(found.failures[i], PixelFailure::none) << i;
+    EXPECT_NEAR(found.retarders[retarder_parameters * i + 8], extinctions[i], 1e-6) << i;
+  }
+}
+
 }  // namespace
 }  // namespace mmbrdf
