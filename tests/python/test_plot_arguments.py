@@ -129,7 +129,7 @@ def pictures_with_names(model, data):
     yield plot.anisotropy(model)[0]
 
 
-@pytest.mark.parametrize("name", [r"$\frac$", "cost $5 or $6 _{", r"a\$b", "_hidden", "纸样"])
+@pytest.mark.parametrize("name", [r"_hidden a\$b 纸样", r"cost $5 or $6 _{ $\frac$"])
 def test_a_name_is_shown_letter_by_letter(ptfe, data, name, caplog):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
