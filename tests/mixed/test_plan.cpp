@@ -246,7 +246,57 @@ TEST(Plan, RefusesWhatCannotBeMeasured) {
   const std::string why = "geometry 1: nothing is measured at 90 degrees";
   EXPECT_EQ(message_of([&] { expected_uncertainties(default_components(), {&grazing, 1}, all_targets()); }), why);
   EXPECT_EQ(message_of([&] { chosen(default_components(), {}, all_targets(), {&grazing, 1}, 1); }), why);
-  EXPECT_THROW(chosen(default_components(), {}, all_targets(), {}, 1), std::invalid_argument);
+  EXPECT_EQ(message_of([&] { chosen(default_components(), {}, all_targets(), {}, 1); }), "no candidates");
+}
+
+TEST(Plan, RefusesToChooseForNothingOrTooMuch) {
+  const VarianceComponents components = default_components();
+  const std::vector<PlanTarget> reflectance{{PlanTarget::Kind::dhr, 0, {{0.5, 0}, {}}}};
+  const std::vector<Geometry> few{{{0, 0}, {0.5, 0}}};
+  EXPECT_EQ(message_of([&] { chosen(components, {}, {}, few, 1); }), "no targets");
+  EXPECT_EQ(message_of([&] { chosen(components, {}, reflectance, std::vector<Geometry>(20001, few[0]), 1); }),
+            "20001 candidates, more than 20000");
+  EXPECT_EQ(message_of([&] { chosen(components, {}, reflectance, few, 1001); }),
+            "1001 of the candidates are asked for, more than 1000");
+  const std::vector<PlanTarget> none{{PlanTarget::Kind::block, 6, {}}};
+  EXPECT_EQ(message_of([&] { chosen(components, {}, none, few, 1); }), "there is no block 6");
+  EXPECT_EQ(message_of([&] { expected_uncertainties(components, few, none); }), "there is no block 6");
+}
+
+TEST(Plan, RefusesComponentsThatDoNotAgreeWithTheBlocks) {
+  const std::vector<Geometry> few{{{0, 0}, {0.5, 0}}};
+  const auto refusal = [&](auto spoil) {
+    VarianceComponents components = default_components();
+    spoil(components.blocks);
+    return message_of([&] { expected_uncertainties(components, few, {all_targets().data(), 1}); });
+  };
+  EXPECT_EQ(refusal([](auto& blocks) { blocks.pop_back(); }), "variance components of 5 blocks, expected 6");
+  EXPECT_EQ(refusal([](auto& blocks) { blocks[0].hyperparameters.clear(); }),
+            "elements 11 were not measured: nothing is known of their variances");
+  EXPECT_EQ(refusal([](auto& blocks) { blocks[0].hyperparameters.pop_back(); }),
+            "block 11: 7 hyperparameters, expected 8");
+}
+
+TEST(Plan, TakesTargetsByTheirNames) {
+  const auto only = [](const std::string& text) {
+    const std::vector<NamedTarget> found = targets_from(text);
+    EXPECT_EQ(found.size(), 1u) << text;
+    return found.at(0);
+  };
+  const NamedTarget in_plane = only("f:0:45"), beside = only("f:0:45:90"), reflectance = only("dhr:45");
+  EXPECT_EQ(in_plane.name, "f_0_45");
+  EXPECT_EQ(beside.name, "f_0_45_90");
+  EXPECT_EQ(reflectance.name, "dhr_45");
+  EXPECT_EQ(in_plane.target.kind, PlanTarget::Kind::f11);
+  EXPECT_EQ(in_plane.target.geometry, (Geometry{{0, 0}, direction_from_degrees(45, 180)}));
+  EXPECT_EQ(beside.target.geometry, (Geometry{{0, 0}, direction_from_degrees(45, 90)}));
+  EXPECT_EQ(reflectance.target.kind, PlanTarget::Kind::dhr);
+  EXPECT_EQ(reflectance.target.geometry.incident, direction_from_degrees(45, 0));
+  EXPECT_EQ(targets_from("dhr:0,45").size(), 2u);
+  for (const char* wrong : {"", "f11", "dhr", "dhr:0:45", "f:0", "f:0:45:90:0", "g:0:45", "dhr:0,"})
+    EXPECT_THROW(targets_from(wrong), std::invalid_argument) << wrong;
+  EXPECT_EQ(message_of([] { targets_from("dhr:0:45"); }),
+            "target 'dhr:0:45': expected dhr:THETA[,THETA...] or f:THETA_I:THETA_R[:PHI_R], in degrees");
 }
 
 }  // namespace

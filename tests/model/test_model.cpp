@@ -13,6 +13,7 @@
 
 #include "given/cases.hpp"
 #include "given/random_model.hpp"
+#include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/model/prepared.hpp"
 
 using namespace mmbrdf;
@@ -59,6 +60,38 @@ TEST(ReflectanceTable, ThatIsNoneIsRefused) {
   for (const double bad : {nan_value, infinity}) EXPECT_NE(refusal({{0.5}, {bad}}), "nothing was thrown");
   for (const double bad : {0.0, -0.5, nan_value, infinity}) EXPECT_NE(refusal({{bad}, {1}}), "nothing was thrown");
   EXPECT_EQ(refusal({}), "nothing was thrown");
+}
+
+TEST(ReflectanceTable, WhoseCovariancesDoNotFitItIsRefused) {
+  const auto refusal = [](const ReflectanceTable& table) { return message_of([&] { require_valid(table); }); };
+  const std::vector<double> at{0.4, 0.5, 0.6}, values{1, 1, 1};
+  EXPECT_EQ(refusal({at, values, {1, 2, 3}}), "nothing was thrown");  // independent values
+  EXPECT_EQ(refusal({at, values, std::vector<double>(9)}), "nothing was thrown");
+  for (const std::size_t count : {1u, 2u, 4u, 8u, 10u})
+    EXPECT_EQ(refusal({at, values, std::vector<double>(count)}),
+              "reflectance table: covariance of " + std::to_string(count) + " numbers, expected 9");
+  for (const double bad : {nan_value, infinity, 1.1e80})
+    EXPECT_EQ(refusal({at, values, {1, bad, 1}}), "reflectance table: a covariance is not a number up to 1e+80");
+  EXPECT_EQ(refusal({at, values, {}, {1}}),
+            "reflectance table: a covariance with the coefficients, but none of its own");
+  EXPECT_EQ(refusal({at, values, {1, 1, 1}, {nan_value}}),
+            "reflectance table: a covariance is not a number up to 1e+80");
+}
+
+TEST(ReflectanceTable, IsCertifiedAtAPolarAngleBelowNinetyDegreesForEachValue) {
+  ReflectanceTable table{{0.4, 0.5}, {1, 1}, {1, 1}};
+  const auto refusal = [&](const std::vector<double>& theta) {
+    table.certified_theta = theta;
+    return message_of([&] { require_valid(table); });
+  };
+  const std::string message =
+      "reflectance table: certified polar angles must be in [0, 90) degrees, one for each value";
+  EXPECT_EQ(refusal({0, radians(89)}), "nothing was thrown");
+  for (const std::vector<double>& wrong :
+       std::vector<std::vector<double>>{{0.1}, {0.1, 0.1, 0.1}, {0.1, radians(90)}, {-1e-9, 0.1}, {0.1, nan_value}})
+    EXPECT_EQ(refusal(wrong), message);
+  table.covariance.clear();
+  EXPECT_EQ(refusal({0, 0}), message);  // of what is certified the uncertainty is known
 }
 
 TEST(Model, OfOneWavelengthNeedsNone) {
@@ -206,4 +239,104 @@ TEST(Model, ThatDoesNotFitTogetherIsRefusedWithTheReason) {
     EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].covariance.assign(16, bad); }),
               "block 14,41: a covariance is not a number up to 1e+80");
   }
+  EXPECT_EQ(refusal([](Model& m) { m.blocks[2].rank = 4; }), "nothing was thrown");
+  for (const int rank : {-1, 5})
+    EXPECT_EQ(refusal([&](Model& m) { m.blocks[2].rank = rank; }),
+              "block 14,41: rank " + std::to_string(rank) + " of 4");
+  EXPECT_EQ(refusal([](Model& m) {
+              m.blocks[2].covariance.resize(16);
+              m.blocks[2].covariance[2 * 4 + 1] = 1e-9;
+            }),
+            "block 14,41: covariance is not symmetric at 3, 2");
+  EXPECT_EQ(refusal([](Model& m) { m.not_measured.set(0); }), "model: f11 is said not to be measured");
+  EXPECT_EQ(refusal([](Model& m) { m.not_measured.set(15); }),
+            "model: elements are said not to be measured, but their block has modes");
+  const auto with_f11 = [](std::size_t count) {
+    return [=](Model& m) { m.reflectance = {{0.5, 0.6}, {1, 1}, {1, 1}, std::vector<double>(count)}; };
+  };
+  ASSERT_EQ(good.blocks[0].coefficients.size(), 10u);
+  EXPECT_EQ(refusal(with_f11(20)), "nothing was thrown");
+  for (const std::size_t count : {0u, 19u, 21u})
+    EXPECT_EQ(refusal(with_f11(count)), "reflectance table: covariance with the coefficients of " +
+                                            std::to_string(count) + " numbers, expected 20");
+}
+
+TEST(Model, IsRefusedWithAValidityThatIsNone) {
+  Model model = random_model(Family::isotropic, {2, 2}, 1, 1);
+  const auto refusal = [&](const Validity& validity) {
+    model.validity = validity;
+    return message_of([&] { require_valid(model); });
+  };
+  using Grid = DirectionPairs::Grid;
+  const auto supported = [](std::vector<SupportedPairs> list) {
+    Validity result;
+    result.supported = std::move(list);
+    return result;
+  };
+  const DirectionPairs isotropic(Grid::isotropic), anisotropic(Grid::anisotropic);
+  EXPECT_EQ(refusal({{0.4, 0.5}, radians(90), 0, {}}), "nothing was thrown");
+  EXPECT_EQ(refusal({{0.5, 0.4}, {}, {}, {}}), "validity: wavelength 400 nm does not rise");
+  EXPECT_EQ(refusal({{0.5, 0.5}, {}, {}, {}}), "validity: wavelength 500 nm does not rise");
+  EXPECT_EQ(refusal({{0.5}, radians(91), {}, {}}), "validity: polar angle 91 degrees is not in [0, 90]");
+  EXPECT_EQ(refusal({{0.5}, {}, radians(-1), {}}), "validity: polar angle -1 degrees is not in [0, 90]");
+  EXPECT_EQ(refusal(supported({{0.4, isotropic}, {0.5, isotropic}})), "nothing was thrown");
+  for (const double second : {0.5, 0.4})
+    EXPECT_EQ(refusal(supported({{0.5, isotropic}, {second, isotropic}})),
+              "validity: wavelengths of the supported directions do not rise");
+  EXPECT_EQ(refusal(supported({{0.4, isotropic}, {0.5, anisotropic}})),
+            "validity: the supported directions are of different grids");
+  EXPECT_EQ(refusal(supported({{0.4, anisotropic}})),
+            "validity: the supported directions are on the grid of another family");
+}
+
+TEST(Model, WithAPosteriorOfAnotherModelIsRefused) {
+  const auto refusal = [](const std::function<void(Model&)>& spoil) {
+    Model model = material("ptfe-532");
+    spoil(model);
+    return message_of([&] { require_valid(model); });
+  };
+  const std::string which = "the posterior of the model ";
+  EXPECT_EQ(refusal([](Model&) {}), "nothing was thrown");
+  EXPECT_EQ(refusal([](Model& m) { m.mapping = DiscMapping::projected; }), which + "has another mapping to the disc");
+  EXPECT_EQ(refusal([](Model& m) { m.blocks.pop_back(); }), which + "has 6 blocks");
+  EXPECT_EQ(refusal([](Model& m) {
+              m.not_measured.set(15);
+              m.blocks.pop_back();
+            }),
+            which + "is of other elements");
+  EXPECT_EQ(refusal([](Model& m) {
+              const std::size_t count = m.blocks[0].coefficients.size();
+              m.blocks[0].covariance.assign(count * count, 0);
+            }),
+            which + "takes the place of a covariance, and there is one");
+  EXPECT_EQ(refusal([](Model& m) {
+              const auto posterior = m.posterior;
+              m = random_model(Family::germer2017, {2, 2}, 0, 1);
+              m.posterior = posterior;
+            }),
+            which + "is of the isotropic family, the model of germer2017");
+  EXPECT_TRUE(refusal([](Model& m) {
+                const auto posterior = m.posterior;
+                m = random_model(Family::isotropic, {14, 4}, 0, 1);
+                m.posterior = posterior;
+              }).starts_with(which + "does not have the mode 11 "));
+}
+
+TEST(Model, IsOfOneWavelengthWhereNothingInItSaysMore) {
+  const auto refusal = [](const std::function<void(Model&)>& change) {
+    Model model = diffuser({1});
+    model.reflectance = {};
+    change(model);
+    return message_of([&] { only_wavelength(model); });
+  };
+  EXPECT_EQ(refusal([](Model&) {}), "nothing was thrown");
+  EXPECT_EQ(refusal([](Model& m) { m.validity.wavelengths = {0.5}; }), "nothing was thrown");
+  EXPECT_EQ(refusal([](Model& m) {
+              m.validity.wavelengths = {0.5, 0.6};
+            }),
+            "the model depends on the wavelength, fitted at 500, 600 nm: give one");
+  EXPECT_EQ(refusal([](Model& m) {
+              m.reflectance = {{0.5, 0.6}, {1, 1}};
+            }),
+            "the model depends on the wavelength: give one");
 }

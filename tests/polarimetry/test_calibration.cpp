@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -218,6 +220,42 @@ TEST(Calibration, SaysWhatIsMissing) {
   EXPECT_EQ(refusal(wrong, with_film()),
             "the readings of the empty beam have fewer than four independent states: generator and analyzer need four "
             "each");
+}
+
+TEST(Calibration, RefusesOptionsAndAnglesThatAreNone) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto references = Goniometer(quiet(), 1).references(wavelength, 18, 2);
+  const auto refused = [&](const std::function<void(CalibrationOptions&)>& spoil) {
+    CalibrationOptions options = with_film();
+    spoil(options);
+    return refusal(references, options);
+  };
+  for (const double bad : {infinite, -infinite, std::nan("")})
+    EXPECT_EQ(refused([&](CalibrationOptions& o) { o.polarizer_near = bad; }),
+              "the polarizer's rough azimuth is not finite");
+  for (const auto states : {&CalibrationOptions::generator_states, &CalibrationOptions::analyzer_states}) {
+    const std::string arm = states == &CalibrationOptions::generator_states ? "generator" : "analyzer";
+    EXPECT_EQ(refused([&](CalibrationOptions& o) { o.*states = 3; }), "3 states of the " + arm + ", four are needed");
+    EXPECT_EQ(refused([&](CalibrationOptions& o) { o.*states = 101; }), "101 states of the " + arm + ", more than 100");
+  }
+  for (const int sense : {0, 2, -2})
+    EXPECT_EQ(refused([&](CalibrationOptions& o) { o.dial_sense = sense; }),
+              "a dial sense of " + std::to_string(sense) + ", not 1 or -1");
+  EXPECT_EQ(refused([](CalibrationOptions& o) { o.extinction = -0.1; }), "extinction -0.1 is not in [0, 1)");
+  EXPECT_EQ(refused([](CalibrationOptions& o) { o.extinction = 1; }), "extinction 1 is not in [0, 1)");
+  for (const ReadingNoise& noise : {ReadingNoise{0, 0, 0}, ReadingNoise{-1, 2, 2}, ReadingNoise{2, -1, 2},
+                                    ReadingNoise{2, 2, -1}, ReadingNoise{infinite, 0, 0}})
+    EXPECT_EQ(refused([&](CalibrationOptions& o) { o.noise = noise; }),
+              "the noise of the readings must be finite, and positive somewhere");
+  const auto turned = [&](std::size_t number, double angle) {
+    auto wrong = references;
+    wrong[number - 1].angle = angle;
+    return refusal(wrong, with_film());
+  };
+  EXPECT_EQ(turned(3, infinite), "reference 3: its angle is not finite");
+  EXPECT_EQ(turned(37, std::nan("")), "reference 37: its angle is not finite");
+  EXPECT_EQ(turned(37, radians(90)), "reference 37: an angle of incidence of 90 degrees");
+  EXPECT_EQ(turned(37, radians(-1)), "reference 37: an angle of incidence of -1 degrees");
 }
 
 TEST(Calibration, OfAPolarizerInsteadOfWafersLeavesMoreThanOneInstrument) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "given/cases.hpp"
 #include "mmbrdf/files/materials.hpp"
@@ -181,6 +182,19 @@ TEST(Goniometer, RefusesWhatItCannotBe) {
   options = {};
   options.noise.relative = 1e300;
   EXPECT_THROW(Goniometer(options, 1), std::invalid_argument);
+  const double infinite = std::numeric_limits<double>::infinity();
+  for (const double bad : {-1e-9, infinite, std::nan("")}) {
+    options = {};
+    options.imperfections.stray = bad;
+    EXPECT_TRUE(
+        message_of([&] { Goniometer(options, 1); }).ends_with(" where a number that is not negative is needed"));
+  }
+  for (double GoniometerOptions::*const any_sign :
+       {&GoniometerOptions::retardance, &GoniometerOptions::polarizer_offset, &GoniometerOptions::drift}) {
+    options = {};
+    options.*any_sign = -infinite;
+    EXPECT_EQ(message_of([&] { Goniometer(options, 1); }), "an option is not finite");
+  }
   options = {};
   options.solid_angle = 0;
   EXPECT_THROW(Goniometer(options, 1), std::invalid_argument);

@@ -90,9 +90,22 @@ TEST(Images, HaveNoNumbersWhereThereAreNone) {
 TEST(Images, RefuseSizesThatDoNotFit) {
   const Polarimeter like = ideal_polarimeter(radians(131.81), std::vector{0.1, 0.5, 1.0, 2.0});
   EXPECT_THROW(pixel_inverses(std::vector<double>(31), std::vector<double>(32), like), std::invalid_argument);
+  EXPECT_THROW(pixel_inverses(std::vector<double>(32), std::vector<double>(31), like), std::invalid_argument);
+  EXPECT_THROW(pixel_inverses(std::vector<double>(32), std::vector<double>(16), like), std::invalid_argument);
+  for (const auto arm : {&Polarimeter::generator, &Polarimeter::analyzer}) {
+    Polarimeter none = like;
+    (none.*arm).clear();
+    EXPECT_THROW(pixel_inverses({}, {}, none), std::invalid_argument);
+  }
   const PixelInverses inverses = pixel_inverses(std::vector<double>(32), std::vector<double>(32), like);
   std::vector<float> elements(32);
   EXPECT_THROW(muellers(inverses, std::vector<float>(31), elements), std::invalid_argument);
+  const std::vector<float> readings(32);
+  EXPECT_NO_THROW(muellers(inverses, readings, elements));
+  EXPECT_THROW(muellers(inverses, readings, elements, 1, 1), std::invalid_argument);  // one pixel from the second on
+  EXPECT_THROW(muellers(inverses, readings, elements, 1, 3), std::invalid_argument);
+  elements.resize(33);
+  EXPECT_THROW(muellers(inverses, readings, elements), std::invalid_argument);
 }
 
 TEST(Images, RefuseMoreStatesThanThereCanBeInEitherArm) {
@@ -112,6 +125,9 @@ TEST(Images, AreCalibratedFromAStartWithTheSameReferencesAlone) {
   const Calibration start = calibrate(references, with_film());
   const auto refused = [&] { return message_of([&] { calibrate_pixels(start, references, {}, with_film()); }); };
   EXPECT_EQ(refused(), "nothing was thrown");
+  const std::size_t each = 16 * references.size();
+  EXPECT_EQ(message_of([&] { calibrate_pixels(start, references, std::vector<float>(each + 1), with_film()); }),
+            std::to_string(each + 1) + " readings are not those of whole pixels of " + std::to_string(each));
   for (const std::size_t i : {std::size_t{7}, references.size() - 1}) {  // a polarizer, and a wafer
     const Reference given = references[i];
     references[i].angle += radians(1);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -211,6 +213,20 @@ TEST(RotatingRetarders, RefuseNumbersThatAreNone) {
             "a number of the rotating retarders is not finite");
   EXPECT_EQ(message_of([] { dial_angles(5, radians(6), 101); }), "101 frames, must be 1 to 100");
   EXPECT_EQ(message_of([] { dial_angles(0, radians(6), 61); }), "a ratio of 0");
+  EXPECT_EQ(refusal([](RotatingRetarders& r) { r.extinction = 1.1; }), "extinction 1.1 is not in [0, 1]");
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(message_of([&] { dial_angles(infinite, radians(6), 61); }), "a ratio of inf");
+  EXPECT_EQ(message_of([&] { dial_angles(5, infinite, 61); }), "steps of inf degrees");
+  EXPECT_EQ(message_of([] { dial_angles(5, 0, 61); }), "steps of 0 degrees");
+  EXPECT_EQ(message_of([] { dial_angles(5, radians(6), 0); }), "0 frames, must be 1 to 100");
+  EXPECT_EQ(message_of([] { dial_angles(1e200, 1e200, 2); }), "a step and a ratio that leave no finite angles");
+  for (double DialAngles::*const dial : {&DialAngles::generator, &DialAngles::analyzer}) {
+    std::vector<DialAngles> dials = sixty_one;
+    dials.back().*dial = infinite;
+    EXPECT_EQ(message_of([&] { polarimeter(imperfect(), dials); }), "an angle of a dial is not finite");
+  }
+  EXPECT_EQ(message_of([] { state_covariance(imperfect(), sixty_one, std::vector<double>(99)); }),
+            "the covariance of the retarders has 99 numbers, expected 100");
 }
 
 // ---- calibration ----------------------------------------------------------------------------------------------------
