@@ -186,6 +186,12 @@ TEST(Instrument, ThatCouldNotBeReadBackIsNotWritten) {
             "instrument: degrees_of_freedom: -1 is negative");
   EXPECT_EQ(refusal([](Calibration& c) { c.wavelength = 1e300; }),
             "instrument: wavelength_nm: 1e+303 is not a wavelength in nm");
+  for (const double wavelength : {0.0, -0.5, std::nan("")})
+    EXPECT_EQ(refusal([&](Calibration& c) { c.wavelength = wavelength; }), "the wavelength must be positive");
+  EXPECT_EQ(refusal([](Calibration& c) {
+              for (std::size_t k = 0; k < 4; ++k) c.polarimeter.pairs.push_back({k, k});
+            }),
+            "an instrument file has pairs of states of turning retarders only");
   EXPECT_NE(refusal([](Calibration& c) { c.generator_condition *= 1.001; }), "nothing was thrown");
   EXPECT_NE(refusal([](Calibration& c) { c.covariance.assign(c.covariance.size(), 1e308); }), "nothing was thrown");
 }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "given/files.hpp"
+#include "mmbrdf/files/materials.hpp"
 #include "mmbrdf/files/model_file.hpp"
 
 namespace mmbrdf {
@@ -292,6 +293,10 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
       {"[\"11\",0,0,0,0]", "[\"44\",0,0,0,0]", "m.json: blocks[0].elements: '11', but the modes feed 44"},
       {"\"orders\": [0, 1]", "\"orders\": [7, 4]", "m.json: orders: must be [0, 1]"},
       {"\"theta_i_max_deg\": null", "\"theta_i_max_deg\": 91", "m.json: validity.theta_i_max_deg: 91"},
+      {"\"theta_r_max_deg\": null", "\"theta_r_max_deg\": -1",
+       "m.json: validity.theta_r_max_deg: -1 degrees is not in 0...90"},
+      {"\"rank\": 1", "\"rank\": -1", "m.json: blocks[0].rank: -1 is not in 0...1"},
+      {"\"rank\": 1", "\"rank\": 1, \"rows\": -1", "m.json: blocks[0].rows: must be a number of rows, not -1"},
       {"\"wavelengths_um\": []", "\"wavelengths_um\": [0.5, 0.4]",
        "m.json: validity.wavelengths_um: must be positive and rise"},
       {"\"values\": [0.9]", "\"values\": [0.9, 1]", "m.json: reflectance: "},
@@ -310,6 +315,32 @@ TEST(Json, WithAFieldOfTheWrongKindIsRefusedByItsPath) {
       {"\"name\": \"small\"", "\"name\": \"small\", \"name\": \"other\"", "m.json: the field 'name' is there twice"},
   };
   for (const auto& change : cases) EXPECT_TRUE(says(refusal(with(text, change[0], change[1])), {change[2]}));
+}
+
+TEST(Json, WithAPosteriorThatIsNoneIsRefusedByItsPath) {
+  const std::string text = to_json(material("ptfe-532"));
+  EXPECT_EQ(refusal(text), "");
+  // What stands behind the colon of the first field of this name.
+  const auto in_place_of = [&](const std::string& field, const std::string& other) {
+    const std::size_t begin = text.find(':', text.find("\"" + field + "\"", text.find("\"posterior\""))) + 1;
+    std::string changed = text;
+    return refusal(changed.replace(begin, text.find_first_of(",}\n", begin) - begin, " " + other));
+  };
+  const std::string block = "m.json: posterior.wavelengths[0].blocks[0]";
+  for (const char* four_bytes_of_eight : {"\"AAAA\"", "\"AAA\"", "\"A!==\"", "\"AAAAAA==\""})
+    EXPECT_EQ(in_place_of("mean", four_bytes_of_eight), block + ".mean: must be numbers of 64 bits in base 64");
+  EXPECT_EQ(in_place_of("free_mean", "\"AAAA\""), block + ".free_mean: must be numbers of 32 bits in base 64");
+  for (const char* wrong : {"AAAA", "A", "A!=="})
+    EXPECT_TRUE(says(
+        refusal(with(text, "\"mean\":", "\"deviations\": \"\", \"factor\": \"" + std::string(wrong) + "\", \"mean\":")),
+        {block + ".factor: must be ", " numbers of 12 bits in base 64"}));
+  EXPECT_EQ(in_place_of("angles_rad", "\"AAAAAA==\""),
+            "m.json: posterior.readings[0]: must be four angles for each count");
+  EXPECT_TRUE(says(in_place_of("elements", "\"44\""), {block + ".elements: ", "block 11 comes here"}));
+  const std::size_t of_wavelength = text.find("\"readings\"", text.find("\"law\""));
+  std::string negative = text;
+  negative.replace(text.find_first_of("0123456789", of_wavelength), 1, "-1");
+  EXPECT_EQ(refusal(negative), "m.json: posterior.wavelengths[0].readings: -1 is negative");
 }
 
 TEST(Json, WithNamesThatWouldSpoilATerminalIsRefusedInOneLine) {

@@ -110,6 +110,8 @@ TEST(Readings, OfReferencesThatCannotBeAreRefusedWithTheirLine) {
   EXPECT_TRUE(says(complains("633,empty,2,0,1,1,1,0,1,1\n"), {"r.csv:3: wavelength_nm: 633, but 532 in line 2"}));
   EXPECT_TRUE(says(complains("532,mirror,2,0,1,1,1,0,1,1\n"), {"r.csv:3: reference: 'mirror'"}));
   EXPECT_TRUE(says(complains("532,wafer,2,90,1,1,1,0,1,1\n"), {"r.csv:3: angle_deg: 90"}));
+  EXPECT_TRUE(says(complains("532,wafer,2,-1,1,1,1,0,1,1\n"), {"r.csv:3: angle_deg: -1"}));
+  EXPECT_TRUE(says(complains("0,empty,2,0,1,1,1,0,1,1\n"), {"r.csv:3: wavelength_nm: 0", "must be positive"}));
   EXPECT_TRUE(says(complains("532,empty,1.5,0,1,1,1,0,1,1\n"), {"r.csv:3: number: 1.5 is not an integer"}));
   EXPECT_TRUE(says(complains("532,empty,2,0,0,1,1,0,1,1\n"), {"r.csv:3: generator_state: 0"}));
   EXPECT_TRUE(says(complains("532,polarizer,1,0,2,1,1,0,1,1\n"), {"r.csv:3: measurement 1: another reference", "2"}));
@@ -124,6 +126,28 @@ TEST(Readings, OfOneReferenceHaveOneSignOfEachKind) {
   for (const std::string sign : {"s_exceeds_p", "delta_sign"})
     EXPECT_TRUE(says(complaint([&] { parsed_references(names + sign + "\n" + first + second); }),
                      {"r.csv:3: measurement 1: another " + sign + " than in line 2"}));
+  for (const std::string sign : {"s_exceeds_p", "delta_sign"}) {
+    for (const std::string wrong : {"2", "-2", "0.5"})
+      EXPECT_TRUE(says(complaint([&] { parsed_references(names + sign + "\n532,wafer,45,1,1,1,1," + wrong + "\n"); }),
+                       {"r.csv:2: " + sign + ": " + wrong, "is not one of 1, -1, 0"}));
+    const auto kept = [&](const std::string& value) {
+      const Reference r = parsed_references(names + sign + "\n532,wafer,45,1,1,1,1," + value + "\n").references.at(0);
+      return sign == "s_exceeds_p" ? r.s_exceeds_p : r.delta_sign;
+    };
+    EXPECT_EQ(kept("-1"), -1);
+    EXPECT_EQ(kept("1"), 1);
+    EXPECT_EQ(kept("0"), 0);
+    EXPECT_EQ(kept(""), 0);
+  }
+}
+
+TEST(Readings, OfReferencesAreWrittenAtAPositiveWavelengthAlone) {
+  std::ostringstream out;
+  for (const double wavelength : {0.0, -0.5, std::nan("")})
+    EXPECT_TRUE(message_of([&] {
+                  write_references(out, {wavelength, {1, 1}, {}});
+                }).ends_with(" nm, must be positive"));
+  EXPECT_EQ(out.str(), "");
 }
 
 TEST(Readings, LackOfColumnsIsSaidOfAllAtOnce) {
@@ -142,6 +166,7 @@ TEST(Readings, OfSamplesThatCannotBeAreRefusedWithTheirLine) {
   };
   EXPECT_EQ(complains("532,45,0,30,180,1,2,1,3\n"), "");
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,3,1,3\n"), {"d.csv:3: generator state 3", "the instrument has 2"}));
+  EXPECT_TRUE(says(complains("532,45,0,30,180,1,2,2,3\n"), {"d.csv:3: ", "analyzer state 2", "and 1 analyzer states"}));
   EXPECT_TRUE(says(complains("532,45,0,31,180,1,2,1,3\n"), {"d.csv:3: measurement 1: another direction", "line 2"}));
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,1,1,3\n"), {"d.csv:3: measurement 1: a second", "in line 2"}));
   EXPECT_TRUE(says(complains("532,45,0,30,180,1,2,1,-3\n"), {"d.csv:3: intensity: -3 is negative"}));

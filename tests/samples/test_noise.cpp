@@ -137,12 +137,22 @@ TEST(Noise, RefusesWhatDoesNotDetermineALaw) {
   std::vector<Sample> grazing = m.samples;
   grazing[4].geometry.reflected.theta = radians(90);
   EXPECT_PRED2(has, said(grazing, m.residuals), "theta_r = 90 degrees");
+  grazing = m.samples;
+  grazing[4].geometry.incident.theta = radians(90);
+  EXPECT_PRED2(has, said(grazing, m.residuals), "theta_i = 90 degrees");
   EXPECT_PRED2(has, message_of([] { standard_deviation({}, {{}, {radians(90), 0}}); }), "the noise is infinite");
   EXPECT_PRED2(has, message_of([] { weight({}, {{radians(90), 0}, {}}); }), "the weight is infinite");
   EXPECT_LT(weight({}, {{}, {radians(90), 0}}), 1e-16);  // infinite noise is weight 0
   EXPECT_PRED2(has, message_of([] { weight({0, 1, 1}, {}); }), "scale = 0");
-  const std::vector<Element> none{{0, 4}};
-  EXPECT_PRED2(has, message_of([&] { estimate_noise(m.samples, m.residuals, none); }), "element (0, 4)");
+  EXPECT_PRED2(has, message_of([] { standard_deviation({-1, 1, 1}, {}); }), "scale = -1");
+  EXPECT_PRED2(has, message_of([] {
+                 standard_deviation({std::numeric_limits<double>::infinity(), 1, 1}, {});
+               }),
+               "scale = inf");
+  for (const Element none : {Element{0, 4}, {4, 0}, {-1, 0}, {0, -1}}) {
+    const std::string name = "element (" + std::to_string(none.row) + ", " + std::to_string(none.column) + ")";
+    EXPECT_PRED2(has, message_of([&] { estimate_noise(m.samples, m.residuals, std::vector{none}); }), name.c_str());
+  }
 }
 
 // Two wavelengths, one noisier than the other. With the right weights the sum of squares is the number of rows, within
