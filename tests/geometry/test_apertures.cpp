@@ -222,13 +222,25 @@ TEST(Apertures, HavePortsInsideAndApart) {
     EXPECT_EQ(refusal(Aperture::ellipse(at(8, 180), radians(half), radians(9), 1), port), expected);
     EXPECT_EQ(refusal(Aperture::rectangle(at(8, 180), radians(9), radians(half), 1), port), expected);
   }
+  // Beside the axis in either direction, and far outside: half the aperture holds a cone, its edge and the other side do not.
+  for (const double turn : {0.0, 90.0})
+    for (const auto& shape : {&Aperture::rectangle, &Aperture::ellipse})
+      for (const double theta : {3.0, 13.0, 60.0}) {
+        const Aperture whole = shape(at(0, 0), radians(10), radians(10), radians(turn));
+        EXPECT_EQ(refusal(whole, Aperture::cone(at(theta, 0), radians(4))) == "nothing was thrown", theta == 3)
+            << theta;
+        EXPECT_EQ(refusal(whole, Aperture::cone(at(theta, 90), radians(4))) == "nothing was thrown", theta == 3)
+            << theta;
+      }
   EXPECT_EQ(refusal(Aperture::direction(at(8, 180)), port), name + "does not lie wholly inside the aperture");
   const Aperture pierced = Aperture::hemisphere().without(port);
   EXPECT_EQ(refusal(pierced, Aperture::cone(at(15.9, 180), radians(4))),
             "port about 15.9,180 with half-angle 4 degrees: overlaps another port");
   EXPECT_EQ(refusal(pierced, Aperture::cone(at(0, 0), radians(4))), "nothing was thrown");
   EXPECT_EQ(refusal(port, port), name + "leaves nothing of the aperture");
-  EXPECT_EQ(refusal(pierced, Aperture::cap(0.1)), "a port must be a circular cone without ports");
+  for (const Aperture& no_cone : {Aperture::cap(0.1), Aperture::annulus(at(30, 0), 0.01, 0.02),
+                                  Aperture::cone(at(30, 0), 0.1).without(Aperture::cone(at(30, 0), 0.05))})
+    EXPECT_EQ(refusal(pierced, no_cone), "a port must be a circular cone without ports");
 }
 
 }  // namespace

@@ -83,6 +83,8 @@ TEST(DirectionPairs, OfNoGridAreRefused) {
   EXPECT_EQ(message_of([] { DirectionPairs(std::vector<std::uint8_t>(5)); }),
             "5 bytes are no set of pairs of directions");
   EXPECT_THROW(DirectionPairs().merge(DirectionPairs(Grid::anisotropic)), std::invalid_argument);
+  EXPECT_EQ(message_of([] { DirectionPairs().keep(DirectionPairs(Grid::anisotropic)); }),
+            "sets of pairs of directions of different grids");
 }
 
 }  // namespace

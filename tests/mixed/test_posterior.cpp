@@ -36,6 +36,7 @@ Model fitted() {
 TEST(Posterior, RefusesWhatIsNone) {
   const PosteriorData sound = fitted().posterior->data();
   const float nan = std::numeric_limits<float>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
   const std::vector<std::function<void(PosteriorData&)>> faults = {
       [](PosteriorData& d) { d.wavelengths.clear(); },
       [](PosteriorData& d) { d.wavelengths.push_back(d.wavelengths[0]); },  // does not rise
@@ -55,6 +56,21 @@ TEST(Posterior, RefusesWhatIsNone) {
       [](PosteriorData& d) { d.readings[0][5].angles[0] = 3; },
       [](PosteriorData& d) { d.unread.set(0); },              // all of block 11
       [](PosteriorData& d) { d.unread = Elements(0x0116); },  // all of block 12, 13, 21, 31
+      [](PosteriorData& d) { d.not_measured.set(0); },
+      [infinite](PosteriorData& d) { d.errors[0].size = infinite; },
+      [infinite](PosteriorData& d) { d.wavelengths[0].wavelength = infinite; },
+      [](PosteriorData& d) { d.wavelengths[0].wavelength = 0; },
+      [nan](PosteriorData& d) { d.wavelengths[0].f11[3] = static_cast<double>(nan); },
+      [](PosteriorData& d) { d.wavelengths[0].law.incident_exponent = -10.1; },
+      [](PosteriorData& d) { d.wavelengths[0].law.reflected_exponent = 10.1; },
+      [infinite](PosteriorData& d) { d.wavelengths[0].blocks[2].noise_variance = infinite; },
+      [infinite](PosteriorData& d) { d.wavelengths[0].blocks[2].hyperparameters[0] = infinite; },
+      [nan](PosteriorData& d) { d.wavelengths[0].blocks[2].free_mean[0] = nan; },
+      [nan](PosteriorData& d) { d.wavelengths[0].blocks[2].shared[0] = nan; },
+      [](PosteriorData& d) { d.wavelengths[0].blocks[2].mean.pop_back(); },
+      [](PosteriorData& d) { d.wavelengths[0].blocks[2].free_mean.pop_back(); },
+      [](PosteriorData& d) { d.wavelengths[0].blocks[2].deviations.push_back(1); },
+      [](PosteriorData& d) { d.wavelengths[0].blocks[2].factor.push_back(1); },
   };
   EXPECT_NO_THROW(Posterior{sound});
   for (std::size_t f = 0; f < faults.size(); ++f) {

@@ -209,6 +209,10 @@ TEST(Comparison, RefusesWhatHasNoAnswer) {
   EXPECT_NE(message_of([&] { compare(model, huge); }).find("element 44"), std::string::npos);
   huge[1].normalized(3, 3) = std::numeric_limits<double>::infinity();
   EXPECT_NE(message_of([&] { compare(model, huge); }).find("sample 2: m44"), std::string::npos);
+  const std::vector<Sample> none, three = simulated(model, 3), two(three.begin(), three.end() - 1);
+  EXPECT_EQ(message_of([&] { compare(none, none); }), "no samples");
+  EXPECT_EQ(message_of([&] { compare(three, two); }), "samples to compare must be as many");
+  EXPECT_EQ(message_of([&] { compare(two, three); }), "samples to compare must be as many");
 }
 
 // Theory 2.3: neither model was fitted to the random directions. Printed digits.

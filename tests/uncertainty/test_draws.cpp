@@ -182,6 +182,7 @@ TEST(Draws, NeedACovarianceACountAndAWavelength) {
   EXPECT_EQ(message_of([&] { Draws{in_published_form(model)}; }), "the covariance of block 11 is not known");
   EXPECT_NO_THROW(require_semidefinite(in_published_form(model)));
   EXPECT_EQ(message_of([&] { Draws(model, 1); }), "count = 1, must be in 2...1000000");
+  EXPECT_EQ(message_of([&] { Draws(model, 1'000'001); }), "count = 1000001, must be in 2...1000000");
   EXPECT_THROW(Draws(model, 2).at(-1), std::invalid_argument);
   const PreparedModel prepared = prepare(model, 0.532);
   EXPECT_EQ(message_of([&] { prepared.with(std::array{1.0}, 1); }), "1 coefficients, expected 142");

@@ -76,6 +76,8 @@ TEST(ExpandedUncertainty, OfABudgetHasItsTerms) {
 
 TEST(ExpandedUncertainty, RefusesWhatMakesNoSense) {
   EXPECT_EQ(message_of([] { expanded({{"arm", -1}}); }), "uncertainty -1 of arm, must be 0 or more and finite");
+  EXPECT_EQ(message_of([] { expanded({{"arm", INFINITY}}); }), "uncertainty inf of arm, must be 0 or more and finite");
+  EXPECT_EQ(message_of([] { expanded({{"arm", NAN}}); }), "uncertainty nan of arm, must be 0 or more and finite");
   EXPECT_EQ(message_of([] { expanded({{"arm", 1, 0.5}}); }), "0.5 degrees of freedom of arm: must be 1 or more");
   EXPECT_THROW(coverage_factor(0), std::invalid_argument);
 }
