@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "mmbrdf/model/batch.hpp"
@@ -26,24 +29,25 @@ class BatchQuestion {
     convert(Evaluation::model(prepared));
   }
 
-  /// At the wavelengths of the options, if there are any.
+  /// At the wavelengths of the options, if there are any. What is of one is folded once, with the same bits; not so in single
+  /// precision, where a point would have others than among points of other wavelengths.
   BatchQuestion(const PreparedModel& prepared, std::size_t count, const BatchOptions& options)
       : frame(options.frame), unknown(Evaluation::pattern(prepared).unknown), wavelengths(options.wavelengths) {
-    KernelModel<double> asked = Evaluation::model(prepared);
     if (wavelengths.empty()) {
-      convert(asked);
+      convert(Evaluation::model(prepared));
       return;
     }
     if (count != wavelengths.size())
       throw std::invalid_argument(std::to_string(count) + " geometries, " + std::to_string(wavelengths.size()) +
                                   " wavelengths");
     for (const double wavelength : wavelengths) require_wavelength(wavelength);
-    const PreparedPattern& pattern = Evaluation::pattern(prepared);
-    reflectance = &pattern.reflectance;
-    require_finite_sums(pattern.form_by_powers, static_cast<std::size_t>(pattern.powers) + 1);
-    asked.powers = pattern.powers;
-    asked.coefficients = pattern.form_by_powers.data();
-    convert(asked);
+    const bool are_one = std::ranges::adjacent_find(wavelengths, std::ranges::not_equal_to()) == wavelengths.end();
+    if (std::is_same_v<T, double> && are_one) {
+      folded_ = prepared.at(std::exchange(wavelengths, {}).front());
+      convert(Evaluation::model(*folded_));
+    } else {
+      convert_all_powers(prepared);
+    }
   }
   /// The same at the wavelength of point q alone.
   BatchQuestion(const BatchQuestion& all, std::size_t q)
@@ -64,7 +68,6 @@ class BatchQuestion {
  private:
   /// At each of the wavelengths: `all` has the coefficients of λ⁰, then those of λ¹, …
   void require_finite_sums(std::span<const double> all, std::size_t powers) const {
-    if (wavelengths.empty()) return;
     const double longest = *std::max_element(wavelengths.begin(), wavelengths.end());
     const std::size_t count = all.size() / powers;
     double largest = 0;
@@ -76,6 +79,16 @@ class BatchQuestion {
     for (const double value : reflectance->values) largest = std::max(largest, std::abs(value));
     if (!(largest <= static_cast<double>(std::numeric_limits<T>::max())))
       throw std::invalid_argument("wavelength " + shortest(in_nanometres(longest)) + " nm: its powers are too large");
+  }
+
+  void convert_all_powers(const PreparedModel& prepared) {
+    const PreparedPattern& pattern = Evaluation::pattern(prepared);
+    reflectance = &pattern.reflectance;
+    require_finite_sums(pattern.form_by_powers, static_cast<std::size_t>(pattern.powers) + 1);
+    KernelModel<double> asked = Evaluation::model(prepared);
+    asked.powers = pattern.powers;
+    asked.coefficients = pattern.form_by_powers.data();
+    convert(asked);
   }
 
   void convert(const KernelModel<double>& from) {
@@ -102,6 +115,7 @@ class BatchQuestion {
     }
   }
   std::vector<T> own_;
+  std::optional<PreparedModel> folded_;
 };
 
 }  // namespace mmbrdf

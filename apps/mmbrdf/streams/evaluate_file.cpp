@@ -176,7 +176,8 @@ class RowsEvaluator {
     std::size_t row = 0;
     try {
       for (; row < rows.size(); ++row) require_wavelength(rows.wavelengths[row]);
-      evaluate(rows);
+      matrices_.resize(rows.size());
+      evaluate(prepared_, rows.geometries, matrices_, {.frame = frame_, .wavelengths = rows.wavelengths});
       for (row = 0; row < rows.size(); ++row) {
         if (normalized_) matrices_[row] = normalized_beside_f11(matrices_[row]);
         const Outside here = outside(validity_, rows.wavelengths[row], rows.geometries[row]);
@@ -191,17 +192,6 @@ class RowsEvaluator {
   }
 
  private:
-  /// What is of one wavelength is folded once.
-  void evaluate(const Rows& rows) {
-    BatchOptions options{.frame = frame_};
-    if (end_of_wavelength(rows, 0) < rows.size())
-      options.wavelengths = rows.wavelengths;
-    else if (prepared_.wavelength() != rows.wavelengths[0])
-      prepared_ = prepared_.at(rows.wavelengths[0]);
-    matrices_.resize(rows.size());
-    mmbrdf::evaluate(prepared_, rows.geometries, matrices_, options);
-  }
-
   static void append_row(std::string_view text, const Mueller& f, const Outside& outside, std::string& out) {
     out += text;
     append_elements(out, f);
