@@ -84,7 +84,7 @@ class Question {
   void each(int threads, std::size_t least, Make make, Use use) const {
     if (broadcast_.size() == 0) return;
     if (one_wavelength_) {
-      const auto prepared = make(micrometres(broadcast_.number(0, 0)));
+      const auto prepared = make(valid_micrometres(broadcast_.number(0, 0)));
       in_parts(broadcast_.size(), threads, least,
                [&](std::size_t begin, std::size_t end) { run(begin, end, nullptr, prepared, use); });
       return;
@@ -125,13 +125,19 @@ class Question {
  private:
   static constexpr std::size_t most = 512;  // geometries and matrices stay in the first-level cache, or nearly
 
+  static double valid_micrometres(double nanometres) {
+    const double result = micrometres(nanometres);
+    require_wavelength(result);
+    return result;
+  }
+
   /// Micrometres, at each position.
   std::vector<double> all_wavelengths() const {
     std::vector<double> wavelengths(broadcast_.size());
     broadcast_.gather(0, 0, wavelengths.size(), wavelengths.data());
     for (std::size_t i = 0; i < wavelengths.size(); ++i) {
       try {
-        wavelengths[i] = micrometres(wavelengths[i]);
+        wavelengths[i] = valid_micrometres(wavelengths[i]);
       } catch (const std::invalid_argument& error) {
         throw broadcast_.at_place(error, i);
       }

@@ -96,7 +96,7 @@ def _is_valid(name: str, array: np.ndarray) -> np.ndarray:
     if name == "mueller":  # of which nan is what was not measured
         return np.ones(array.shape[:-2], bool)
     if name == "wavelength_nm":
-        return np.isfinite(array) & (array > 0)
+        return (array > 0) & (array <= 1e9)  # a metre
     with np.errstate(invalid="ignore"):
         return np.isfinite(array) & ((np.abs(array) <= 90) | (not name.startswith("theta")))
 

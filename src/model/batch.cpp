@@ -8,10 +8,9 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
-#include <vector>
 
+#include "model/batch_question.hpp"
 #include "model/kernel/kernels.hpp"
-#include "model/kernel/plan.hpp"
 #include "numerics/threads.hpp"
 #include "text/numbers.hpp"
 
@@ -68,99 +67,10 @@ Vector3 vector(const UnitVectors<T>& vectors, std::size_t q) {
   return {vectors.x[q], vectors.y[q], vectors.z[q]};
 }
 
-// ---- coefficients ---------------------------------------------------------------------------------------------------
-
-/// A model with its coefficients in the precision asked for, in the frame of the options.
-template <class T>
-class Question {
- public:
-  Question(const PreparedIncidence& prepared, Frame asked)
-      : frame(asked), unknown(Evaluation::pattern(prepared).unknown) {
-    convert(Evaluation::model(prepared));
-  }
-
-  /// At the wavelengths of the options, if there are any.
-  Question(const PreparedModel& prepared, std::size_t count, const BatchOptions& options)
-      : frame(options.frame), unknown(Evaluation::pattern(prepared).unknown), wavelengths(options.wavelengths) {
-    KernelModel<double> asked = Evaluation::model(prepared);
-    if (wavelengths.empty()) {
-      convert(asked);
-      return;
-    }
-    if (count != wavelengths.size())
-      throw std::invalid_argument(std::to_string(count) + " geometries, " + std::to_string(wavelengths.size()) +
-                                  " wavelengths");
-    for (const double wavelength : wavelengths) require_wavelength(wavelength);
-    const PreparedPattern& pattern = Evaluation::pattern(prepared);
-    reflectance = &pattern.reflectance;
-    require_finite_sums(pattern.form_by_powers, static_cast<std::size_t>(pattern.powers) + 1);
-    asked.powers = pattern.powers;
-    asked.coefficients = pattern.form_by_powers.data();
-    convert(asked);
-  }
-  /// The same at the wavelength of point q alone.
-  Question(const Question& all, std::size_t q)
-      : model(all.model),
-        frame(all.frame),
-        unknown(all.unknown),
-        wavelengths(all.reflectance ? all.wavelengths.subspan(q, 1) : all.wavelengths),
-        reflectance(all.reflectance) {}
-  Question(const Question&) = delete;
-  Question& operator=(const Question&) = delete;
-
-  KernelModel<T> model{};
-  Frame frame;
-  Elements unknown;  // in the frame xy
-  std::span<const double> wavelengths;
-  const ReflectanceTable* reflectance = nullptr;
-
- private:
-  /// At each of the wavelengths: `all` has the coefficients of λ⁰, then those of λ¹, …
-  void require_finite_sums(std::span<const double> all, std::size_t powers) const {
-    if (wavelengths.empty()) return;
-    const double longest = *std::max_element(wavelengths.begin(), wavelengths.end());
-    const std::size_t count = all.size() / powers;
-    double largest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      double sum = 0, power = 1;
-      for (std::size_t p = 0; p < powers; ++p, power *= longest) sum += std::abs(all[p * count + i]) * power;
-      largest = std::max(largest, sum);
-    }
-    for (const double value : reflectance->values) largest = std::max(largest, std::abs(value));
-    if (!(largest <= static_cast<double>(std::numeric_limits<T>::max())))
-      throw std::invalid_argument("wavelength " + shortest(in_nanometres(longest)) + " nm: its powers are too large");
-  }
-
-  void convert(const KernelModel<double>& from) {
-    model = {from.form,
-             from.projected,
-             from.turned,
-             kernel_frame(frame),
-             {static_cast<T>(from.turned_by[0]), static_cast<T>(from.turned_by[1])},
-             {},
-             from.list,
-             nullptr,
-             from.powers,
-             from.count,
-             static_cast<T>(from.scale)};
-    for (std::size_t j = 0; j < 5; ++j) model.incident[j] = static_cast<T>(from.incident[j]);
-    if constexpr (std::is_same_v<T, double>) {
-      model.coefficients = from.coefficients;
-    } else {
-      own_.resize(static_cast<std::size_t>((from.powers + 1) * from.count));
-      for (std::size_t i = 0; i < own_.size(); ++i) own_[i] = static_cast<T>(from.coefficients[i]);
-      if (!std::all_of(own_.begin(), own_.end(), [](T a) { return std::isfinite(a); }) || !std::isfinite(model.scale))
-        throw std::invalid_argument("a coefficient is too large for single precision");
-      model.coefficients = own_.data();
-    }
-  }
-  std::vector<T> own_;
-};
-
 // ---- evaluation -----------------------------------------------------------------------------------------------------
 
 template <class T>
-void run_kernel(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+void run_kernel(const BatchQuestion<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
                 std::size_t count) {
   if constexpr (std::is_same_v<T, double>)
     best_kernel().evaluate(question.model, points, out, count);
@@ -171,7 +81,7 @@ void run_kernel(const Question<T>& question, const KernelPoints<T>& points, cons
 /// What was not measured, and what the frame mixes it with. Axes that are turned by a multiple of a right angle mix nothing,
 /// so where not all of a group is unknown it takes the geometry to tell.
 template <class T, class GeometryOf>
-void set_unknown(const Question<T>& question, const KernelMatrices<T>& out, std::size_t first, std::size_t count,
+void set_unknown(const BatchQuestion<T>& question, const KernelMatrices<T>& out, std::size_t first, std::size_t count,
                  GeometryOf geometry) {
   if (question.unknown.none()) return;
   const bool same_for_all = question.frame == Frame::xy || turned_into(question.unknown) == question.unknown;
@@ -207,7 +117,7 @@ KernelMatrices<T> rows(T* values) {
 
 /// With wavelengths of their own: some points at a time.
 template <class T>
-void run_in_blocks(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+void run_in_blocks(const BatchQuestion<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
                    std::size_t first, std::size_t count) {
   constexpr std::size_t size = 64;
   T wavelengths[size], scales[size];
@@ -225,8 +135,8 @@ void run_in_blocks(const Question<T>& question, const KernelPoints<T>& points, c
 }
 
 template <class T>
-void run(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out, std::size_t first,
-         std::size_t count) {
+void run(const BatchQuestion<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+         std::size_t first, std::size_t count) {
   if (question.reflectance)
     run_in_blocks(question, points, out, first, count);
   else
@@ -235,8 +145,8 @@ void run(const Question<T>& question, const KernelPoints<T>& points, const Kerne
 
 /// again(first, count) does some of the points again; geometry(q) is asked for where elements are unknown only.
 template <class T, class Again, class GeometryOf>
-void run(const Question<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out, std::size_t count,
-         int threads, Again again, GeometryOf geometry) {
+void run(const BatchQuestion<T>& question, const KernelPoints<T>& points, const KernelMatrices<T>& out,
+         std::size_t count, int threads, Again again, GeometryOf geometry) {
   in_parts(count, threads, [&](std::size_t first, std::size_t part) {
     run(question, points, out, first, part);
     again(first, part);
@@ -264,15 +174,15 @@ KernelPoints<double> points_of(const Geometry& first) {
 
 /// Those with large azimuths are done again, one by one.
 template <class Angles, class GeometryOf>
-void run_angles(const Question<double>& question, std::span<const Angles> angles, std::span<Mueller> out, int threads,
-                GeometryOf geometry) {
+void run_angles(const BatchQuestion<double>& question, std::span<const Angles> angles, std::span<Mueller> out,
+                int threads, GeometryOf geometry) {
   if (angles.empty()) return;
   const KernelMatrices<double> matrices = rows(out[0].elements.data());
   const auto again = [&](std::size_t first, std::size_t count) {
     for (std::size_t q = first; q < first + count; ++q) {
       const Angles near = reduced(angles[q]);
       if (near == angles[q]) continue;
-      run(Question<double>(question, q), points_of(near), from(matrices, q), 0, 1);
+      run(BatchQuestion<double>(question, q), points_of(near), from(matrices, q), 0, 1);
     }
   };
   run(question, points_of(angles[0]), matrices, out.size(), threads, again, geometry);
@@ -300,7 +210,7 @@ void run_vectors(const PreparedModel& model, const VectorGeometries<T>& geometri
   if (r.x.size() != count)
     throw std::invalid_argument(std::to_string(count) + " incident and " + std::to_string(r.x.size()) +
                                 " reflected vectors");
-  const Question<T> question(model, count, options);
+  const BatchQuestion<T> question(model, count, options);
   const KernelPoints<T> points{
       false, {i.x.data(), i.y.data(), i.z.data(), r.x.data(), r.y.data(), r.z.data()}, 1, nullptr, nullptr};
   run(
@@ -315,7 +225,7 @@ void run_vectors(const PreparedIncidence& model, const UnitVectors<T>& reflected
                  const BatchOptions& options) {
   if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, "reflected", options.threads);
-  const Question<T> question(model, options.frame);
+  const BatchQuestion<T> question(model, options.frame);
   const KernelPoints<T> points{
       false, {reflected.x.data(), reflected.y.data(), reflected.z.data()}, 1, nullptr, nullptr};
   run(
@@ -333,7 +243,7 @@ void evaluate(const PreparedModel& model, std::span<const Geometry> geometries, 
               const BatchOptions& options) {
   require_size(geometries.size(), "geometries", out.size());
   require_valid(geometries, options.threads);
-  run_angles(Question<double>(model, out.size(), options), geometries, out, options.threads,
+  run_angles(BatchQuestion<double>(model, out.size(), options), geometries, out, options.threads,
              [&](std::size_t q) { return geometries[q]; });
 }
 
@@ -370,7 +280,7 @@ void evaluate(const PreparedIncidence& model, std::span<const Direction> reflect
   require_size(reflected.size(), "directions", out.size());
   if (!options.wavelengths.empty()) throw std::invalid_argument("wavelengths for one incident direction");
   require_valid(reflected, options.threads);
-  run_angles(Question<double>(model, options.frame), reflected, out, options.threads, [&](std::size_t q) {
+  run_angles(BatchQuestion<double>(model, options.frame), reflected, out, options.threads, [&](std::size_t q) {
     return Geometry{model.incident(), reflected[q]};
   });
 }

@@ -154,7 +154,7 @@ def test_one_light_for_all_is_left_as_it_is(ptfe):
     dhr = mmbrdf.directional_hemispherical_reflectance
     assert dhr(ptfe, 532, [8, np.nan], stokes=[1, 1, 0, 0], invalid="nan")[0] == dhr(ptfe, 532, 8, stokes=[1, 1, 0, 0])
     assert np.isnan(dhr(ptfe, 532, [8, 9], stokes=[1, np.nan, 0, 0], invalid="nan")).all()
-    assert np.isnan(dhr(ptfe, [532, -1], 8, invalid="nan")).tolist() == [False, True]
+    assert np.isnan(dhr(ptfe, [532, -1, np.inf, 1.1e9], 8, invalid="nan")).tolist() == [False, True, True, True]
 
 
 def test_masked_arrays_are_nan_if_that_is_asked_for(ptfe):

@@ -133,6 +133,10 @@ def test_invalid_angles_are_named_with_their_place(ptfe):
         ptfe.evaluate(532, angles, 0, 30, 180)
     with pytest.raises(ValueError, match=r"phi_r_deg is not finite, at \[0\]"):
         ptfe.evaluate(532, 30, 0, 30, [np.nan, 0])
+    with pytest.raises(ValueError, match=r"wavelength 1e\+10 nm is more than a metre, at \[0, 1\]"):
+        ptfe.evaluate([[532, 1e10]], [[30], [40]], 0, 30, 180)
+    with pytest.raises(ValueError, match="1e\\+10 nm is more than a metre"):
+        ptfe.outside(1e10, 30, 0, 30, 180)
     with pytest.raises(ValueError, match=r"wavelength_nm = -1.*at \[1\]"):
         ptfe.evaluate([532, -1], 30, 0, 30, 0)
 

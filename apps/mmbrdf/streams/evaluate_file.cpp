@@ -175,14 +175,14 @@ class RowsEvaluator {
     out.reserve(rows.size() * (binary_ ? 16 * sizeof(double) : 420));
     std::size_t row = 0;
     try {
-      for (; row < rows.size(); ++row) require_wavelength(rows.wavelengths[row]);
-      evaluate(rows);
-      for (row = 0; row < rows.size(); ++row) {
+      evaluate_valid(rows);
+      for (; row < matrices_.size(); ++row) {
         if (normalized_) matrices_[row] = normalized_beside_f11(matrices_[row]);
         const Outside here = outside(validity_, rows.wavelengths[row], rows.geometries[row]);
         range.add(here);
         if (!binary_) append_row(rows.text(row), matrices_[row], here, out);
       }
+      if (row < rows.size()) require_wavelength(rows.wavelengths[row]);
     } catch (const std::invalid_argument& error) {
       throw source.error(rows.numbers[row], error.what());
     }
@@ -191,15 +191,14 @@ class RowsEvaluator {
   }
 
  private:
-  /// What is of one wavelength is folded once.
-  void evaluate(const Rows& rows) {
-    BatchOptions options{.frame = frame_};
-    if (end_of_wavelength(rows, 0) < rows.size())
-      options.wavelengths = rows.wavelengths;
-    else if (prepared_.wavelength() != rows.wavelengths[0])
-      prepared_ = prepared_.at(rows.wavelengths[0]);
-    matrices_.resize(rows.size());
-    mmbrdf::evaluate(prepared_, rows.geometries, matrices_, options);
+  /// Up to the first wavelength that none can be: something may be wrong with a row before it.
+  void evaluate_valid(const Rows& rows) {
+    const std::span<const double> all = rows.wavelengths;
+    const auto wrong = std::ranges::find_if(all, [](double wavelength) { return wavelength > max_wavelength; });
+    const std::span<const double> valid(all.begin(), wrong);
+    matrices_.resize(valid.size());
+    evaluate(prepared_, std::span(rows.geometries).first(valid.size()), matrices_,
+             {.frame = frame_, .wavelengths = valid});
   }
 
   static void append_row(std::string_view text, const Mueller& f, const Outside& outside, std::string& out) {
