@@ -140,6 +140,15 @@ TEST(Alta, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal(head("CARTESIAN", 4)), {"#DIM says 4 coordinates, but CARTESIAN has 6"}));
   EXPECT_TRUE(says(refusal(head("CARTESIAN", 6, "ENERGY")), {"x:6: #PARAM_OUT ENERGY: is no BRDF"}));
   EXPECT_TRUE(says(refusal("#DIM 4 9999\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n"), {"#DIM says 9999 values a row"}));
+  const std::string directions = "#PARAM_IN SPHERICAL_TL_PL_TV_PV\n";
+  for (const std::string count : {"0", "1001"})
+    EXPECT_TRUE(says(refusal("#DIM 4 1\n#DIM 4 " + count + "\n" + directions + "0.1 0 0.2 0 0.3\n"),
+                     {"x:4: #DIM says " + count + " values a row, must be 1 to 1000"}));
+  EXPECT_TRUE(says(refusal("#DIM 4 1\n#DIM 4 1 1\n" + directions + "0.1 0 0.2 0 0.3\n"),
+                   {"x:4: the header has no line #DIM with two numbers: cut off?"}));
+  EXPECT_TRUE(says(refusal("#DIM 4 1\n#PARAM_IN_\n0.1 0 0.2 0 0.3\n"), {"in no format of measurements"}));
+  EXPECT_TRUE(says(refusal("#DIM 4 1\n#VS 0 3\n" + directions), {"x:2: #VS: 3 is none of 0, 1, 2"}));
+  EXPECT_TRUE(says(refusal(head("CARTESIAN", 6) + "0 0 1 0 0 1.1 0.3\n"), {"x:7: coordinate 6: 1.1 of a unit vector"}));
   EXPECT_TRUE(says(refusal("#DIM 4 1\n#FORMAT binary\n#PARAM_IN CARTESIAN\n"), {"x:2: #FORMAT binary"}));
   EXPECT_TRUE(says(refusal("#DIM 4 1\n0.1\n#PARAM_IN CARTESIAN\n"), {"in no format of measurements"}));
   put(path, good + "0.1 0 0.2 0 0.3\n");

@@ -121,6 +121,18 @@ TEST(Astm, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(foreign_refusal(path, {0.633}), {"NUM_POINTS is 99999999999999, but there are 1 rows"}));
   put(path, "NUM_POINTS 1\nVARS theta_i,phi_i,phi_s,BRDF\n0,0,0,1\n");
   EXPECT_TRUE(says(foreign_refusal(path, {0.633}), {"x:2: VARS has no column theta_s"}));
+  for (const auto& [names, message] : {std::pair{"theta_s,phi_s,BRDF", "x:2: VARS has no column theta_i"},
+                                       {"theta_i,theta_s,BRDF", "x:2: VARS has no column phi_s"},
+                                       {"theta_i,theta_s,phi_s", "x:2: VARS has no column of values behind the angles"},
+                                       {"theta_i,theta_s,phi_s,450nm,red",
+                                        "x:2: only some of the columns 450nm, red have a wavelength, as in 532nm"}}) {
+    put(path, "NUM_POINTS 1\nVARS " + std::string(names) + "\n0,0,0,1\n");
+    EXPECT_TRUE(says(foreign_refusal(path, {0.633}), {message}));
+  }
+  put(path, "NUM_POINTS 1\nVARS theta_i,theta_s,phi_s,5nm\n0,0,0,1\n");
+  EXPECT_TRUE(says(foreign_refusal(path), {"x: column 5nm: 5 nm is no wavelength"}));
+  put(path, "NUM_POINTS 1\n0,0,0,1\n");
+  EXPECT_TRUE(says(foreign_refusal(path, {0.633}), {"the header ends without VARS: cut off?"}));
 }
 
 TEST(Astm, IsNoTableOfSamplesAndSaysHowToMakeOne) {

@@ -192,6 +192,29 @@ TEST(Bird, KnowsNoUncertaintyWhereThatOfOneStateIsNotKnown) {
   for (const double one : unknown.uncertainty.elements) EXPECT_EQ(one, 0);
 }
 
+TEST(Bird, HasAnglesInRadiansAndWavelengthsInMicrometres) {
+  const Folder folder;
+  Columns c;
+  c.directions(0.5, 0.25, 1, 3);
+  c.brdf = {"0.3"};
+  c.nm = {"0.55"};
+  std::string text = file(c);
+  const std::string nm = "\"unit\": \"nm\"";
+  for (const std::string unit : {"\"deg\"", "\"°\"", "\"deg\"", "\"deg\""})
+    text.replace(text.find(unit), unit.size(), "\"rad\"");
+  for (const std::string micrometre : {"μm", "µm", "um"}) {
+    std::string one = text;
+    put(folder / "x", one.replace(one.find(nm), nm.size(), "\"unit\": \"" + micrometre + "\""));
+    const ForeignRead read = read_foreign_file(folder / "x");
+    ASSERT_EQ(read.samples.size(), 1U);
+    EXPECT_EQ(read.samples[0].wavelength, 0.55);
+    EXPECT_EQ(read.samples[0].geometry.incident.theta, 0.5);
+    EXPECT_EQ(read.samples[0].geometry.incident.phi, 0.25);
+    EXPECT_EQ(read.samples[0].geometry.reflected.theta, 1);
+    EXPECT_EQ(read.samples[0].geometry.reflected.phi, 3);
+  }
+}
+
 TEST(Bird, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   const Folder folder;
   const std::string path = folder / "x";
@@ -212,6 +235,40 @@ TEST(Bird, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal([](Columns& c) { c.u[0] = "-1"; }), {"data.uBRDF: value 1 is negative"}));
   EXPECT_TRUE(says(refusal([](Columns& c) { c.pol_i.assign(36, "\"x\""); }),
                    {"data.polarization_i: value 1: \"x\" is none of s, p, u"}));
+  EXPECT_TRUE(
+      says(refusal([](Columns& c) { c.phi_i[4] = "-1"; }), {"data.phi_i: value 5: -1 degrees, must be in [0, 360]"}));
+  const auto replaced = [&](const std::string& what, const std::string& by) {
+    std::string text = file(unpolarized());
+    put(path, text.replace(text.find(what), what.size(), by));
+    return foreign_refusal(path);
+  };
+  const std::string angle = "\"theta_r\": {\"unit\": \"deg\"", nm = "\"unit\": \"nm\"";
+  EXPECT_TRUE(
+      says(replaced(angle, "\"theta_r\": {\"unit\": \"grad\""), {"data.theta_r: unit 'grad' is none of deg, °, rad"}));
+  EXPECT_TRUE(says(replaced(angle, "\"theta_r\": {\"unit\": 1"), {"data.theta_r: unit '' is none of deg, °, rad"}));
+  EXPECT_TRUE(says(replaced("\"theta_r\"", "\"theta_s\""), {"data.theta_r: missing, or without a list of values"}));
+  EXPECT_TRUE(says(replaced(angle + ", \"values\": [", angle + ", \"values\": 1, \"other\": ["),
+                   {"data.theta_r: missing, or without a list of values"}));
+  EXPECT_TRUE(says(replaced(nm, "\"unit\": \"mm\""), {"data.wavelength_i: unit 'mm' is none of nm, μm"}));
+  EXPECT_TRUE(
+      says(replaced("\"unit\": \"%\"", "\"unit\": \"nm\""), {"data.uBRDF: unit 'nm' is none of 1/sr, sr^-1, sr-1, %"}));
+  EXPECT_TRUE(says(replaced("\"wavelength_i\"", "\"wavelength_r\": {\"unit\": \"um\", \"values\": " +
+                                                    list(repeated("0.56", 36)) + "}, \"wavelength_i\""),
+                   {"data.wavelength_r: value 1: 560 nm is not that of the incident light: fluorescence"}));
+  const auto polarized_refusal = [&](const std::string& state, const std::string& notation, bool incident) {
+    Columns c = unpolarized();
+    (incident ? c.pol_i : c.pol_r) = repeated(state, 36);
+    put(path, file(c, notation));
+    return foreign_refusal(path);
+  };
+  EXPECT_TRUE(
+      says(polarized_refusal("\"s\"", "letters", true), {"data.polarization_i: notation is neither sp nor inStokes"}));
+  EXPECT_TRUE(says(polarized_refusal("[1, 0.5, 0, 0]", "inStokes", false),
+                   {"data.polarization_r: value 1: a partial polarization of 0.5 is no analyzer; 0 or 1 are"}));
+  for (const std::string state : {"[1, 0, 0]", "[2, 0, 0, 0]", "[1, 1, 1, 0]", "\"s\"", "[1, \"s\", 0, 0]"})
+    EXPECT_TRUE(says(polarized_refusal(state, "inStokes", true),
+                     {"data.polarization_i: value 1: ", " is no Stokes vector [1, s1, s2, s3]"}))
+        << state;
   const std::string whole = file(unpolarized());
   const auto with_unit = [&](const std::string& unit) {
     std::string text = whole;

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -196,6 +198,45 @@ TEST(Netcdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
                      v[5].values.resize(48);
                    }),
                    {"the last two axes must be row, column"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].attributes.erase("convention"); }), {"brdf: no attribute convention"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[5].attributes["convention"] = "mine: other"; }), {"brdf: ", "'mine'"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[4].attributes["units"] = "um"; }),
+                   {"wavelength_nm: units 'um' contradict the name"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[2].name = "phi"; }), {"x: no variable phi_r_deg"}));
+  EXPECT_TRUE(says(refusal([](auto& v) { v[0].name = "theta"; }), {"x: no variable theta_i_deg"}));
+  const auto with_uncertainty = [&](const std::vector<std::string>& axes, double value) {
+    return refusal([&](std::vector<Variable>& v) {
+      Variable u = v[5];
+      u.name = "uncertainty";
+      u.axes = axes;
+      u.values.assign(axes.empty() ? 1 : u.values.size(), value);
+      v.push_back(u);
+    });
+  };
+  EXPECT_TRUE(says(with_uncertainty({}, 0.1), {"variable uncertainty: its axes are not those of brdf"}));
+  EXPECT_TRUE(says(with_uncertainty(grid(model, Frame::xy, "germer2017")[5].axes, -0.25),
+                   {"variable uncertainty: -0.25 is none"}));
+  EXPECT_TRUE(says(with_uncertainty(grid(model, Frame::xy, "germer2017")[5].axes, HUGE_VAL),
+                   {"variable uncertainty: inf is none"}));
+  std::map<std::string, std::size_t> wide = grid_axes;
+  wide["column"] = 3;
+  std::vector<Variable> narrower = grid(model, Frame::xy, "germer2017");
+  narrower[5].values.resize(48 * 12);
+  write(path, wide, narrower, 0);
+  EXPECT_TRUE(says(foreign_refusal(path), {"variable brdf: row and column must be of length 4"}));
+  wide = grid_axes;
+  wide["other"] = 3;
+  std::vector<Variable> elsewhere = grid(model, Frame::xy, "germer2017");
+  elsewhere[0].axes = {"other"};
+  write(path, wide, elsewhere, 0);
+  EXPECT_TRUE(says(foreign_refusal(path), {"variable theta_i_deg: axis other is none of brdf"}));
+  wide = grid_axes;
+  wide["theta_i_deg"] = NC_UNLIMITED;
+  std::vector<Variable> none = grid(model, Frame::xy, "germer2017");
+  none[0].values.clear();
+  none[5].values.clear();
+  write(path, wide, none, 0);
+  EXPECT_TRUE(says(foreign_refusal(path), {"variable brdf: axis theta_i_deg is empty"}));
   write(path, {{"sample", std::size_t(1) << 40}}, {{"brdf", {"sample"}, {}, {{"units", "1/sr"}}}}, NC_NETCDF4);
   EXPECT_TRUE(says(foreign_refusal(path, {0.5}), {"numbers are more than a file of"}));
 }
@@ -229,6 +270,98 @@ TEST(Netcdf, TakesMissingValuesAndDefaultFillsOfItsTypeForNoValues) {
   EXPECT_EQ(typed(folder, NC_INT, {1, 2, -1, NC_FILL_INT}, {-1}).size(), 2U);
   EXPECT_EQ(typed(folder, NC_UINT, {1, 2, 3, NC_FILL_UINT}, {}).size(), 3U);
   EXPECT_EQ(typed(folder, NC_UBYTE, {1, 2, 3, NC_FILL_UBYTE}, {}).size(), 4U);
+}
+
+/// What a variable brdf of this type is refused for, after what is done to it while it is defined.
+std::string refused_variable(const Folder& folder, nc_type type, const std::function<void(int file, int id)>& change) {
+  int file = 0, axis = 0, id = 0;
+  EXPECT_EQ(nc_create((folder / "x").c_str(), NC_CLOBBER | NC_NETCDF4, &file), NC_NOERR);
+  nc_def_dim(file, "sample", 2, &axis);
+  nc_def_var(file, "brdf", type, 1, &axis, &id);
+  change(file, id);
+  EXPECT_EQ(nc_close(file), NC_NOERR);
+  return foreign_refusal(folder / "x", {0.5});
+}
+
+TEST(Netcdf, IsRefusedIfAVariableHoldsTextOrPackedNumbersOrHasNumbersForTexts) {
+  const Folder folder;
+  const auto nothing = [](int, int) {};
+  EXPECT_TRUE(says(refused_variable(folder, NC_CHAR, nothing), {"x: variable brdf: holds no numbers"}));
+  EXPECT_TRUE(says(refused_variable(folder, NC_STRING, nothing), {"x: variable brdf: holds no numbers"}));
+  for (const std::string packed : {"scale_factor", "add_offset"}) {
+    const double factor = 2;
+    EXPECT_TRUE(says(
+        refused_variable(folder, NC_SHORT,
+                         [&](int file, int id) { nc_put_att_double(file, id, packed.c_str(), NC_DOUBLE, 1, &factor); }),
+        {"x: variable brdf: " + packed + ": packed numbers cannot be read; write them unpacked"}));
+  }
+  const double number = 1;
+  EXPECT_TRUE(
+      says(refused_variable(folder, NC_DOUBLE,
+                            [&](int file, int id) { nc_put_att_double(file, id, "units", NC_DOUBLE, 1, &number); }),
+           {"x: variable brdf: attribute units is no text"}));
+  const std::vector<double> many(1001, 1.0);
+  EXPECT_TRUE(says(refused_variable(folder, NC_DOUBLE,
+                                    [&](int file, int id) {
+                                      nc_put_att_double(file, id, "missing_value", NC_DOUBLE, many.size(), many.data());
+                                    }),
+                   {"x: variable brdf: missing_value has 1001 values"}));
+}
+
+TEST(Netcdf, TakesAnAttributeOfTheNewTypeOfTextsToo) {
+  const Folder folder;
+  for (const auto& [unit, message] : {std::pair{"sr-1", "no variable theta_i_deg"}, {"lx", "units 'lx' are none of"}})
+    EXPECT_TRUE(says(refused_variable(folder, NC_DOUBLE,
+                                      [&](int file, int id) {
+                                        const char* text = unit;
+                                        nc_put_att_string(file, id, "units", 1, &text);
+                                      }),
+                     {message}));
+}
+
+/// A classic header of these parts: numbers are of four bytes, the highest first.
+std::string big(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift & 0xffU));
+  return bytes;
+}
+std::string entries(std::uint32_t tag, std::uint32_t count) { return big(tag) + big(count); }
+std::string called(const std::string& name) {
+  return big(static_cast<std::uint32_t>(name.size())) + name + std::string((4 - name.size() % 4) % 4, '\0');
+}
+
+TEST(Netcdf, SaysWhatIsWrongInAClassicHeader) {
+  const Folder folder;
+  const auto refusal = [&](const std::string& behind_the_records) {
+    put(folder / "x", std::string("CDF\1", 4) + big(0) + behind_the_records);
+    return foreign_refusal(folder / "x");
+  };
+  const std::string no_attributes = entries(0, 0), two = entries(10, 2) + called("a") + big(0) + called("b") + big(4);
+  const std::string variables = two + no_attributes + entries(11, 1) + called("v");
+  constexpr std::uint32_t doubles = 6;
+  for (const auto& [header, message] :
+       {std::pair{entries(12, 1), "tag 12 in place of 10, a list of dimensions"},
+        {entries(0, 1), "tag 0 in place of 10, a list of dimensions"},
+        {entries(10, 1025), "1025 dimensions, must be at most 1024"},
+        {entries(10, 1) + big(0), "the name of a dimension has 0 bytes, must be 1 to 256"},
+        {entries(10, 1) + big(257), "the name of a dimension has 257 bytes, must be 1 to 256"},
+        {entries(10, 1) + called("\x1b"), "the name of a dimension is none"},
+        {entries(10, 1) + called("\x7f"), "the name of a dimension is none"},
+        {entries(10, 1) + big(100), "at offset 20 100 more bytes do not fit into a file of 20"},
+        {entries(10, 2) + called("a") + big(0) + called("b") + big(0), "dimension b is a second one without a length"},
+        {two + entries(12, 8193), "8193 attributes, must be at most 8192"},
+        {two + entries(12, 1) + called("t") + big(7), "attribute t has the type 7"},
+        {two + entries(12, 1) + called("t") + big(0), "attribute t has the type 0"},
+        {two + entries(12, 1) + called("t") + big(doubles) + big(1 << 22), "attribute t has 33554432 bytes"},
+        {two + no_attributes + entries(10, 1), "tag 10 in place of 11, a list of variables"},
+        {variables + big(1025), "variable v has 1025 dimensions"},
+        {variables + big(1) + big(2), "variable v has the dimension 2, which is not there"},
+        {variables + big(2) + big(1) + big(0), "variable v has its records behind another dimension"},
+        {variables + big(1) + big(1) + no_attributes + big(doubles) + big(32) + big(200) + std::string(100, '\0'),
+         "variable v goes from byte 200 to 232 of a file of 192"},
+        {variables + big(1) + big(1) + no_attributes + big(doubles) + big(32) + big(91) + std::string(100, '\0'),
+         "variable v goes from byte 91 to 123 of a file of 192"}})
+    EXPECT_TRUE(says(refusal(header), {"x: NetCDF header: " + std::string(message) + "; damaged or cut off?"}));
 }
 
 /// Of a record dimension too: where the library's own reader took gigabytes, or crashed.

@@ -152,6 +152,23 @@ TEST(Pbsdf, IsRefusedInOneLineIfItIsCutOffOrWrong) {
                      f[0].name = "other";
                    }),
                    {"a tensor file of other: neither"}));
+  EXPECT_TRUE(says(refusal([](auto& f) { f[3].type = 0; }), {"field wvls: type 0 cannot be read"}));
+  EXPECT_TRUE(says(refusal([](auto& f) { f[3].type = 9; }), {"field wvls: type 9 cannot be read"}));
+  EXPECT_TRUE(says(refusal([](auto& f) { f[4].type = 5; }), {"field M: type 5, must be 10 or 11, floating point"}));
+  EXPECT_TRUE(says(refusal([](auto& f) {
+                     f[3].data.clear();
+                     append(f[3].data, std::uint16_t{9});
+                   }),
+                   {"field wvls: 9 nm is no wavelength"}));
+  EXPECT_TRUE(says(refusal([](auto& f) {
+                     f[1].data = singles({0, 0.1, 0.1, 0.2, 0.3});
+                   }),
+                   {"field theta_d: value 3, 0.1", "does not rise"}));
+  EXPECT_TRUE(says(refusal([](auto& f) {
+                     f = {f[3]};
+                     f[0].name = "";
+                   }),
+                   {"a tensor file of ", ": neither"}));
   std::string huge = tensor_file(good);
   huge[14] = huge[15] = huge[16] = huge[17] = '\xff';
   put(path, huge);

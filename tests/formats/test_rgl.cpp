@@ -189,6 +189,18 @@ TEST(Rgl, IsRefusedInOneLineIfItIsCutOffOrWrong) {
     f.data = std::string(4 * 20000, '\0');
   };
   EXPECT_TRUE(says(refusal(1, longer), {"field theta_i: 20000 nodes of an axis, must be at most 10000"}));
+  for (const auto& [shape, field, message] :
+       {std::tuple{std::vector<std::uint64_t>{4, 3, 2, 5}, 6U,
+                   "field spectra: must have 5 axes, the last two of 2 nodes"},
+        {std::vector<std::uint64_t>{4, 3, 2, 5, 1}, 6U, "field spectra: must have 5 axes, the last two of 2 nodes"},
+        {std::vector<std::uint64_t>{4, 3, 2, 1, 5}, 6U, "field spectra: must have 5 axes, the last two of 2 nodes"},
+        {std::vector<std::uint64_t>{4, 3, 1, 5, 5}, 6U, "field spectra: shape [4, 3, 1, 5, 5], but the axes ask for"},
+        {std::vector<std::uint64_t>{4, 3, 1, 7}, 5U, "field vndf: must have 4 axes, the last two of 2 nodes"},
+        {std::vector<std::uint64_t>{4, 3, 6, 1}, 5U, "field vndf: must have 4 axes, the last two of 2 nodes"},
+        {std::vector<std::uint64_t>{3, 1}, 4U, "field sigma: must have 2 axes, the last two of 2 nodes"}})
+    EXPECT_TRUE(says(refusal(field, [&shape](TensorArray& f) { f.shape = shape; }), {message}));
+  EXPECT_TRUE(says(refusal(3, [](TensorArray& f) { f.data.replace(0, 4, singles({HUGE_VAL})); }),
+                   {"field ndf: inf is no density"}));
   EXPECT_TRUE(says(refusal(7, longer), {"field jacobian: must have the shape [1]"}));
 }
 

@@ -103,6 +103,13 @@ TEST(Zemax, IsRefusedInOneLineIfItIsCutOffOrWrong) {
   EXPECT_TRUE(says(refusal("TIS 0.9\n", "TIS 0.9\n inf"), {"x:18: value: 'inf'"}));
   EXPECT_TRUE(says(refusal("TIS 0.9\n", "TIS 0.9\n 1"), {"in place of TIS"}));
   EXPECT_TRUE(says(refusal("Asymmetrical", "Mirrored"), {"x:3: Symmetry 'Mirrored' is none of"}));
+  EXPECT_TRUE(says(refusal("AngleOfIncidence\t3", "AngleOfIncidence\t2.5"),
+                   {"x:8: AngleOfIncidence: 2.5 is no number of angles that the file can hold"}));
+  EXPECT_TRUE(says(refusal("Monochrome\nDataBegin", "Colours\nDataBegin"), {"keyword 'Colours' is not known"}));
+  EXPECT_TRUE(says(refusal("TIS 0.9\n", "TIS nan\n"), {"x:17: TIS: 'nan'"}));
+  EXPECT_TRUE(says(refusal("DataEnd", "TIS"), {"'TIS' in place of DataEnd behind the data of 3 incidences: cut off?"}));
+  EXPECT_TRUE(says(refusal("ScatterAzimuth\t4\n 0.000000 90.000000 180.000000 270.000000", "# none"),
+                   {"no angles of ScatterAzimuth before the data: cut off?"}));
 }
 
 std::string exported(const Export& table) {
