@@ -8,6 +8,7 @@
 
 #include "mmbrdf/files/csv.hpp"
 #include "mmbrdf/model/description.hpp"
+#include "mmbrdf/text/rounding.hpp"
 #include "options/arguments.hpp"
 #include "options/files.hpp"
 
@@ -48,8 +49,16 @@ std::vector<CertifiedReflectance> read_certificate(std::istream& in, const std::
 
 namespace {
 
+constexpr double no_reflectance = 2;  // not even with errors
+constexpr const char* in_percent = ": is it in percent? It is a part of 1";
+
 ReflectanceTable reflectance(const std::string& text, bool of_fit) {
-  if (text.find(':') != std::string::npos || !std::filesystem::exists(text)) return typed_reflectance(text);
+  if (text.find(':') != std::string::npos || !std::filesystem::exists(text)) {
+    ReflectanceTable typed = typed_reflectance(text);
+    for (const double value : typed.values)
+      if (value > no_reflectance) throw std::invalid_argument(shortest(value) + in_percent);
+    return typed;
+  }
   std::map<double, double> nodes;
   read_input(text, [&](std::istream& in, const std::string& name) {
     using namespace std::string_view_literals;
@@ -63,11 +72,9 @@ ReflectanceTable reflectance(const std::string& text, bool of_fit) {
     else if (u >= 0)
       throw reader.error(
           "mmbrdf convert --certificate counts the uncertainty of a reflectance, --reflectance does not");
-    constexpr double no_reflectance = 2;  // not even with errors
     while (reader.next()) {
       if (reader.number(value) > no_reflectance)
-        throw reader.error("reflectance " + printable(reader.field(value), 40) +
-                           ": is it in percent? It is a part of 1");
+        throw reader.error("reflectance " + printable(reader.field(value), 40) + in_percent);
       if (!nodes.emplace(micrometres(reader.number(wavelength)), reader.number(value)).second)
         throw reader.error("this wavelength is given twice");
     }
