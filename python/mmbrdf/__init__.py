@@ -182,6 +182,7 @@ def _write_report(
     from . import _report
 
     kind = _report.kind_of(path, format)
+    _report.require_folder(path)
     source = _report.Source(
         model,
         data,

@@ -233,10 +233,15 @@ def page(
     return str(made(Source(model, data, name, data_name, wavelength_nm, theta_i_deg), "html"))
 
 
-def write(path: str | os.PathLike[str], text: str | bytes) -> None:
-    """All of it or nothing: links are followed, modes kept, devices written directly."""
+def require_folder(path: str | os.PathLike[str]) -> None:
+    """Raises FileNotFoundError where there is none for a file; asked before pictures are drawn, which takes seconds."""
     if not Path(path).parent.exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(path))
+
+
+def write(path: str | os.PathLike[str], text: str | bytes) -> None:
+    """All of it or nothing: links are followed, modes kept, devices written directly."""
+    require_folder(path)
     _write_text(path, text)
 
 
@@ -348,6 +353,8 @@ def main(arguments: Sequence[str] | None = None, prog: str = "python3 -m mmbrdf.
     command = options.made_by or _command(prog, words, [options.model, options.data, output])
     try:
         _require_kept(output, [options.data] if built_in else [options.model, options.data])
+        if there:
+            require_folder(output)
         report = made(_source_of(options, command), kind, Look(options.notation, options.paper))
         if there:
             write(output, report)

@@ -100,10 +100,11 @@ def test_the_page_the_markdown_and_the_program_say_the_same(page, tmp_path, prog
 
 
 def test_the_facts_are_those_of_the_program(ptfe, program, tmp_path):
-    printed = json.loads(program("report", "ptfe", "--format", "json"))
+    asked = [532, 600]  # fitted, and between
+    printed = json.loads(program("report", "ptfe", "-w", "532,600", "--format", "json"))
     origin = printed.pop("origin")
-    assert printed == json.loads(mmbrdf.report_json(ptfe, "ptfe"))
-    mmbrdf.report(ptfe, None, tmp_path / "r.json", name="ptfe", model_file="ptfe")
+    assert printed == json.loads(mmbrdf.report_json(ptfe, "ptfe", asked))
+    mmbrdf.report(ptfe, None, tmp_path / "r.json", name="ptfe", wavelength_nm=asked, model_file="ptfe")
     ours = json.loads((tmp_path / "r.json").read_text())
     assert (
         ours.pop("origin")["files"] == origin["files"] == [{"what": "model", "name": "ptfe (built in)", "sha256": None}]
@@ -185,6 +186,7 @@ def test_symbols_are_as_in_print_but_for_words_of_others(page):
     assert not re.search(r"theta_[ir](?!_deg)|sr\^-1|chi\^2|phi_[ir](?!_deg)|_coefficients", text)
 
 
+@pytest.mark.usefixtures("blank")
 def test_several_wavelengths_have_one_picture_and_not_a_page_each(ptfe, tmp_path):
     mmbrdf.report(ptfe, None, tmp_path / "r.html")
     text = (tmp_path / "r.html").read_text()
@@ -296,17 +298,31 @@ def test_all_pictures_have_the_azimuth_of_the_samples_and_say_so(anisotropic, tm
     assert azimuths(tmp_path / "report.html") == ["180"] * 3
 
 
-def figures(model, data, azimuth, tmp_path):
-    """Pictures of the model by caption, of samples from this azimuth."""
+def drawn_at(model, azimuth, tmp_path, monkeypatch):
+    """What is drawn of the model for samples from this azimuth, by kind of picture; the others are empty figures."""
+    from matplotlib.figure import Figure
+
+    draw, found = _report._draw, {}
+
+    def kept(source, block):
+        if block["plot"] not in ("hemisphere", "in-plane-curves", "realizability-map"):
+            return Figure(figsize=(1, 1))
+        figure = draw(source, block)
+        found[block["plot"]] = _pages.image(figure, "", "svg")
+        return Figure(figsize=(1, 1))
+
     grid = mmbrdf.germer2017_grid()
     turned = grid._replace(phi_i_deg=np.full(len(grid.theta_i_deg), azimuth))
-    mmbrdf.report(model, mmbrdf.simulate(model, 532, turned), tmp_path / "report.html")
-    return Outline((tmp_path / "report.html").read_text()).pictures[2:5]
+    with monkeypatch.context() as patched:
+        patched.setattr(_report, "_draw", kept)
+        mmbrdf.report(model, mmbrdf.simulate(model, 532, turned), tmp_path / "report.html")
+    return found
 
 
-def test_the_pictures_are_drawn_at_the_azimuth_that_their_captions_name(anisotropic, tmp_path):
-    one, other = (figures(anisotropic, None, azimuth, tmp_path) for azimuth in (30.0, 180.0))
-    assert all(first != second for first, second in zip(one, other))
+def test_the_pictures_are_drawn_at_the_azimuth_that_their_captions_name(anisotropic, tmp_path, monkeypatch):
+    one, other = (drawn_at(anisotropic, azimuth, tmp_path, monkeypatch) for azimuth in (30.0, 180.0))
+    assert len(one) == len(other) == 3
+    assert all(one[kind] != other[kind] for kind in one)
 
 
 def test_without_samples_the_message_says_where(page, tmp_path):
@@ -319,7 +335,8 @@ def test_without_samples_the_message_says_where(page, tmp_path):
     assert done.returncode == 1 and "empty.csv" in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_a_missing_folder_is_named_as_it_was_given(page, tmp_path):
+def test_a_missing_folder_is_named_as_it_was_given_before_anything_is_drawn(page, tmp_path, monkeypatch):
+    monkeypatch.setattr(_report, "_draw", lambda source, block: pytest.fail("drawn for nothing"))
     with pytest.raises(FileNotFoundError) as error:
         mmbrdf.report(page[0], None, tmp_path / "no" / "report.html")
     assert error.value.filename == str(tmp_path / "no" / "report.html")
@@ -364,10 +381,11 @@ def test_file_names_are_text_whatever_is_in_them(name, tmp_path, monkeypatch, ca
     assert headings(tmp_path / "report.html")[0] == f"Report on {name}"
 
 
-def test_it_prints_the_page_where_that_is_asked_for(tmp_path):
-    done = run_module("ptfe-532", "--format", "html", "-o", "/proc/self/fd/1", folder=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("<!DOCTYPE html>") and done.stdout.endswith("</html>\n")
+@pytest.mark.usefixtures("blank")
+def test_it_prints_the_page_where_that_is_asked_for(capfd):
+    assert _report.main(["ptfe-532", "--format", "html", "-o", "/proc/self/fd/1"]) == 0
+    out, error = capfd.readouterr()
+    assert error == "" and out.startswith("<!DOCTYPE html>") and out.endswith("</html>\n")
 
 
 def test_it_does_not_overwrite_what_it_reports_on(page, tmp_path):
