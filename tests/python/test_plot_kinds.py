@@ -465,20 +465,39 @@ def test_a_calibration_shows_what_its_figure_of_merit_sums_up(tmp_path):
 # Columns
 
 
-@pytest.mark.parametrize("width_cm, points", [(8, 7), (17, 8)])
-def test_a_column_has_its_width_and_its_fonts(ptfe, data, width_cm, points):
-    for figure, _ in (
-        plot.hemisphere(ptfe, 532, 60, samples=5, width_cm=width_cm),
-        plot.map(ptfe, "11", 532, 60, samples=5, width_cm=width_cm),
-        plot.in_plane_curves(ptfe, 532, width_cm=width_cm),
-        plot.polar_in_plane(ptfe, [351, 532], width_cm=width_cm),
-        plot.reflectance_factor(ptfe, 532, width_cm=width_cm),
-        plot.uncertainty_parts(ptfe, 532, width_cm=width_cm),
-        plot.anisotropy(ptfe, width_cm=width_cm),
-        plot.coefficient_spectrum(ptfe, width_cm=width_cm),
-        plot.directions(data, 532, width_cm=width_cm),
-    ):
+@pytest.fixture(scope="module", params=[8, 17, None])
+def drawn(request, ptfe, fitted, noisy):
+    """A width in cm, and a picture of each kind that has it, drawn once for all that is asked of it."""
+    size = dict(width_cm=request.param)
+    figures = [
+        figure
+        for figure, _ in (
+            plot.hemisphere(noisy, 532, 60, **size),
+            plot.residual_map(fitted, noisy, 532, 60, **size),
+            plot.map(noisy, "depolarization", 532, 60, **size),
+            plot.realizability_map(ptfe, 532, 60, samples=SAMPLES, **size),
+            plot.in_plane_curves(fitted, 532, 60, data=noisy, **size),
+            plot.polar_in_plane(ptfe, [351, 532, 633, 1064], **size),
+            plot.reflectance_factor(ptfe, [351, 532], views=[(0, 0), (30, 180)], **size),
+            plot.reflectance_against_angle(ptfe, [351, 532], bands=False, **size),
+            plot.reflectance_against_wavelength(ptfe, bands=False, **size),
+            plot.uncertainty_parts(ptfe, 532, terms={"calibration": 0.002}, **size),
+            plot.anisotropy(ptfe, **size),
+            plot.coefficient_spectrum(ptfe, power=1, **size),
+            plot.directions(noisy, 532, **size),
+        )
+    ]
+    for figure in figures:
         rendered(figure)
+    return request.param, figures
+
+
+def test_a_column_has_its_width_and_its_fonts(drawn):
+    width_cm, figures = drawn
+    if width_cm is None:
+        pytest.skip("no column")
+    points = {8: 7, 17: 8}[width_cm]
+    for figure in figures:
         assert figure.get_figwidth() * 2.54 == pytest.approx(width_cm)
         texts = [text for text in figure.findobj(Text) if text.get_text().strip()]
         assert all(5.8 <= text.get_fontsize() <= points + 0.5 for text in texts if text.get_visible())
@@ -486,7 +505,6 @@ def test_a_column_has_its_width_and_its_fonts(ptfe, data, width_cm, points):
 
 def overhangs(figure):
     """By how many inches what is drawn is cut by the edges of the figure."""
-    rendered(figure)
     renderer = figure.canvas.get_renderer()
     if any(axes.name == "polar" for axes in figure.axes):
         # The square of the whole disc, of which half is drawn, may go beyond the figure: its words may not.
@@ -503,23 +521,8 @@ def _words(axes):
     return [text for text in texts + legend if text.get_text().strip()]
 
 
-@pytest.mark.parametrize("width_cm", [8, 17, None])
-def test_no_text_is_cut_by_the_edge_of_a_figure(ptfe, fitted, noisy, width_cm):
-    size = dict(width_cm=width_cm)
-    for figure, _ in (
-        plot.hemisphere(noisy, 532, 60, **size),
-        plot.residual_map(fitted, noisy, 532, 60, **size),
-        plot.map(noisy, "depolarization", 532, 60, **size),
-        plot.realizability_map(ptfe, 532, 60, samples=SAMPLES, **size),
-        plot.in_plane_curves(fitted, 532, 60, data=noisy, **size),
-        plot.polar_in_plane(ptfe, [351, 532, 633, 1064], **size),
-        plot.reflectance_factor(ptfe, [351, 532], views=[(0, 0), (30, 180)], **size),
-        plot.reflectance_against_angle(ptfe, [351, 532], bands=False, **size),
-        plot.reflectance_against_wavelength(ptfe, bands=False, **size),
-        plot.uncertainty_parts(ptfe, 532, terms={"calibration": 0.002}, **size),
-        plot.anisotropy(ptfe, **size),
-        plot.coefficient_spectrum(ptfe, power=1, **size),
-    ):
+def test_no_text_is_cut_by_the_edge_of_a_figure(drawn):
+    for figure in drawn[1]:
         assert overhangs(figure) < 0.015  # a pixel of the screen
 
 
