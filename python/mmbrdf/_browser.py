@@ -23,18 +23,24 @@ def browser() -> str | None:
     return chosen or next((path for path in map(shutil.which, _NAMES) if path), None)
 
 
-def printed(page: str, date: str) -> bytes:
-    """The page as PDF, on the paper that its style names. ``date`` is that of the report, 2026-11-30T00:20:00+00:00, and becomes
-    that of the file where SOURCE_DATE_EPOCH is set.
-
-    Raises ValueError, in a line, where there is no browser, and where it makes no PDF.
-    """
+def required_browser() -> str:
+    """Raises ValueError where there is none; asked before a page is made, which takes seconds."""
     program = browser()
     if program is None:
         raise ValueError(
             "PDF is printed by Chromium, which was not found: install chromium, or name a browser of its kind in "
             "MMBRDF_BROWSER; a report as .html can be printed by any browser"
         )
+    return program
+
+
+def printed(page: str, date: str) -> bytes:
+    """The page as PDF, on the paper that its style names. ``date`` is that of the report, 2026-11-30T00:20:00+00:00, and becomes
+    that of the file where SOURCE_DATE_EPOCH is set.
+
+    Raises ValueError, in a line, where there is no browser, and where it makes no PDF.
+    """
+    program = required_browser()
     # A browser that is confined to a user's files (snap) sees no hidden or temporary folders, but those in its own.
     with tempfile.TemporaryDirectory(prefix="mmbrdf-report-") as folder:
         source, target = Path(folder) / "report.html", Path(folder) / "report.pdf"

@@ -21,7 +21,7 @@ import numpy as np
 
 from . import Dataset, Model, __version__, _table_options, material, materials, report_json
 from ._arguments import number, require
-from ._browser import printed
+from ._browser import printed, required_browser
 from ._files import digest, digest_of_what_was_read, identity, said
 from ._mmbrdf import _report_document, _report_markdown, _shown_name_of, _utc_timestamp, _write_text
 from ._pages import PAPERS, document, parts
@@ -211,6 +211,7 @@ def made(source: Source, kind: str, look: Look = Look()) -> str | bytes:
     if kind == "html":
         return _page(source, look, None)
     if kind == "pdf":
+        required_browser()
         return printed(_page(source, look, look.paper), _utc_timestamp())
     if source.model is None:
         raise ValueError(f"{source.data_name}: a report on samples alone is a page: .html or .pdf")

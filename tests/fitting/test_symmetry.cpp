@@ -248,6 +248,24 @@ TEST(LackOfFit, TellsMisfitFromNoise) {
   EXPECT_GT(f11.misfit, 1.2 * f11.pure_error);
 }
 
+// f11 is fitted divided by the reflectance, and so are the residuals that repeats are compared by.
+TEST(LackOfFit, IsTheSameWhateverF11IsDividedBy) {
+  const Basis basis{Family::isotropic, {2, 1}};
+  std::vector<Sample> samples;
+  for (const unsigned long seed : {1UL, 2UL})
+    std::ranges::move(
+        simulate(material("ptfe-532"), std::array{0.532}, random_geometries(200, 9, radians(40)), 0.01, seed),
+        std::back_inserter(samples));
+  FitOptions options;
+  options.reflectance = ReflectanceTable{{0.532}, {1}};
+  const LackOfFit one = lack_of_fit(samples, fit(samples, basis, options)).front();
+  options.reflectance = ReflectanceTable{{0.532}, {0.25}};
+  const LackOfFit other = lack_of_fit(samples, fit(samples, basis, options)).front();
+  EXPECT_NEAR(other.f, one.f, 1e-9 * one.f);
+  EXPECT_NEAR(other.pure_error, 4 * one.pure_error, 1e-9);
+  EXPECT_NEAR(other.misfit, 4 * one.misfit, 1e-9);
+}
+
 TEST(LackOfFit, IsNotTestedWithoutRepeats) {
   const std::vector<Sample> samples =
       simulate(material("ptfe-532"), std::array{0.532}, random_geometries(200, 9), 0.01, 1);

@@ -312,7 +312,7 @@ TEST(Netcdf, TakesAnAttributeOfTheNewTypeOfTextsToo) {
   const Folder folder;
   for (const auto& [unit, message] : {std::pair{"sr-1", "no variable theta_i_deg"}, {"lx", "units 'lx' are none of"}})
     EXPECT_TRUE(says(refused_variable(folder, NC_DOUBLE,
-                                      [&](int file, int id) {
+                                      [unit = unit](int file, int id) {
                                         const char* text = unit;
                                         nc_put_att_string(file, id, "units", 1, &text);
                                       }),

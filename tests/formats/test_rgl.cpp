@@ -198,7 +198,7 @@ TEST(Rgl, IsRefusedInOneLineIfItIsCutOffOrWrong) {
         {std::vector<std::uint64_t>{4, 3, 1, 7}, 5U, "field vndf: must have 4 axes, the last two of 2 nodes"},
         {std::vector<std::uint64_t>{4, 3, 6, 1}, 5U, "field vndf: must have 4 axes, the last two of 2 nodes"},
         {std::vector<std::uint64_t>{3, 1}, 4U, "field sigma: must have 2 axes, the last two of 2 nodes"}})
-    EXPECT_TRUE(says(refusal(field, [&shape](TensorArray& f) { f.shape = shape; }), {message}));
+    EXPECT_TRUE(says(refusal(field, [shape = shape](TensorArray& f) { f.shape = shape; }), {message}));
   EXPECT_TRUE(says(refusal(3, [](TensorArray& f) { f.data.replace(0, 4, singles({HUGE_VAL})); }),
                    {"field ndf: inf is no density"}));
   EXPECT_TRUE(says(refusal(7, longer), {"field jacobian: must have the shape [1]"}));

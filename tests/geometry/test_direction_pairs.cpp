@@ -46,6 +46,7 @@ TEST(DirectionPairs, OfIsotropicSamplesTurningTheSampleAndTheMirrorChangeNothing
       EXPECT_EQ(pairs.node({{i.theta, i.phi + turn}, {r.theta, r.phi + turn}}), node);
       EXPECT_EQ(pairs.node({{i.theta, -i.phi}, {r.theta, -r.phi}}), node);
       EXPECT_EQ(pairs.node({{0, i.phi}, r}), pairs.node({{0, i.phi + turn}, r}));  // no azimuth between them
+      EXPECT_EQ(pairs.node({i, {0, r.phi}}), pairs.node({i, {0, r.phi + turn}}));
     }
 }
 
@@ -53,6 +54,8 @@ TEST(DirectionPairs, OfOthersTheAzimuthOfTheSampleCounts) {
   const DirectionPairs pairs(Grid::anisotropic);
   EXPECT_NE(pairs.node({{1, 0}, {1, 1}}), pairs.node({{1, 1}, {1, 2}}));
   EXPECT_EQ(pairs.node({{1, -0.1}, {1, 6.2}}), pairs.node({{1, 0.1}, {1, 0}}));
+  EXPECT_EQ(pairs.node({{1, 0}, {0, 1}}), pairs.node({{1, 0}, {0, 2}}));  // the normal has no azimuth
+  EXPECT_EQ(pairs.node({{0, 1}, {1, 0}}), pairs.node({{0, 2}, {1, 0}}));
 }
 
 TEST(DirectionPairs, MergeToWhatEitherHasAndKeepWhatBothHave) {

@@ -289,6 +289,23 @@ TEST(Model, IsRefusedWithAValidityThatIsNone) {
             "validity: the supported directions are on the grid of another family");
 }
 
+TEST(Model, BetweenWavelengthsSupportsWhatBothNeighboursDo) {
+  const Geometry both = in_degrees(30, 0, 40, 90), one = in_degrees(60, 0, 10, 0);
+  DirectionPairs few, more;
+  for (const Geometry& geometry : {both, one}) more.add(geometry);
+  few.add(both);
+  const auto lacks = [](const Validity& validity, double wavelength, const Geometry& geometry) {
+    return (outside(validity, wavelength, geometry) & outside_directions) != 0;
+  };
+  for (const bool below : {false, true}) {
+    Validity validity{{0.4, 0.6}, {}, {}, {{0.4, below ? few : more}, {0.6, below ? more : few}}};
+    for (const double wavelength : {0.4, 0.5, 0.6}) {
+      EXPECT_FALSE(lacks(validity, wavelength, both)) << wavelength;
+      EXPECT_EQ(lacks(validity, wavelength, one), wavelength != (below ? 0.6 : 0.4)) << wavelength;
+    }
+  }
+}
+
 TEST(Model, WithAPosteriorOfAnotherModelIsRefused) {
   const auto refusal = [](const std::function<void(Model&)>& spoil) {
     Model model = material("ptfe-532");

@@ -84,4 +84,6 @@ TEST(Judgement, CountsMatricesThatNothingCanHave) {
             Doubts{"2 of 5 matrices cannot be physical: are generator and analyzer states exchanged, or is it another "
                    "instrument?"});
   EXPECT_EQ(verdict.refusal, "");
+  samples[3].normalized(0, 3) = std::numeric_limits<double>::quiet_NaN();  // of a part of a matrix nothing can be said
+  EXPECT_EQ(judged(samples).doubts.at(0).substr(0, 6), "1 of 5");
 }

@@ -220,6 +220,7 @@ TEST(DepolarizationPower, IsOneForAPerfectDepolarizerAndZeroForNone) {
   EXPECT_EQ(depolarization_power(diagonal(2, 0, 0, 0)), 1);
   EXPECT_EQ(depolarization_power(identity()), 0);
   EXPECT_NEAR(depolarization_power(diagonal(1, 0.6, 0.3, 0.3)), 0.6, 1e-15);
+  EXPECT_NEAR(depolarization_power(diagonal(1, -0.6, -0.3, -0.3)), 0.6, 1e-15);
   EXPECT_THROW(depolarization_power(Mueller{}), std::invalid_argument);
 }
 

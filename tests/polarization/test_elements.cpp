@@ -75,6 +75,12 @@ RC_GTEST_PROP(Polarizer, PassesLightAlongItsAxisAndItsExtinctionAcross, ()) {
   RC_ASSERT(std::abs(passed(azimuth + pi / 2) - extinction) <= rounding);
 }
 
+RC_GTEST_PROP(Polarizer, LeaksAcrossWithItsPhase, ()) {
+  const double azimuth = between(-pi, pi), extinction = between(0, 1), phase = between(-pi, pi);
+  const Mueller of_amplitudes = mueller_of({1, 0, 0, std::polar(std::sqrt(extinction), phase)});
+  RC_ASSERT(deviation(polarizer(azimuth, extinction, phase), rotated(of_amplitudes, azimuth)) <= rounding);
+}
+
 TEST(Polarizer, RefusesWhatItCannotBe) {
   EXPECT_EQ(message_of([] { polarizer(0, 1.5); }), "extinction 1.5 of a polarizer is not in [0, 1]");
   EXPECT_THROW(polarizer(0, -1e-9), std::invalid_argument);

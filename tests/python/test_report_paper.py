@@ -15,7 +15,7 @@ import mmbrdf
 
 pytest.importorskip("matplotlib")
 
-from mmbrdf import _browser, _report  # noqa: E402
+from mmbrdf import _browser, _pages, _report  # noqa: E402
 
 pytestmark = pytest.mark.skipif(
     not _browser.browser(), reason="no chromium: ./dev packages browser, or set MMBRDF_BROWSER"
@@ -34,6 +34,23 @@ def reported():
     model = mmbrdf.material("ptfe")
     data = mmbrdf.simulate(model, [351, 532, 633, 1064], mmbrdf.random_geometries(150, seed=1), speckle=0.01, seed=2)
     return model, data
+
+
+@pytest.fixture(scope="module", autouse=True)
+def drawn_once():
+    """Pictures are the same on a screen and on each paper: what was drawn for one page is in the others, too."""
+    draw, figure, known = _report._draw, _pages._figure, {}
+
+    def kept(block, drawn):
+        what = json.dumps(block, sort_keys=True)
+        if what not in known:
+            known[what] = figure(block, drawn())
+        return known[what]
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(_report, "_draw", lambda source, block: lambda: draw(source, block))
+        patched.setattr(_pages, "_figure", kept)
+        yield
 
 
 def source(reported):
@@ -160,8 +177,12 @@ def test_without_a_browser_one_line_says_what_to_do(reported, tmp_path, monkeypa
         mmbrdf.report(mmbrdf.material("ptfe-532"), None, tmp_path / "r.pdf")
     monkeypatch.delenv("MMBRDF_BROWSER")
     monkeypatch.setattr(_browser, "_NAMES", ())
+    drawn = []
+    monkeypatch.setattr(_report, "_draw", lambda source, block: drawn.append(block))
     with pytest.raises(ValueError, match="^PDF is printed by Chromium, which was not found: install chromium, or name"):
         mmbrdf.report(mmbrdf.material("ptfe-532"), None, tmp_path / "r.pdf")
+    assert not drawn, "it takes seconds, for nothing"
+    monkeypatch.undo()
     monkeypatch.setenv("MMBRDF_BROWSER", "/bin/false")
     with pytest.raises(ValueError, match="^PDF is printed by Chromium: /bin/false made none: exit 1$"):
         mmbrdf.report(mmbrdf.material("ptfe-532"), None, tmp_path / "r.pdf")

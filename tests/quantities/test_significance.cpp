@@ -108,6 +108,18 @@ TEST(Significance, LeavesOutWhatHasNoUncertainty) {
   EXPECT_EQ(significance(samples, samples)[5].samples, 0);
 }
 
+TEST(Significance, LeavesOutWhereF11OfTheModelIsNotPositive) {
+  const Model model = least_squares("ptfe-532");
+  const std::vector<Sample> samples = measured(1, random_geometries(5, 1, radians(60)));
+  EXPECT_EQ(significance(model, samples)[0].samples, 5);
+  Model dark = model;
+  for (double& coefficient : dark.blocks[0].coefficients) coefficient = -coefficient;
+  for (const std::size_t e : {0U, 5U}) {
+    EXPECT_EQ(significance(dark, samples)[e].samples, 0);
+    EXPECT_EQ(significance(dark, model, samples)[e].samples, 0);
+  }
+}
+
 TEST(Significance, NeedsTheUncertaintiesOfBoth) {
   Model unknown = least_squares("ptfe-532");
   for (FittedBlock& block : unknown.blocks) block.covariance.clear();
