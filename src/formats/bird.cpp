@@ -273,7 +273,6 @@ bool is_own(std::string_view head) {
 }  // namespace
 
 bool is_bird(std::string_view head, std::uint64_t) {
-  head.remove_prefix(head.starts_with("\xef\xbb\xbf") ? 3 : 0);
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
   if (!takes(head, "{") || is_own(head)) return false;
   const std::string_view first = head.substr(std::min(head.find_first_not_of(json_blanks), head.size()));

@@ -15,6 +15,7 @@
 #include "formats/reader.hpp"
 #include "formats/rgl.hpp"
 #include "formats/tensor_file.hpp"
+#include "formats/text_file.hpp"
 #include "formats/zemax.hpp"
 #include "mmbrdf/text/input.hpp"
 
@@ -35,6 +36,7 @@ constexpr std::array formats{
 };
 
 const ForeignFormat* format_of(std::string_view head, std::uint64_t size) {
+  if (head.starts_with(byte_order_mark)) head.remove_prefix(byte_order_mark.size());  // of any text
   const auto* found = std::ranges::find_if(formats, [&](const ForeignFormat& format) { return format.is(head, size); });
   return found == formats.end() ? nullptr : found;
 }

@@ -26,7 +26,7 @@ bool TextFile::next() {
   while (std::getline(in_, text_)) {
     ++number_;
     line_ = without_blanks(text_);
-    if (number_ == 1 && line_.starts_with("\xef\xbb\xbf")) line_.remove_prefix(3);
+    if (number_ == 1 && line_.starts_with(byte_order_mark)) line_.remove_prefix(byte_order_mark.size());
     if (line_.empty()) continue;
     ended_ = !in_.eof();
     return true;

@@ -10,6 +10,8 @@
 
 namespace mmbrdf {
 
+inline constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  // of UTF-8, which texts may begin with
+
 /// Radians: an angle of a text has few digits of π/2 and 2π.
 inline constexpr double few_digits = 1e-4;
 

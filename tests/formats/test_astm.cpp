@@ -69,6 +69,12 @@ TEST(Astm, KeepsTheSignOfNoise) {
   EXPECT_NEAR(std::cos(read.samples.at(1).geometry.reflected.phi), -1, 1e-15);  // −theta is the other side
 }
 
+TEST(Astm, MayBeginWithAByteOrderMark) {
+  const Folder folder;
+  put(folder / "x", "\xef\xbb\xbfVARS theta_i,theta_s,phi_s,BRDF\n0,0.5,0,0.1\n");
+  EXPECT_EQ(read_foreign_file(folder / "x", {0.5}).samples.size(), 1U);
+}
+
 TEST(Astm, CountsNoCommentAsARow) {
   const Folder folder;
   put(folder / "x", "NUM_POINTS 2\nVARS theta_i,theta_s,phi_s,BRDF\n# one\n0,0.5,0,0.1\n# two\n0,0.6,0,0.2\n");
