@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "given/cases.hpp"
@@ -134,6 +135,22 @@ RC_GTEST_PROP(NotMeasured, IsNaNInEveryFrameWhereAxesMixItAndNowhereElse, ()) {
     RC_ASSERT(unknown_elements(of_incidence) == unknown);
     for (std::size_t e = 0; e < 16; ++e)
       if (!unknown[e]) RC_ASSERT(std::abs(f.elements[e] - all.elements[e]) < 1e-12);
+  }
+}
+
+// Of 22 alone, which axes that turn mix with 23, 32 and 33: in the plane of incidence those of sp are those of xy.
+TEST(NotMeasured, IsNaNInBatchesWhereTheAxesOfThePlaceMixIt) {
+  Model model = random_model(Family::isotropic, {2, 2}, 0, 1);
+  model.not_measured = Elements(1U << 5U);
+  const PreparedModel prepared = prepare(model, 0.5);
+  const std::vector<Geometry> geometries{{{0.5, 0}, {0.7, std::numbers::pi}}, {{0.5, 0.4}, {0.7, 1.4}}};
+  for (const Frame frame : frames) {
+    std::vector<Mueller> out(2);
+    prepared.evaluate(geometries, frame, out);
+    EXPECT_EQ(unknown_elements(out[0]), Elements(1U << 5U));
+    EXPECT_EQ(unknown_elements(out[1]), frame == Frame::xy ? Elements(1U << 5U) : Elements(0x0660));
+    for (std::size_t q : {0U, 1U})
+      EXPECT_EQ(unknown_elements(prepared.evaluate(geometries[q], frame)), unknown_elements(out[q])) << q;
   }
 }
 

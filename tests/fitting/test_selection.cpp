@@ -70,6 +70,10 @@ TEST(FitAccumulator, AtLowerOrdersIsTheFitAtTheseOrders) {
   low.add(samples);
   EXPECT_THROW(low.at_orders({4, 2}), std::invalid_argument);
   EXPECT_THROW(low.misfit(random_model(Family::isotropic, {3, 1}, 0, 1)), std::invalid_argument);
+  Model same = random_model(Family::isotropic, {3, 2}, 0, 1);
+  EXPECT_NO_THROW(low.misfit(same));
+  same.mapping = DiscMapping::projected;
+  EXPECT_EQ(message_of([&] { low.misfit(same); }), "the model has another basis");
   const FitAccumulator turned({Family::germer2017, {3, 1}});
   const Model germer = random_model(Family::germer2017, {3, 1}, 0, 1);
   EXPECT_NO_THROW(turned.misfit(germer));

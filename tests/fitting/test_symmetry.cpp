@@ -266,6 +266,18 @@ TEST(LackOfFit, IsTheSameWhateverF11IsDividedBy) {
   EXPECT_NEAR(other.misfit, 4 * one.misfit, 1e-9);
 }
 
+TEST(LackOfFit, IsNotTestedByCopies) {
+  std::vector<Sample> samples =
+      simulate(material("ptfe-532"), std::array{0.532}, random_geometries(200, 9, radians(40)), 0.01, 1);
+  samples.insert(samples.end(), samples.begin(), samples.begin() + 100);
+  for (const LackOfFit& test : lack_of_fit(samples, fit(samples, Basis{Family::isotropic, {2, 1}}))) {
+    EXPECT_GE(test.repeats, 100) << test.block;
+    EXPECT_EQ(test.pure_error, 0);
+    EXPECT_EQ(test.f, 0);
+    EXPECT_EQ(test.p, 1);
+  }
+}
+
 TEST(LackOfFit, IsNotTestedWithoutRepeats) {
   const std::vector<Sample> samples =
       simulate(material("ptfe-532"), std::array{0.532}, random_geometries(200, 9), 0.01, 1);

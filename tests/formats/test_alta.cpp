@@ -131,6 +131,7 @@ TEST(Alta, IsRefusedInOneLineIfItIsCutOffOrWrong) {
     return foreign_refusal(path, {0.633});
   };
   const std::string good = head("SPHERICAL_TL_PL_TV_PV", 4);
+  EXPECT_TRUE(says(refusal(good + "0.1 0 +-0.2 0 0.3\n"), {"x:7: coordinate 3: '+-0.2' is not a number"}));
   EXPECT_TRUE(says(refusal(good + "0.1 0 0.2 0 0.3\n0.1 0 0.2\n"), {"x:8: 3 numbers in place of 5: cut off?"}));
   EXPECT_TRUE(says(refusal(good + "45 0 0.2 0 0.3\n"), {"x:7: coordinate 1: 45 is no such angle in radians"}));
   EXPECT_TRUE(says(refusal(good + "0.1 0 0.2 0 nan\n"), {"x:7: value: 'nan'"}));

@@ -289,6 +289,8 @@ TEST(Posterior, OfADirectionThatWasReadVeryOftenLeavesTheNoiseAlone) {
   const ReadingPrediction readings = predict_readings(model, 0.532);
   const double noise = std::sqrt(model.posterior->data().wavelengths[0].blocks[0].noise_variance *
                                  std::cos(often.incident.theta) / std::cos(often.reflected.theta));
+  EXPECT_NO_THROW(predict_readings(model, 0.532 + 1e-8));
+  EXPECT_THROW(predict_readings(model, 0.533), std::invalid_argument);
   const PredictedReading here = readings.at_its_azimuth(often), anywhere = readings.at_some_azimuth(often);
   EXPECT_NEAR(std::pow(here.uncertainty(0, 0) / here.value(0, 0) / noise, 2), 1.01, 0.05);
   for (std::size_t e = 0; e < 16; ++e) EXPECT_LT(here.uncertainty.elements[e], anywhere.uncertainty.elements[e]) << e;

@@ -104,6 +104,26 @@ TEST(Goniometer, ReadsNothingNegativeWithoutAdditiveNoise) {
       for (const double reading : reference.readings) EXPECT_GE(reading, 0) << seed;
 }
 
+TEST(Goniometer, ReadsWafersAtThirtyToSeventyFiveDegreesAndPolarizersAllRound) {
+  const std::vector<Reference> references = Goniometer(silent(), 3).references(0.532, 4, 1);
+  std::vector<double> angles;
+  for (const Reference& reference : references) angles.push_back(degrees(reference.angle));
+  const std::vector<double> expected{0, 0, 0, 0, 0, 45, 90, 135, 30, 45, 60, 75};
+  ASSERT_EQ(angles.size(), expected.size());
+  for (std::size_t i = 0; i < angles.size(); ++i) EXPECT_NEAR(angles[i], expected[i], 1e-12) << i;
+  EXPECT_NEAR(degrees(Goniometer(silent(), 3).references(0.532, 1, 1)[2].angle), 30, 1e-12);
+}
+
+TEST(Goniometer, ReadsNothingAtNinetyDegrees) {
+  const PreparedModel model = prepare(material("ptfe-532"), 0.532);
+  const auto read = [&](double theta_r_deg) {
+    const std::vector<Geometry> one{{{radians(30), 0}, {radians(theta_r_deg), std::numbers::pi}}};
+    return Goniometer(silent(), 3).readings(model, one, 1);
+  };
+  for (const double theta_r_deg : {90.0, 89.9999999999}) EXPECT_THROW(read(theta_r_deg), std::invalid_argument);
+  EXPECT_NO_THROW(read(89.9));
+}
+
 // The whole way back: readings of a model without noise, reduced with the true instrument, are its matrices.
 TEST(Goniometer, ReadingsOfAModelReduceToItsSamples) {
   const Goniometer goniometer(silent(), 3);

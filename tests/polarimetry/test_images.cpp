@@ -87,6 +87,17 @@ TEST(Images, HaveNoNumbersWhereThereAreNone) {
   for (std::size_t i = 0; i < 48; ++i) EXPECT_EQ(std::isnan(elements[i]), i >= 16);
 }
 
+// Frames of retarders that do not turn far enough leave elements open, and so does the one pixel that lost its circular light.
+TEST(Images, OfFramesHaveNoNumbersInPixelsThatTheyLeaveOpen) {
+  RotatingRetarders retarders;
+  retarders.generator.retardance = retarders.analyzer.retardance = radians(127);
+  Camera camera(polarimeter(retarders, dial_angles(5, radians(6), 61)), 2);
+  for (std::size_t k = 0; k < 61; ++k) camera.generators[4 * 61 + 4 * k + 3] = 0;
+  std::vector<float> elements(32);
+  muellers(pixel_inverses(camera.generators, camera.analyzers, camera.pixels[0]), camera.readings, elements);
+  for (std::size_t i = 0; i < 32; ++i) EXPECT_EQ(std::isnan(elements[i]), i >= 16) << i;
+}
+
 TEST(Images, RefuseSizesThatDoNotFit) {
   const Polarimeter like = ideal_polarimeter(radians(131.81), std::vector{0.1, 0.5, 1.0, 2.0});
   EXPECT_THROW(pixel_inverses(std::vector<double>(31), std::vector<double>(32), like), std::invalid_argument);

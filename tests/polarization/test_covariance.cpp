@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -41,6 +42,14 @@ TEST(MuellerCovariance, ThatNothingCanHaveIsRefused) {
   EXPECT_EQ(what(v), "the covariance is not symmetric: 2 and 0 at 0, 1, counted from 0");
   v(1, 0) = 1.0 / 0.0;
   EXPECT_EQ(what(v), "the covariance is not finite");
+}
+
+TEST(MuellerCovariance, OfAnUnknownElementIsUnknownWithEachOther) {
+  MuellerCovariance v = diagonal(1);
+  set_unknown(v, Elements(1U << 5U));
+  for (std::size_t e = 0; e < 16; ++e)
+    for (std::size_t other = 0; other < 16; ++other)
+      EXPECT_EQ(std::isnan(v(e, other)), e == 5 || other == 5) << e << ' ' << other;
 }
 
 }  // namespace

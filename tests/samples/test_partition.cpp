@@ -103,6 +103,9 @@ TEST(Partition, ByAngleJoinsWhatAFileHasRounded) {
   const Partition partition = folds_by_incident_angle(samples);
   EXPECT_EQ(partition.fold, (std::vector<std::size_t>{2, 0, 0, 2, 1}));
   EXPECT_EQ(partition.names[1], "30 degrees");
+  EXPECT_EQ(partition.names[2], "45 degrees");  // the middle of the group, to four digits
+  samples[3].geometry.incident.theta = radians(44.96);
+  EXPECT_EQ(folds_by_incident_angle(samples, radians(0.05)).names[2], "44.98 degrees");
   EXPECT_EQ(folds_by_incident_angle(samples, radians(1e-4)).names.size(), 4U);
 }
 
@@ -113,6 +116,10 @@ TEST(Partition, ByWavelengthNamesThem) {
   const Partition partition = folds_by_wavelength(samples);
   EXPECT_EQ(partition.fold, (std::vector<std::size_t>{1, 0, 1}));
   EXPECT_EQ(partition.names, (std::vector<std::string>{"351 nm", "633 nm"}));
+  for (const double rounding : {-0.5, 0.5}) {  // one wavelength
+    samples[2].wavelength = 0.633 + rounding * wavelength_resolution;
+    EXPECT_EQ(folds_by_wavelength(samples).fold, partition.fold);
+  }
 }
 
 TEST(Partition, LeavesOutWhatTheDataAllow) {
