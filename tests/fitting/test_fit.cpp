@@ -472,6 +472,23 @@ TEST(Fit, TheMinimumNormIsTheDefinitionOfThePublishedFamily) {
   EXPECT_EQ(result.solutions[1].x.size(), 30u);
 }
 
+// The model is 0 in all directions: what it leaves is 0.01 in the median, of which f11 is taken to be the standard deviation.
+TEST(Weights, OfWhatIsDarkerThanItsNoiseAreThoseOfTheNoise) {
+  const std::vector<Geometry> geometries = random_geometries(5, 1, radians(60));
+  const double noise = 1.4826 * 0.01;
+  std::vector<Sample> samples = simulate(diffuser({0.3}), std::array{0.5}, geometries);
+  const std::vector<double> f11{0.01, -0.01, 0.005, 0.02, -0.3};
+  for (std::size_t s = 0; s < 5; ++s) samples[s].f11 = f11[s];
+  const std::vector<Mueller> dark = speckle_weights(samples, diffuser({0})),
+                             bright = speckle_weights(samples, diffuser({0.3}));
+  for (std::size_t s = 0; s < 5; ++s) {
+    const double law = std::cos(geometries[s].reflected.theta) / std::cos(geometries[s].incident.theta);
+    EXPECT_NEAR(dark[s](0, 0), law / (noise * noise), 1e-9 * dark[s](0, 0)) << s;
+    EXPECT_NEAR(dark[s](1, 1), law, 1e-12);
+    EXPECT_LE(bright[s](0, 0), law / (0.3 * 0.3) * (1 + 1e-12));
+  }
+}
+
 TEST(Fit, RefusesWhatItCannotFit) {
   const std::vector<Sample> one = samples_of(material("ptfe-532")), four = samples_of(material("ptfe"));
   FitOptions options;

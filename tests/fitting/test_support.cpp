@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -69,6 +70,29 @@ const std::vector<std::pair<const char*, Part>> parts = {
     {"ring", [](const Geometry& g) { return g.reflected.theta > radians(35) && g.reflected.theta < radians(62); }},
     {"one incidence", [](const Geometry& g) { return std::abs(degrees(g.incident.theta) - 45) < 1; }},
 };
+
+// One azimuth of the source says nothing of others, unless all are alike.
+TEST(Support, OfAnAnisotropicModelEndsAtTheAzimuthsOfTheSource) {
+  const auto at_azimuths = [](const std::vector<double>& azimuths_deg) {
+    std::vector<Geometry> result;
+    for (const double azimuth_deg : azimuths_deg)
+      for (Geometry g : grid([](const Geometry&) { return true; })) {
+        g.incident.phi += radians(azimuth_deg);
+        g.reflected.phi += radians(azimuth_deg);
+        result.push_back(g);
+      }
+    return result;
+  };
+  const Geometry turned{{radians(45), radians(90)}, {radians(30), radians(270)}};
+  for (const auto& [family, azimuths_deg, expected] :
+       {std::tuple{Family::isotropic, std::vector{0.0}, true},
+        {Family::anisotropic, {0.0}, false},
+        {Family::anisotropic, {0.0, 45.0, 90.0, 135.0, 180.0, 225.0, 270.0, 315.0}, true}}) {
+    const Model model = least_squares(measured(at_azimuths(azimuths_deg)), {family, {1, 0}}).model;
+    EXPECT_EQ(unsupported(model, turned), !expected) << azimuths_deg.size();
+    EXPECT_FALSE(unsupported(model, {{radians(45), 0}, {radians(30), radians(180)}}));
+  }
+}
 
 TEST(Support, WhereverWasMeasuredIsSupported) {
   for (const auto& [name, part] : parts)
