@@ -2,6 +2,7 @@
 // Zemax tabular BSDF: scatter angles about the specular ray, azimuth 180 pointing away from the normal.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <random>
@@ -71,6 +72,20 @@ TEST(Zemax, TurnsAnglesAboutTheSpecularRayIntoThoseOfTheSurface) {
   EXPECT_TRUE(says(read.understood,
                    {"a Zemax tabular BSDF file: PlaneSymmetrical", "633 nm as told", "TIS not read",
                     "of 39 values at or below the horizon passed over", "repeats of a direction passed over: 9"}));
+}
+
+TEST(Zemax, PassesOverRepeatsThatSayTheSameAlone) {
+  const Folder folder;
+  std::string text = file("PlaneSymmetrical", {0}, {0, 60, 120, 180}, isotropic);
+  put(folder / "x", text);
+  const std::size_t count = read_foreign_file(folder / "x", {0.633}).samples.size();
+  const std::size_t second_azimuth =
+      text.find('\n', text.find("TIS 0.9\n") + 8) + 1;  // of the first incidence, radial 0
+  put(folder / "x", text.replace(second_azimuth, text.find(' ', second_azimuth + 1) - second_azimuth, " 0.75"));
+  const ForeignRead read = read_foreign_file(folder / "x", {0.633});
+  EXPECT_EQ(read.samples.size(), count + 1);
+  EXPECT_TRUE(std::ranges::any_of(read.samples, [](const Sample& s) { return s.f11 == 0.75; }));
+  EXPECT_TRUE(says(read.understood, {"repeats of a direction passed over: 8"}));
 }
 
 TEST(Zemax, HasSampleRotationsAndBothSides) {
